@@ -1,46 +1,63 @@
 #include "base/eigen.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
-void eigen_symmetric(const double A[9], double values[3], double V[9])
+enum { SWEEPS = 30 };
+
+/* Rotate rows and columns p and q of the symmetric S so that S_pq vanishes; the columns of V follow. */
+static void rotate(int n, int p, int q, double *S, double *V)
 {
-    double S[9];
-    static const int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    memcpy(S, A, sizeof S);
-    for (int i = 0; i < 9; i++) {
-        V[i] = i % 4 == 0 ? 1.0 : 0.0;
+    double tau = (S[(n + 1) * q] - S[(n + 1) * p]) / (2.0 * S[n * p + q]);
+    double t = copysign(1.0, tau) / (fabs(tau) + sqrt(1.0 + tau * tau));
+    double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
+    for (int k = 0; k < n; k++) {
+        double a = S[n * k + p], b = S[n * k + q];
+        S[n * k + p] = c * a - s * b;
+        S[n * k + q] = s * a + c * b;
     }
-    for (int sweep = 0; sweep < 30; sweep++) {
-        double off = S[1] * S[1] + S[2] * S[2] + S[5] * S[5];
-        if (!(off > 1e-34 * (S[0] * S[0] + S[4] * S[4] + S[8] * S[8]))) {
-            break;
-        }
-        for (int r = 0; r < 3; r++) {
-            int p = pairs[r][0], q = pairs[r][1];
-            if (S[3 * p + q] == 0.0) {
-                continue;
-            }
-            double tau = (S[4 * q] - S[4 * p]) / (2.0 * S[3 * p + q]);
-            double t = copysign(1.0, tau) / (fabs(tau) + sqrt(1.0 + tau * tau));
-            double c = 1.0 / sqrt(1.0 + t * t), s = t * c;
-            for (int k = 0; k < 3; k++) {
-                double a = S[3 * k + p], b = S[3 * k + q];
-                S[3 * k + p] = c * a - s * b;
-                S[3 * k + q] = s * a + c * b;
-            }
-            for (int k = 0; k < 3; k++) {
-                double a = S[3 * p + k], b = S[3 * q + k];
-                S[3 * p + k] = c * a - s * b;
-                S[3 * q + k] = s * a + c * b;
-                a = V[3 * k + p];
-                b = V[3 * k + q];
-                V[3 * k + p] = c * a - s * b;
-                V[3 * k + q] = s * a + c * b;
-            }
+    for (int k = 0; k < n; k++) {
+        double a = S[n * p + k], b = S[n * q + k];
+        S[n * p + k] = c * a - s * b;
+        S[n * q + k] = s * a + c * b;
+        a = V[n * k + p];
+        b = V[n * k + q];
+        V[n * k + p] = c * a - s * b;
+        V[n * k + q] = s * a + c * b;
+    }
+}
+
+/* Whether what is off the diagonal is round-off. */
+static bool is_diagonal(int n, const double *S)
+{
+    double off2 = 0.0, diagonal2 = 0.0;
+    for (int p = 0; p < n; p++) {
+        diagonal2 += S[(n + 1) * p] * S[(n + 1) * p];
+        for (int q = p + 1; q < n; q++) {
+            off2 += S[n * p + q] * S[n * p + q];
         }
     }
-    values[0] = S[0];
-    values[1] = S[4];
-    values[2] = S[8];
+    return !(off2 > 1e-34 * diagonal2);
+}
+
+void eigen_symmetric(int n, const double *A, double *values, double *V)
+{
+    double S[EIGEN_MOST * EIGEN_MOST];
+    memcpy(S, A, (size_t)(n * n) * sizeof *S);
+    for (int i = 0; i < n * n; i++) {
+        V[i] = i % (n + 1) == 0 ? 1.0 : 0.0;
+    }
+    for (int sweep = 0; sweep < SWEEPS && !is_diagonal(n, S); sweep++) {
+        for (int p = 0; p < n; p++) {
+            for (int q = p + 1; q < n; q++) {
+                if (S[n * p + q] != 0.0) {
+                    rotate(n, p, q, S, V);
+                }
+            }
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        values[i] = S[(n + 1) * i];
+    }
 }

@@ -1,9 +1,12 @@
-/* Eigenvalues of symmetric 3 x 3 matrices. */
+/* Eigenvalues of small symmetric matrices. */
 #ifndef BASE_EIGEN_H
 #define BASE_EIGEN_H
 
-/* Eigenvalues, in no particular order, and unit eigenvectors (columns of V) of a symmetric 3 x 3 matrix
- * (row-major), by Jacobi rotations. */
-void eigen_symmetric(const double A[9], double values[3], double V[9]);
+enum { EIGEN_MOST = 6 }; /* rows at most */
+
+/* Eigenvalues values[n], in no particular order, and unit eigenvectors, the columns of V[n * n], of the
+ * symmetric matrix A[n * n], row-major, by cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations,
+ * 8.5). */
+void eigen_symmetric(int n, const double *A, double *values, double *V);
 
 #endif

@@ -233,10 +233,7 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
         factor->order[strong + i] = behind[by_pivot[i]];
     }
 done:
-    free(behind);
-    free(by_pivot);
-    free(matrix);
-    free(diagonal);
+    FREE_ALL(behind, by_pivot, matrix, diagonal);
     return status;
 }
 
@@ -290,11 +287,7 @@ void envelope_dropped(const struct envelope *factor, int64_t *row)
 
 void envelope_free(struct envelope *factor)
 {
-    free(factor->order);
-    free(factor->first);
-    free(factor->start);
-    free(factor->value);
-    free(factor->scratch);
+    FREE_ALL(factor->order, factor->first, factor->start, factor->value, factor->scratch);
     *factor = (struct envelope){0};
 }
 

@@ -32,6 +32,15 @@ int compare_numbers(int count, const int32_t *a, const int32_t *b)
     return k == count ? 0 : a[k] < b[k] ? -1 : 1;
 }
 
+int compare_placed(const void *left, const void *right)
+{
+    const struct placed *a = left, *b = right;
+    if (a->place != b->place) {
+        return a->place < b->place ? -1 : 1;
+    }
+    return (a->item > b->item) - (a->item < b->item);
+}
+
 int compare_int32(const void *left, const void *right)
 {
     return compare_numbers(1, left, right);

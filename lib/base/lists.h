@@ -17,6 +17,15 @@ MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, 
  */
 int compare_numbers(int count, const int32_t *a, const int32_t *b);
 
+/* An item by its place along a line. */
+struct placed {
+    double place;
+    int64_t item;
+};
+
+/* For qsort of struct placed: ascending places, items of one place by their numbers. */
+int compare_placed(const void *left, const void *right);
+
 /* For qsort and bsearch of int32_t, ascending. */
 int compare_int32(const void *left, const void *right);
 

@@ -98,6 +98,13 @@ enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t
     return STATUS_OK;
 }
 
+void free_all(size_t count, void *const array[])
+{
+    for (size_t i = 0; i < count; i++) {
+        free(array[i]);
+    }
+}
+
 enum status owned_add(struct owned *owned, void *memory, const char *name, struct error *error)
 {
     void **grown = memory == NULL ? NULL : array_grow(owned->item, owned->count + 1, sizeof *grown);

@@ -49,6 +49,10 @@ enum status array_resize(void *pointer, int64_t count, size_t size, const char *
 enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t size, const char *name,
                             struct error *error);
 
+/* free() each of these arrays. */
+#define FREE_ALL(...) free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
+void free_all(size_t count, void *const array[]);
+
 /* Memory of one owner, freed all at once. */
 struct owned {
     int64_t count;

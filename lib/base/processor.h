@@ -14,6 +14,13 @@ bool processor_has(const char *set);
 #define AVX2_SET __attribute__((target("avx2")))
 #define AVX512_SET __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
 
+/* A function that is compiled for each of these; the processor's own is chosen when the program starts. */
+#if defined(__x86_64__)
+#define ALL_SETS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ALL_SETS
+#endif
+
 /* The last of "plain", "avx2", "avx512" that it runs. */
 const char *processor_best_set(void);
 

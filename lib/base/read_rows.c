@@ -150,10 +150,7 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
         }
     }
 done:
-    free(send_first);
-    free(first);
-    free(sent);
-    free(got);
+    FREE_ALL(send_first, first, sent, got);
     return status;
 }
 

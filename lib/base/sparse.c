@@ -51,9 +51,7 @@ done:
 
 void sparse_free(struct sparse *matrix)
 {
-    free(matrix->ptr);
-    free(matrix->idx);
-    free(matrix->value);
+    FREE_ALL(matrix->ptr, matrix->idx, matrix->value);
     *matrix = (struct sparse){0};
 }
 
@@ -83,11 +81,6 @@ enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct er
         (*used)[r] = matrix->ptr[r + 1] > matrix->ptr[r];
     }
     return status;
-}
-
-void sparse_apply(const struct sparse *matrix, int64_t width, const double *x, double *y)
-{
-    sparse_apply_rows(matrix, 0, matrix->row_count, width, x, y);
 }
 
 void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,

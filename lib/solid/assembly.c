@@ -35,19 +35,17 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
 static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
                                  struct error *error)
 {
-    enum status status;
     const struct cells *cells = &input->cells;
     const int32_t *cell = input->point_cell;
     int corners = cells->dim + 1;
-    TRY(NEW_ARRAY(vertex, input->point_count * corners, error));
-    TRY(NEW_ARRAY(coordinate, input->point_count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(vertex, input->point_count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(coordinate, input->point_count * corners, error));
     for (int64_t q = 0; q < input->point_count; q++) {
         memcpy(*vertex + q * corners, cells->node + (int64_t)cell[q] * corners,
                (size_t)corners * sizeof **vertex);
         barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
@@ -96,18 +94,15 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .ranks = input->ranks};
     TRY(body_build(&body, &system->body, error));
 done:
-    free(vertex);
-    free(coordinate);
-    free(at_edge);
+    FREE_ALL(vertex, coordinate, at_edge);
     return status;
 }
 
 /* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
 static enum status lump_mass(const struct assembly *input, struct solid_system *system, struct error *error)
 {
-    enum status status;
     int corners = input->cells.dim + 1;
-    TRY(NEW_ARRAY(&system->lumped_mass, input->cells.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->lumped_mass, input->cells.node_count, error));
     for (int64_t c = 0; c < input->cells.count; c++) {
         double density = input->materials.items[input->materials.of_cell[c]].density;
         for (int k = 0; k < corners; k++) {
@@ -117,13 +112,11 @@ static enum status lump_mass(const struct assembly *input, struct solid_system *
     }
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         if (!(system->lumped_mass[n] > 0.0)) {
-            status = fail(error, STATUS_INPUT, "nodes.x: row %lld: the node is in no cell: it has no mass",
-                          (long long)n);
-            goto done;
+            return fail(error, STATUS_INPUT, "nodes.x: row %lld: the node is in no cell: it has no mass",
+                        (long long)n);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void assembly_complete(struct assembly *input)
@@ -178,10 +171,7 @@ done:
 
 void material_list_free(struct material_list *list)
 {
-    free(list->items);
-    free(list->of_point);
-    free(list->of_cell);
-    free(list->section);
+    FREE_ALL(list->items, list->of_point, list->of_cell, list->section);
     *list = (struct material_list){0};
 }
 

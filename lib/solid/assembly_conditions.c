@@ -101,23 +101,22 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
 static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
                            const struct boundary_sides *sides, int64_t count, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
     for (int64_t a = 0; a < count; a++) {
         struct nodal_constraint nodal = {.node = averages->node[a], .condition = p->number};
         struct demand demand;
-        TRY(add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
-        TRY(prescription_demand(p, averages, a, true, &demand, error));
+        RETURN_IF_ERROR(
+            add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
+        RETURN_IF_ERROR(prescription_demand(p, averages, a, true, &demand, error));
         for (int k = 0; k < demand.count; k++) {
             memcpy(nodal.direction, demand.direction + k * dim, (size_t)dim * sizeof *nodal.direction);
             nodal.value = demand.value[k];
-            TRY(nodal_constraints_add(p->nodal_constraints, &nodal, error));
+            RETURN_IF_ERROR(nodal_constraints_add(p->nodal_constraints, &nodal, error));
         }
     }
     held_note(p->held, &p->system->rows, first, p->system->rows.count);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Hold what the boundary averages of a set leave free. */

@@ -43,15 +43,14 @@ static enum status check_curve(const struct contact_condition *condition, const 
 static enum status add_motion(const struct contact_condition *condition, const struct solid_system *system,
                               struct rigid_motion *motion, struct error *error)
 {
-    enum status status = STATUS_OK;
     *motion = condition->motion;
     if (motion->moves) {
-        TRY(rigid_motion_check(motion, system->dim, error));
-        TRY(check_curve(condition, "curve", &system->curves[motion->translation_curve], error));
-        TRY(check_curve(condition, "angle_curve", &system->curves[motion->rotation_curve], error));
+        RETURN_IF_ERROR(rigid_motion_check(motion, system->dim, error));
+        RETURN_IF_ERROR(check_curve(condition, "curve", &system->curves[motion->translation_curve], error));
+        RETURN_IF_ERROR(
+            check_curve(condition, "angle_curve", &system->curves[motion->rotation_curve], error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether the facets around each node are flat, to 1e-3 in the normals. Else they are chords of a curved
@@ -82,10 +81,9 @@ static enum status build_points(const struct assembly *input, const struct facet
                                 struct boundary_averages *points, struct boundary_averages *averages,
                                 struct error *error)
 {
-    enum status status;
     const struct face_table *table = &input->face_table;
-    TRY(boundary_averages_build(table, set, averages, error));
-    TRY(boundary_points_build(table, set, points, error));
+    RETURN_IF_ERROR(boundary_averages_build(table, set, averages, error));
+    RETURN_IF_ERROR(boundary_points_build(table, set, points, error));
     if (!between && (input->in_time || !is_flat(points, averages, table->dim))) {
         boundary_averages_free(points);
         *points = *averages;
@@ -95,8 +93,7 @@ static enum status build_points(const struct assembly *input, const struct facet
     for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
         points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Contact between facets of the body. */
@@ -169,17 +166,15 @@ enum status assembly_renew_contacts(const struct assembly *input, struct solid_s
 enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                   struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t sections = input->contact_count;
     if (sections == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&system->contacts, sections, error));
-    TRY(NEW_ARRAY(&system->contact_points, sections, error));
-    TRY(NEW_ARRAY(&system->contact_averages, sections, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contacts, sections, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contact_points, sections, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contact_averages, sections, error));
     for (int64_t i = 0; i < sections; i++) {
-        TRY(add_contact(input, (int32_t)i, system, error));
+        RETURN_IF_ERROR(add_contact(input, (int32_t)i, system, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -75,13 +75,8 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
     const int32_t *cell = input->point_cell;
     bool *softer = NULL;
     int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
-    struct material *items = array_grow(list->items, 2 * list->count, sizeof *items);
-    list->items = items != NULL ? items : list->items;
-    int32_t *section = array_grow(list->section, 2 * list->count, sizeof *section);
-    list->section = section != NULL ? section : list->section;
-    if (items == NULL || section == NULL) {
-        return fail_memory(error, "materials");
-    }
+    TRY(RESIZE_ARRAY(&list->items, 2 * list->count, error));
+    TRY(RESIZE_ARRAY(&list->section, 2 * list->count, error));
     TRY(NEW_ARRAY(&softer, input->cells.count, error));
     TRY(NEW_ARRAY(&softened, list->count, error));
     TRY(mark_cells(input, softer, error));
@@ -108,13 +103,12 @@ done:
  * from a pressure that is uniform there. */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
-    enum status status = STATUS_OK;
     bool found = false;
     *at_edge = NULL;
     if (input->cells.dim < 3) {
-        goto done;
+        return STATUS_OK;
     }
-    TRY(find_ends(input, BOUNDARY_END_SHARP, input->cells.dim, at_edge, error));
+    RETURN_IF_ERROR(find_ends(input, BOUNDARY_END_SHARP, input->cells.dim, at_edge, error));
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         found = found || (*at_edge)[n];
     }
@@ -122,6 +116,5 @@ enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, st
         free(*at_edge);
         *at_edge = NULL;
     }
-done:
-    return status;
+    return STATUS_OK;
 }

@@ -1,6 +1,7 @@
 #include "solid/assembly.h"
 
 #include "approx/face_rows.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -8,29 +9,19 @@
 /* Append an empty dead load. */
 static enum status new_load(struct solid_system *system, int32_t curve, double **force, struct error *error)
 {
-    struct dead_load *grown = array_grow(system->loads, system->load_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "loads");
-    }
-    system->loads = grown;
-    grown += system->load_count;
-    *grown = (struct dead_load){.curve = curve};
-    enum status status = NEW_ARRAY(&grown->force, system->node_count * system->dim, error);
-    if (status == STATUS_OK) {
-        system->load_count++;
-        *force = grown->force;
-    }
-    return status;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->loads, system->load_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(force, system->node_count * system->dim, error));
+    system->loads[system->load_count++] = (struct dead_load){*force, curve};
+    return STATUS_OK;
 }
 
 /* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts,
  * and of a row its share of the faces. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
-    enum status status;
     const struct material_list *materials = &input->materials;
     int rows = FACE_ROWS(input->cells.dim);
-    TRY(NEW_ARRAY(mass, input->lists.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(mass, input->lists.count, error));
     for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
         (*mass)[i] = input->weight[i] * materials->items[materials->of_cell[input->point_cell[i]]].density;
     }
@@ -42,8 +33,7 @@ static enum status share_mass(const struct assembly *input, double **mass, struc
                                                           ((input->cells.dim + 1) * rows);
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether each process has but some rows of what the weight is summed over. */
@@ -116,16 +106,15 @@ static enum status add_traction(const struct assembly *input, const struct load 
     enum status status;
     struct boundary_averages averages = {0};
     double *force;
-    int dim = system->dim;
     TRY(boundary_averages_build(&input->face_table, &load->facets, &averages, error));
     TRY(new_load(system, load->curve, &force, error));
     for (int64_t a = 0; a < averages.count; a++) {
-        for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
-            for (int k = 0; k < dim; k++) {
-                force[(int64_t)averages.idx[i] * dim + k] +=
-                    averages.area[a] * averages.phi[i] * load->components[k];
-            }
+        struct average average = average_of_boundary(&averages, a);
+        double amount[3];
+        for (int k = 0; k < system->dim; k++) {
+            amount[k] = averages.area[a] * load->components[k];
         }
+        average_spread(&average, system->dim, amount, NULL, force);
     }
 done:
     boundary_averages_free(&averages);
@@ -137,30 +126,22 @@ static enum status add_force(const struct assembly *input, const struct load *lo
 {
     const struct neighbours *lists = &input->node_lists;
     double *force;
-    int dim = system->dim;
-    enum status status = new_load(system, load->curve, &force, error);
-    for (int64_t n = 0; status == STATUS_OK && n < load->node_count; n++) {
-        for (int64_t i = lists->ptr[load->nodes[n]]; i < lists->ptr[load->nodes[n] + 1]; i++) {
-            for (int k = 0; k < dim; k++) {
-                force[(int64_t)lists->idx[i] * dim + k] += input->node_phi[i] * load->components[k];
-            }
-        }
+    RETURN_IF_ERROR(new_load(system, load->curve, &force, error));
+    for (int64_t n = 0; n < load->node_count; n++) {
+        int64_t at = lists->ptr[load->nodes[n]];
+        struct average field = {lists->ptr[load->nodes[n] + 1] - at, lists->idx + at, input->node_phi + at};
+        average_spread(&field, system->dim, load->components, NULL, force);
     }
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_pressure(const struct assembly *input, const struct load *load,
                                 struct solid_system *system, struct error *error)
 {
-    enum status status;
     const struct facet_set *set = &load->facets;
     int64_t count = set->count * system->dim;
-    struct pressure_load *grown = array_grow(system->pressures, system->pressure_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "loads");
-    }
-    system->pressures = grown;
-    struct pressure_load *pressure = &grown[system->pressure_count++];
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->pressures, system->pressure_count + 1, error));
+    struct pressure_load *pressure = &system->pressures[system->pressure_count++];
     *pressure = (struct pressure_load){
         .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
     for (int a = 0; a < 3 && load->is_fluid; a++) {
@@ -169,25 +150,17 @@ static enum status add_pressure(const struct assembly *input, const struct load 
     }
     pressure->is_fluid = load->is_fluid;
     pressure->part = load->part;
-    TRY(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi, &pressure->corners,
-                             error));
-    TRY(boundary_points_build(&input->face_table, set, &pressure->points, error));
-    TRY(NEW_ARRAY(&pressure->corner, count, error));
+    RETURN_IF_ERROR(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi,
+                                         &pressure->corners, error));
+    RETURN_IF_ERROR(boundary_points_build(&input->face_table, set, &pressure->points, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressure->corner, count, error));
     for (int64_t i = 0; i < count; i++) {
         /* Averages of node values are in the order of their nodes. */
-        int64_t low = 0, high = pressure->corners.count - 1;
-        while (low < high) {
-            int64_t middle = (low + high) / 2;
-            if (pressure->corners.node[middle] < set->facet[i]) {
-                low = middle + 1;
-            } else {
-                high = middle;
-            }
-        }
-        pressure->corner[i] = (int32_t)low;
+        const int32_t *found = bsearch(&set->facet[i], pressure->corners.node,
+                                       (size_t)pressure->corners.count, sizeof *found, compare_int32);
+        pressure->corner[i] = (int32_t)(found - pressure->corners.node);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status assembly_add_loads(const struct assembly *input, struct solid_system *system, struct error *error)
@@ -195,13 +168,11 @@ enum status assembly_add_loads(const struct assembly *input, struct solid_system
     static enum status (*const add[])(const struct assembly *, const struct load *, struct solid_system *,
                                       struct error *) = {
         [LOAD_PRESSURE] = add_pressure, [LOAD_TRACTION] = add_traction, [LOAD_FORCE] = add_force};
-    enum status status = STATUS_OK;
     if (assembly_has_gravity(input)) {
-        TRY(add_gravity(input, system, error));
+        RETURN_IF_ERROR(add_gravity(input, system, error));
     }
     for (int64_t i = 0; i < input->load_count; i++) {
-        TRY(add[input->loads[i].kind](input, &input->loads[i], system, error));
+        RETURN_IF_ERROR(add[input->loads[i].kind](input, &input->loads[i], system, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }

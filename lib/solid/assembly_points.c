@@ -33,13 +33,12 @@ static enum status fail_at(const struct point_condition *p, int64_t row, struct 
 /* What decides how stiff the body is at its nodes. */
 static enum status look_at_nodes(struct point_condition *p, struct error *error)
 {
-    enum status status;
     const struct body *body = &p->system->body;
     const struct cells *cells = &p->input->cells;
     const int32_t *cell = p->input->point_cell;
     int corners = cells->dim + 1;
-    TRY(NEW_ARRAY(&p->volume, cells->node_count, error));
-    TRY(NEW_ARRAY(&p->shear, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->volume, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->shear, cells->node_count, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         const int32_t *node = cells->node + (int64_t)cell[body->order[q]] * corners;
         for (int k = 0; k < corners; k++) {
@@ -50,8 +49,7 @@ static enum status look_at_nodes(struct point_condition *p, struct error *error)
     for (int64_t n = 0; n < cells->node_count; n++) {
         p->shear[n] /= p->volume[n];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* What two rows say of each other. */
@@ -93,13 +91,10 @@ static int32_t nearest_node(const struct point_condition *p, int64_t i)
     double least = INFINITY;
     int32_t nearest = idx[ptr[i]];
     for (int64_t k = ptr[i]; k < ptr[i + 1]; k++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double way = p->input->cells.x[(int64_t)idx[k] * dim + a] - p->measured->x[i * dim + a];
-            sum += way * way;
-        }
-        if (sum < least) {
-            least = sum;
+        double distance2 =
+            vector_distance2(dim, p->input->cells.x + (int64_t)idx[k] * dim, p->measured->x + i * dim);
+        if (distance2 < least) {
+            least = distance2;
             nearest = idx[k];
         }
     }
@@ -109,7 +104,6 @@ static int32_t nearest_node(const struct point_condition *p, int64_t i)
 /* The rows of one point, or its springs. */
 static enum status add_point(const struct point_condition *p, int64_t i, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = p->measured->dim;
     int64_t at = p->condition->field.ptr[i];
     int32_t node = nearest_node(p, i);
@@ -123,16 +117,16 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
             continue;
         }
         if (!(deviation > 0.0)) {
-            TRY(constraint_rows_add(&p->system->rows, average.length, average.idx, average.phi, direction,
-                                    target, p->condition->curve, p->number, node, error));
+            RETURN_IF_ERROR(constraint_rows_add(&p->system->rows, average.length, average.idx, average.phi,
+                                                direction, target, p->condition->curve, p->number, node,
+                                                error));
             continue;
         }
-        TRY(system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
-                                  node, p->energy / (deviation * deviation), error));
+        RETURN_IF_ERROR(system_append_penalty(p->system, &average, direction, target, p->condition->curve,
+                                              p->number, node, p->energy / (deviation * deviation), error));
         p->system->spring_count++;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Root mean square of what was measured, by components. */
@@ -282,7 +276,6 @@ done:
 enum status assembly_add_points(const struct assembly *input, struct solid_system *system, struct error *note,
                                 struct error *error)
 {
-    enum status status = STATUS_OK;
     for (int64_t i = 0; i < input->condition_count; i++) {
         if (input->conditions[i].kind == CONDITION_POINTS) {
             struct point_condition p = {.input = input,
@@ -290,9 +283,8 @@ enum status assembly_add_points(const struct assembly *input, struct solid_syste
                                         .measured = &input->conditions[i].measured,
                                         .system = system,
                                         .number = (int32_t)i};
-            TRY(add_condition(&p, note, error));
+            RETURN_IF_ERROR(add_condition(&p, note, error));
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }

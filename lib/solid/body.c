@@ -60,39 +60,35 @@ done:
 /* Per-point data in the body's order. */
 static enum status copy_points(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     int dim = input->dim;
     int64_t points = input->point_count;
-    TRY(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
-    TRY(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
-    TRY(NEW_ARRAY_UNTOUCHED(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&body->J, points + BODY_POINT_PADDING, error));
-    TRY(NEW_ARRAY(&body->materials, input->material_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->J, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->materials, input->material_count, error));
     memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
     for (int64_t q = 0; q < points; q++) {
         int64_t from = body->order[q];
         bool alone = !body->smoothed && input->ptr[from + 1] <= input->ptr[from];
         if (alone || !(input->weight[from] > 0.0)) {
-            status = fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
-                          (long long)from);
-            goto done;
+            return fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
+                        (long long)from);
         }
         body->weight[q] = input->weight[from];
         body->material[q] = input->material[from];
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Cut the ordered points into blocks of one law, merged cells together. */
 static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     int64_t most = points_of_block(body->dim);
-    TRY(NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + MATERIAL_MODEL_COUNT + 1,
-                  error));
+    RETURN_IF_ERROR(NEW_ARRAY(
+        &body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + MATERIAL_MODEL_COUNT + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
         enum material_model model = model_of(input, body->order[q]);
@@ -107,8 +103,7 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
             q = next;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Rows of the table of gradients: those of the points from `begin` to before `end`, with the nodes from
@@ -117,7 +112,6 @@ static enum status copy_rows(const struct body_input *input, const struct body *
                              int64_t end, int64_t first, int64_t last, struct sparse *matrix,
                              struct error *error)
 {
-    enum status status;
     int dim = body->dim;
     int64_t rows = body->point_count * dim, at = 0;
     for (int64_t q = begin; q < end; q++) {
@@ -127,7 +121,7 @@ static enum status copy_rows(const struct body_input *input, const struct body *
             at += node >= first && node < last;
         }
     }
-    TRY(sparse_new(rows, body->node_count, at * dim, matrix, error));
+    RETURN_IF_ERROR(sparse_new(rows, body->node_count, at * dim, matrix, error));
     at = 0;
     for (int64_t r = 0; r < rows; r++) {
         int64_t from = body->order[r / dim];
@@ -141,8 +135,7 @@ static enum status copy_rows(const struct body_input *input, const struct body *
         }
         matrix->ptr[r + 1] = at;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The table of gradients at points. */
@@ -230,8 +223,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
-    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads,
-                            VECTOR_STRIDE(body->dim), error));
+    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
     TRY(body_share_nodes(body, error));
     TRY(body_make_bounds(body, error));
 done:
@@ -248,11 +240,7 @@ void body_free(struct body *body)
     row_operator_free(&body->rows);
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
-    void *arrays[] = {body->order,  body->weight,     body->materials,  body->material,
-                      body->blocks, body->node_order, body->node_place, body->u,
-                      body->F,      body->J,          body->force,      body->derivative};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(body->order, body->weight, body->materials, body->material, body->blocks, body->node_order,
+             body->node_place, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};
 }

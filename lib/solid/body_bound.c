@@ -18,12 +18,11 @@ static int owner_of_block(const struct body_share *share, int64_t block)
 
 enum status body_make_bounds(struct body *body, struct error *error)
 {
-    enum status status;
     int64_t least = body->block_count / MOST_PARTS;
     body->bound_parts = chunks_of(body->block_count, least > LEAST_BLOCKS ? least : LEAST_BLOCKS);
-    TRY(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
-    TRY(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
-    TRY(NEW_ARRAY(&body->bound_first, ranks_count(body->share.ranks) + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound, body->bound_parts.count * body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound_work, MOST_PARTS, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->bound_first, ranks_count(body->share.ranks) + 1, error));
     for (int64_t p = 0; p < body->bound_parts.count; p++) {
         int64_t last = chunks_begin(&body->bound_parts, p + 1) - 1;
         for (int r = owner_of_block(&body->share, last); r < ranks_count(body->share.ranks); r++) {
@@ -31,10 +30,9 @@ enum status body_make_bounds(struct body *body, struct error *error)
         }
     }
     for (int64_t p = 0; p < body->bound_parts.count; p++) {
-        TRY(cell_functions_make(body, &body->bound_work[p], error));
+        RETURN_IF_ERROR(cell_functions_make(body, &body->bound_work[p], error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void body_free_bounds(struct body *body)
@@ -42,9 +40,7 @@ void body_free_bounds(struct body *body)
     for (int p = 0; p < MOST_PARTS && body->bound_work != NULL; p++) {
         cell_functions_free(&body->bound_work[p]);
     }
-    free(body->bound_work);
-    free(body->bound_first);
-    free(body->bound);
+    FREE_ALL(body->bound_work, body->bound_first, body->bound);
 }
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
@@ -126,7 +122,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
         work->gradient[i] = matrix->value[at + i % dim * count + i / dim];
     }
     for (int64_t i = 0; i < count; i++) {
-        work->node[i] = row_operator_column(matrix->idx[at + i]);
+        work->node[i] = matrix->idx[at + i];
     }
     add_functions(body, &bound, count, work->node, work->gradient, to->of_node);
 }

@@ -1,4 +1,4 @@
-#include "solid/coarse_kernel.h"
+#include "solid/coarse_space.h"
 
 #include "base/chunks.h"
 #include "base/memory.h"
@@ -59,8 +59,7 @@ static double weight_of(const struct coarse_space *coarse, int64_t c, int64_t no
 
 static enum status share_unity(struct coarse_space *coarse, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&coarse->share, coarse->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, coarse->node_count, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double sum = 0.0;
         for (int64_t c = 0; c < coarse->centre_count; c++) {
@@ -68,8 +67,7 @@ static enum status share_unity(struct coarse_space *coarse, struct error *error)
         }
         coarse->share[n] /= sum;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
@@ -80,8 +78,7 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X, int
                                     .node_count = node_count,
                                     .X = X,
                                     .centre_count = centre_count,
-                                    .count = centre_count * (dim + 1),
-                                    .kernels = coarse_kernels_of(processor_best_set())};
+                                    .count = centre_count * (dim + 1)};
     if (centre_count > 0) {
         TRY(pick_centres(coarse, error));
         TRY(share_unity(coarse, error));
@@ -115,6 +112,87 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
     return count;
 }
 
+/* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
+typedef of_centres coarse_amounts[4][3];
+typedef double four_centres __attribute__((vector_size(32)));
+typedef double two_centres __attribute__((vector_size(16)));
+
+/* The coarse fields of each centre at a node, but for the radius. The dimension is known when compiling, here
+ * and below. */
+KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int64_t node, of_centres value[4])
+{
+    value[0] = coarse->share[node];
+    for (int a = 0; a < dim; a++) {
+        value[a + 1] = value[0] * (coarse->X[node * dim + a] - coarse->centre[a]);
+    }
+}
+
+/* sum = what v, times weight unless NULL, does at the nodes from `begin` to before `end`. */
+KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
+                           const double *weight, const double *v, coarse_amounts sum)
+{
+    of_centres all[4][3] = {{{0.0}}}, value[4];
+    for (int64_t n = begin; n < end; n++) {
+        double scale = weight != NULL ? weight[n] : 1.0;
+        monomials(coarse, dim, n, value);
+        for (int a = 0; a < dim; a++) {
+            double scaled = scale * v[n * dim + a];
+            for (int m = 0; m <= dim; m++) {
+                all[m][a] += value[m] * scaled;
+            }
+        }
+    }
+    memcpy(sum, all, sizeof all);
+}
+
+/* By halves: in a fixed order, which costs few instructions. */
+KERNEL_INLINE double total(const of_centres *value)
+{
+    four_centres half = __builtin_shufflevector(*value, *value, 0, 1, 2, 3) +
+                        __builtin_shufflevector(*value, *value, 4, 5, 6, 7);
+    two_centres quarter =
+        __builtin_shufflevector(half, half, 0, 1) + __builtin_shufflevector(half, half, 2, 3);
+    return quarter[0] + quarter[1];
+}
+
+/* u += amount there. */
+KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
+                       const coarse_amounts amount, double *u)
+{
+    of_centres kept[4][3], value[4];
+    memcpy(kept, amount, sizeof kept);
+    for (int64_t n = begin; n < end; n++) {
+        monomials(coarse, dim, n, value);
+        for (int a = 0; a < dim; a++) {
+            of_centres sum = value[0] * kept[0][a];
+            for (int m = 1; m <= dim; m++) {
+                sum += value[m] * kept[m][a];
+            }
+            u[n * dim + a] += total(&sum);
+        }
+    }
+}
+
+ALL_SETS static void collect_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
+                                   const double *weight, const double *v, coarse_amounts sum)
+{
+    if (coarse->dim == 2) {
+        collect(coarse, 2, begin, end, weight, v, sum);
+    } else {
+        collect(coarse, 3, begin, end, weight, v, sum);
+    }
+}
+
+ALL_SETS static void add_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
+                               const coarse_amounts amount, double *u)
+{
+    if (coarse->dim == 2) {
+        add(coarse, 2, begin, end, amount, u);
+    } else {
+        add(coarse, 3, begin, end, amount, u);
+    }
+}
+
 void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
                            double *amount)
 {
@@ -123,8 +201,7 @@ void coarse_space_restrict(const struct coarse_space *coarse, const double *weig
     coarse_amounts partial[CHUNKS_MOST];
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        coarse->kernels->collect(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v,
-                                 partial[c]);
+        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v, partial[c]);
     }
     for (int m = 0; m <= dim; m++) {
         for (int a = 0; a < dim; a++) {
@@ -154,7 +231,7 @@ void coarse_space_prolongate(const struct coarse_space *coarse, const double *am
     }
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        coarse->kernels->add(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1),
-                             (const of_centres(*)[3])sorted, u);
+        add_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1),
+                  (const of_centres(*)[3])sorted, u);
     }
 }

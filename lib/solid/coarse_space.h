@@ -15,8 +15,6 @@ enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 /* A number for each centre; 0 behind the last. */
 typedef double of_centres __attribute__((vector_size(8 * COARSE_MOST_CENTRES)));
 
-struct coarse_kernels;
-
 /* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
  * from there over the radius. */
 struct coarse_space {
@@ -24,10 +22,9 @@ struct coarse_space {
     int64_t node_count;
     const double *X; /* node_count * dim, m; the caller's */
     int64_t centre_count, count;
-    of_centres centre[3];                 /* dim coordinates, m */
-    double radius;                        /* within which a centre has a share, m */
-    of_centres *share;                    /* node_count: sum 1 */
-    const struct coarse_kernels *kernels; /* for this processor */
+    of_centres centre[3]; /* dim coordinates, m */
+    double radius;        /* within which a centre has a share, m */
+    of_centres *share;    /* node_count: sum 1 */
 };
 
 /* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. */
@@ -47,8 +44,5 @@ void coarse_space_restrict(const struct coarse_space *coarse, const double *weig
 
 /* u[node_count * dim] += Z amount. */
 void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u);
-
-/* The kernels compiled for an instruction set, see base/processor.h, or NULL where there are none. */
-const struct coarse_kernels *coarse_kernels_of(const char *set);
 
 #endif

@@ -1,6 +1,7 @@
 #include "solid/conflicts.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,15 +13,8 @@ static const double largest_jump = 0.1, same_jump = 1e-9, least_size = 1e-6;
 enum status nodal_constraints_add(struct nodal_constraints *nodal_constraints,
                                   const struct nodal_constraint *nodal_constraint, struct error *error)
 {
-    if (nodal_constraints->count == nodal_constraints->room) {
-        int64_t room = 2 * nodal_constraints->room + 64;
-        struct nodal_constraint *grown = array_grow(nodal_constraints->list, room, sizeof *grown);
-        if (grown == NULL) {
-            return fail_memory(error, "displacements");
-        }
-        nodal_constraints->list = grown;
-        nodal_constraints->room = room;
-    }
+    RETURN_IF_ERROR(
+        GROW_ARRAY(&nodal_constraints->list, nodal_constraints->count + 1, &nodal_constraints->room, error));
     nodal_constraints->list[nodal_constraints->count++] = *nodal_constraint;
     return STATUS_OK;
 }
@@ -42,10 +36,7 @@ static int compare_nodal_constraints(const void *left, const void *right)
 /* The difference of two prescribed values along one direction; 0 when their directions differ. */
 static double jump(const struct nodal_constraint *a, const struct nodal_constraint *b, int dim)
 {
-    double along = 0.0;
-    for (int i = 0; i < dim; i++) {
-        along += a->direction[i] * b->direction[i];
-    }
+    double along = vector_dot(dim, a->direction, b->direction);
     return fabs(along) > 1.0 - 1e-9 ? fabs(b->value - copysign(a->value, along * a->value)) : 0.0;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/sparse.h"
+#include "base/vector.h"
 #include "solid/inverse_factor.h"
 
 #include <math.h>
@@ -19,57 +20,34 @@ void constraint_rows_init(struct constraint_rows *rows, int dim)
 
 void constraint_rows_free(struct constraint_rows *rows)
 {
-    free(rows->ptr);
-    free(rows->first);
-    free(rows->list);
-    free(rows->idx);
-    free(rows->phi);
-    free(rows->direction);
-    free(rows->target);
-    free(rows->curve);
-    free(rows->section);
-    free(rows->node);
+    FREE_ALL(rows->ptr, rows->first, rows->list, rows->idx, rows->phi, rows->direction, rows->target,
+             rows->curve, rows->section, rows->node);
     *rows = (struct constraint_rows){0};
-}
-
-/* Grow *array to `count` elements of `size` bytes; on failure the old one stays. */
-static enum status grow(void *array, int64_t count, size_t size, struct error *error)
-{
-    void *old;
-    memcpy(&old, array, sizeof old);
-    void *grown = array_grow(old, count, size);
-    if (grown == NULL) {
-        return fail_memory(error, "constraints");
-    }
-    memcpy(array, &grown, sizeof grown);
-    return STATUS_OK;
 }
 
 static enum status reserve(struct constraint_rows *rows, int64_t length, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t pairs = rows->list_count > 0 ? rows->ptr[rows->list_count] : 0;
     if (rows->count == rows->capacity) {
         int64_t capacity = rows->capacity * 2 + 64;
-        TRY(grow(&rows->ptr, capacity + 1, sizeof *rows->ptr, error));
-        TRY(grow(&rows->first, capacity + 1, sizeof *rows->first, error));
-        TRY(grow(&rows->list, capacity, sizeof *rows->list, error));
-        TRY(grow(&rows->direction, capacity * rows->dim, sizeof *rows->direction, error));
-        TRY(grow(&rows->target, capacity, sizeof *rows->target, error));
-        TRY(grow(&rows->curve, capacity, sizeof *rows->curve, error));
-        TRY(grow(&rows->section, capacity, sizeof *rows->section, error));
-        TRY(grow(&rows->node, capacity, sizeof *rows->node, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->ptr, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->first, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->list, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->direction, capacity * rows->dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->target, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->curve, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->section, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->node, capacity, error));
         rows->capacity = capacity;
         rows->ptr[0] = rows->first[0] = 0;
     }
     if (pairs + length > rows->pair_capacity) {
         int64_t capacity = (pairs + length) * 2 + 1024;
-        TRY(grow(&rows->idx, capacity, sizeof *rows->idx, error));
-        TRY(grow(&rows->phi, capacity, sizeof *rows->phi, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->idx, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->phi, capacity, error));
         rows->pair_capacity = capacity;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Is that the list of the last row? */
@@ -124,13 +102,10 @@ struct average constraint_rows_average(const struct constraint_rows *rows, int64
     return average_of_list(rows, rows->list[r]);
 }
 
-static double along(const struct constraint_rows *rows, int64_t r, const double *mean)
+/* The component of a vector along the direction of row r. */
+static double along(const struct constraint_rows *rows, int64_t r, const double *vector)
 {
-    double sum = 0.0;
-    for (int a = 0; a < rows->dim; a++) {
-        sum += rows->direction[r * rows->dim + a] * mean[a];
-    }
-    return sum;
+    return vector_dot(rows->dim, rows->direction + r * rows->dim, vector);
 }
 
 void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
@@ -157,21 +132,6 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     double mean[3];
     average_take(&average, rows->dim, u, mean);
     return along(rows, r, mean);
-}
-
-/* What is missing where the rows have these values. */
-static void subtract_from_targets(const struct constraint_rows *rows, const double *factor, double *missing)
-{
-    for (int64_t r = 0; r < rows->count; r++) {
-        missing[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - missing[r];
-    }
-}
-
-void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
-                             double *missing)
-{
-    constraint_rows_values(rows, u, missing);
-    subtract_from_targets(rows, factor, missing);
 }
 
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
@@ -227,8 +187,8 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
                     }
                     if (at == capacity) {
                         capacity = at * 2 + 1024;
-                        TRY(grow(column, capacity, sizeof **column, error));
-                        TRY(grow(value, capacity, sizeof **value, error));
+                        TRY(RESIZE_ARRAY(column, capacity, error));
+                        TRY(RESIZE_ARRAY(value, capacity, error));
                     }
                     (*column)[at] = s;
                     (*value)[at++] = cosine * sum[touched[t]];
@@ -239,9 +199,7 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
     }
 done:
     sparse_free(&of_node);
-    free(touched);
-    free(last);
-    free(sum);
+    FREE_ALL(touched, last, sum);
     return status;
 }
 
@@ -254,9 +212,7 @@ enum status constraint_factorise(const struct constraint_rows *rows, int64_t nod
     TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
     TRY(envelope_factorise(rows->count, ptr, column, value, least, factor, error));
 done:
-    free(ptr);
-    free(column);
-    free(value);
+    FREE_ALL(ptr, column, value);
     return status;
 }
 
@@ -319,11 +275,8 @@ done:
 
 void constraint_free(struct constraint *constraint)
 {
-    free(constraint->multiplier);
-    free(constraint->scratch);
-    free(constraint->list_first);
-    free(constraint->row_first);
-    free(constraint->place_first);
+    FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
+             constraint->place_first);
     constraint_rows_free_kept(&constraint->here);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
@@ -372,7 +325,9 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     }
     double *multiplier = constraint->multiplier;
     constraint_values(constraint, u, multiplier);
-    subtract_from_targets(rows, factor, multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        multiplier[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - multiplier[r];
+    }
     constraint_solve(constraint, multiplier);
     constraint_spread(constraint, multiplier, u);
 }

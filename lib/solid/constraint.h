@@ -47,10 +47,6 @@ struct average constraint_rows_average(const struct constraint_rows *rows, int64
 void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value);
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
 
-/* missing[count]: target * factor[curve] less the value of each row; factor NULL: targets of zero. */
-void constraint_rows_missing(const struct constraint_rows *rows, const double *factor, const double *u,
-                             double *missing);
-
 /* The values of the rows of the lists from `begin` to before `end`. */
 void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
                           double *value);

@@ -7,7 +7,6 @@
 enum status constraint_rows_keep(const struct constraint_rows *rows, const bool *wanted,
                                  struct constraint_rows *kept, struct error *error)
 {
-    enum status status;
     int64_t lists = rows->list_count, pairs = lists > 0 ? rows->ptr[lists] : 0, at = 0;
     *kept = *rows;
     kept->ptr = NULL;
@@ -16,9 +15,9 @@ enum status constraint_rows_keep(const struct constraint_rows *rows, const bool 
     for (int64_t i = 0; i < pairs; i++) {
         at += wanted[rows->idx[i]];
     }
-    TRY(NEW_ARRAY(&kept->ptr, lists + 1, error));
-    TRY(NEW_ARRAY(&kept->idx, at, error));
-    TRY(NEW_ARRAY(&kept->phi, at, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept->ptr, lists + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept->idx, at, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept->phi, at, error));
     at = 0;
     for (int64_t l = 0; l < lists; l++) {
         for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
@@ -29,14 +28,11 @@ enum status constraint_rows_keep(const struct constraint_rows *rows, const bool 
         }
         kept->ptr[l + 1] = at;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 void constraint_rows_free_kept(struct constraint_rows *kept)
 {
-    free(kept->ptr);
-    free(kept->idx);
-    free(kept->phi);
+    FREE_ALL(kept->ptr, kept->idx, kept->phi);
     *kept = (struct constraint_rows){0};
 }

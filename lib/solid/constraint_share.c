@@ -29,9 +29,7 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
         combination[dropped[d]] -= 1.0;
     }
 done:
-    free(dropped);
-    free(unit);
-    free(u);
+    FREE_ALL(dropped, unit, u);
     return status;
 }
 
@@ -84,9 +82,6 @@ enum status constraint_share_out(const struct constraint *constraint, double *fo
         }
     }
 done:
-    free(null);
-    free(scale);
-    free(gram);
-    free(amount);
+    FREE_ALL(null, scale, gram, amount);
     return status;
 }

@@ -7,46 +7,33 @@
 
 enum status dynamics_allocate(struct dynamics *d, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = d->system;
-    TRY(NEW_ARRAY(&d->u, d->size, error));
-    TRY(NEW_ARRAY(&d->next, d->size, error));
-    TRY(NEW_ARRAY(&d->before, d->size, error));
-    TRY(NEW_ARRAY(&d->after, d->size, error));
-    TRY(NEW_ARRAY(&d->residual, d->size, error));
-    TRY(NEW_ARRAY(&d->mode, d->size, error));
-    TRY(NEW_ARRAY(&d->scratch, 2 * d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->u, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->next, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->before, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->after, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->residual, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->mode, d->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->scratch, 2 * d->size, error));
     if (system->load_count + system->pressure_count > 0) {
-        TRY(NEW_ARRAY(&d->loads, d->size, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&d->loads, d->size, error));
     }
-    TRY(NEW_ARRAY(&d->factor_before, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_now, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_after, system->curve_count, error));
-    TRY(NEW_ARRAY(&d->factor_change, system->curve_count, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_before, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_now, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_after, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_change, system->curve_count, error));
+    return STATUS_OK;
 }
 
 void dynamics_release(struct dynamics *d)
 {
-    free(d->u);
-    free(d->next);
-    free(d->before);
-    free(d->after);
-    free(d->residual);
-    free(d->mode);
-    free(d->scratch);
-    free(d->loads);
-    free(d->factor_before);
-    free(d->factor_now);
-    free(d->factor_after);
-    free(d->factor_change);
+    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->factor_before,
+             d->factor_now, d->factor_after, d->factor_change);
     constraint_free(&d->constraint);
 }
 
 enum status dynamics_visit(void *run, const struct state *state, struct error *error)
 {
-    enum status status;
     struct dynamics *d = run;
     struct dynamics_report *report = d->report;
     int64_t curves = d->system->curve_count;
@@ -81,15 +68,13 @@ enum status dynamics_visit(void *run, const struct state *state, struct error *e
         {"last_drift", STATE_NUMBERS, &report->last_drift, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
-    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
     if (d->sample_interval == 0) {
-        status = fail(error, STATUS_INPUT, "sample_interval: is 0");
-        goto done;
+        return fail(error, STATUS_INPUT, "sample_interval: is 0");
     }
     if (d->log != NULL) {
-        TRY(energy_log_state(d->log, state, error));
+        RETURN_IF_ERROR(energy_log_state(d->log, state, error));
     }
-    TRY(system_state(d->system, state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(system_state(d->system, state, error));
+    return STATUS_OK;
 }

@@ -17,11 +17,12 @@ double dynamics_time_next(const struct dynamics *d)
     return d->left == 1 ? d->options->end_time : d->mark + (double)(d->done + 1) * d->step;
 }
 
-/* Bound of the largest eigenvalue of M^-1 K for the penalties of all contacts, as if all contact nodes
- * touched: the largest sum of a row's magnitudes. */
-static double contact_bound(const struct solid_system *system, double *stiffness)
+/* The largest sum of the magnitudes of a row of M^-1 K, for the penalties of all contacts, bounds its
+ * eigenvalues. */
+void dynamics_bound_contacts(struct dynamics *d)
 {
-    double bound = 0.0;
+    const struct solid_system *system = d->system;
+    double *stiffness = d->scratch;
     for (int64_t n = 0; n < system->node_count; n++) {
         stiffness[n] = 0.0;
     }
@@ -41,14 +42,8 @@ static double contact_bound(const struct solid_system *system, double *stiffness
         }
     }
     for (int64_t n = 0; n < system->node_count; n++) {
-        bound = fmax(bound, stiffness[n] / system->lumped_mass[n]);
+        d->contact_squared = fmax(d->contact_squared, stiffness[n] / system->lumped_mass[n]);
     }
-    return bound;
-}
-
-void dynamics_bound_contacts(struct dynamics *d)
-{
-    d->contact_squared = contact_bound(d->system, d->scratch);
 }
 
 void dynamics_estimate_frequency(struct dynamics *d, int iterations)

@@ -1,6 +1,7 @@
 #include "solid/energy.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,41 +9,21 @@
 /* Energies below this share of shear modulus times volume are round-off. */
 static const double round_off = 1e-12;
 
-static enum status make_room(struct energy_log *log, int64_t capacity, struct error *error)
-{
-    struct energy *grown = array_grow(log->rows, capacity, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "energies");
-    }
-    log->rows = grown;
-    log->capacity = capacity;
-    return STATUS_OK;
-}
-
 enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error)
 {
-    enum status status = STATUS_OK;
-    if (log->count == log->capacity) {
-        TRY(make_room(log, 2 * log->capacity + 64, error));
-    }
+    RETURN_IF_ERROR(GROW_ARRAY(&log->rows, log->count + 1, &log->capacity, error));
     log->rows[log->count++] = *row;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status energy_log_state(struct energy_log *log, const struct state *state, struct error *error)
 {
     _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");
-    enum status status;
     const struct state_value count = {"count", STATE_COUNTS, &log->count, 1};
-    TRY(state_visit(state, "energies", &count, 1, error));
-    if (log->count > log->capacity) {
-        TRY(make_room(log, log->count, error));
-    }
+    RETURN_IF_ERROR(state_visit(state, "energies", &count, 1, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&log->rows, log->count, &log->capacity, error));
     const struct state_value rows = {"rows", STATE_NUMBERS, log->rows, log->count * ENERGY_COLUMNS};
-    TRY(state_visit(state, "energies", &rows, 1, error));
-done:
-    return status;
+    return state_visit(state, "energies", &rows, 1, error);
 }
 
 void energy_log_free(struct energy_log *log)
@@ -84,11 +65,7 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
     int dim = system->dim;
     double sum = 0.0;
     for (int64_t n = 0; n < system->node_count; n++) {
-        double part = 0.0;
-        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            part += v[i] * w[i];
-        }
-        sum += system->lumped_mass[n] * part;
+        sum += system->lumped_mass[n] * vector_dot(dim, v + n * dim, w + n * dim);
     }
     return 0.5 * sum;
 }

@@ -92,9 +92,7 @@ enum status field_averages_copy(const struct field_averages_input *input, const 
     copy_rows(&copies[0], matrix);
     copy_rows(&copies[1], matrix);
 done:
-    free(length);
-    free(copies[0].place);
-    free(copies[1].place);
+    FREE_ALL(length, copies[0].place, copies[1].place);
     return status;
 }
 
@@ -102,13 +100,12 @@ done:
 static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t *index_of = NULL; /* the body's index of each of the caller's rows */
     int32_t *of_corner = averages->of_corner;
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         int64_t first = k * input->tables[0].row_count;
-        TRY(NEW_ARRAY(&index_of, table->row_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&index_of, table->row_count, error));
         for (int64_t r = 0; r < table->row_count; r++) {
             index_of[table->order[r]] = first + r;
         }
@@ -119,18 +116,16 @@ static enum status match_corners(const struct field_averages_input *input, struc
         free(index_of);
         index_of = NULL;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The corners of each row. */
 static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
-    enum status status;
     int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
     int64_t looks = of_faces + averages->corner_count;
-    TRY(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
-    TRY(NEW_ARRAY(&averages->corner, looks, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, looks, error));
     for (int64_t i = 0; i < looks; i++) {
         averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
     }
@@ -141,8 +136,7 @@ static enum status list_corners(int dim, struct field_averages *averages, struct
         averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
             (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,
@@ -192,10 +186,8 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
         begin = end;
         fetched->ptr[f + 1] = at += length;
     }
-    int32_t *idx = array_grow(fetched->idx, at + 1, sizeof *idx);
-    fetched->idx = idx != NULL ? idx : fetched->idx;
-    double *value = array_grow(fetched->value, at + 1, sizeof *value);
-    fetched->value = value != NULL ? value : fetched->value;
+    TRY(RESIZE_ARRAY(&fetched->idx, at + 1, error));
+    TRY(RESIZE_ARRAY(&fetched->value, at + 1, error));
     faces->idx = fetched->idx;
     faces->phi = fetched->value;
 done:
@@ -206,12 +198,7 @@ done:
 void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->fetched);
-    free(averages->value);
-    free(averages->force);
-    free(averages->of_corner);
-    free(averages->corner_force);
-    free(averages->corner_ptr);
-    free(averages->corner);
-    free(averages->face_order);
+    FREE_ALL(averages->value, averages->force, averages->of_corner, averages->corner_force,
+             averages->corner_ptr, averages->corner, averages->face_order);
     *averages = (struct field_averages){0};
 }

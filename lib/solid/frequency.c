@@ -1,6 +1,7 @@
 #include "solid/frequency.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -55,16 +56,15 @@ static void start_mode(double *mode, int64_t size)
     }
 }
 
-double system_largest_frequency(struct solid_system *system, struct preconditioner *preconditioner,
-                                const double *u, const double *residual, int iterations, double *mode,
-                                double *scratch)
+double system_largest_frequency(struct solid_system *system, struct preconditioner *p, const double *u,
+                                const double *residual, int iterations, double *mode, double *scratch)
 {
     int64_t size = system->node_count * system->dim;
     double *displaced = scratch, *response = scratch + size;
     double eigenvalue = 0.0;
     if (largest_entry(mode, size) == 0.0) {
         start_mode(mode, size);
-        constraint_project(&preconditioner->constraint, NULL, mode);
+        constraint_project(&p->constraint, NULL, mode);
     }
     double spacing = point_spacing(system);
     for (int it = 0; it < iterations; it++) {
@@ -73,12 +73,12 @@ double system_largest_frequency(struct solid_system *system, struct precondition
         for (int64_t i = 0; i < size; i++) {
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
-        preconditioner_resist_open(preconditioner, system, mode, displaced);
+        preconditioner_resist_open(p, system, mode, displaced);
         for (int64_t i = 0; i < size; i++) {
             top += mode[i] * displaced[i];
         }
-        eigenvalue = top / preconditioner_product(preconditioner, mode, mode);
-        preconditioner_apply(preconditioner, displaced, response);
+        eigenvalue = top / preconditioner_product(p, mode, mode);
+        preconditioner_apply(p, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
             mode[i] = response[i] * scale;
@@ -144,7 +144,7 @@ static double largest_eigenvalue(int n, double *diagonal, const double *off_diag
 }
 
 /* product = M^-1 K move, from the change of the residual from u along the move. */
-static void apply(struct solid_system *system, struct preconditioner *preconditioner, const double *u,
+static void apply(struct solid_system *system, struct preconditioner *p, const double *u,
                   const double *residual, double spacing, const double *move, double *displaced,
                   double *product)
 {
@@ -152,7 +152,7 @@ static void apply(struct solid_system *system, struct preconditioner *preconditi
     for (int64_t i = 0; i < system->node_count * system->dim; i++) {
         displaced[i] = (residual[i] - product[i]) / epsilon;
     }
-    preconditioner_apply(preconditioner, displaced, product);
+    preconditioner_apply(p, displaced, product);
 }
 
 /* Whether `count` iterations suffice for the least eigenvalue: with fewer than a share of the ratio of the
@@ -192,12 +192,9 @@ static int32_t most_moved(int dim, int64_t node_count, const double *vector)
     double most = -1.0;
     int32_t node = 0;
     for (int64_t n = 0; n < node_count; n++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            sum += vector[n * dim + a] * vector[n * dim + a];
-        }
-        if (sum > most) {
-            most = sum;
+        double length2 = vector_dot(dim, vector + n * dim, vector + n * dim);
+        if (length2 > most) {
+            most = length2;
             node = (int32_t)n;
         }
     }
@@ -226,13 +223,12 @@ static bool lanczos_begin(struct lanczos *l)
 }
 
 /* Vectors in scratch[4 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
-static struct lanczos lanczos_at(struct solid_system *system, struct preconditioner *preconditioner,
-                                 const double *u, const double *residual, const double *start,
-                                 double *scratch)
+static struct lanczos lanczos_at(struct solid_system *system, struct preconditioner *p, const double *u,
+                                 const double *residual, const double *start, double *scratch)
 {
     int64_t size = system->node_count * system->dim;
     struct lanczos l = {.system = system,
-                        .preconditioner = preconditioner,
+                        .preconditioner = p,
                         .u = u,
                         .residual = residual,
                         .spacing = point_spacing(system),
@@ -265,9 +261,9 @@ static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off
     memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
 }
 
-enum status system_spectrum(struct solid_system *system, struct preconditioner *preconditioner,
-                            const double *u, const double *residual, int most_iterations, const double *start,
-                            double *scratch, struct spectrum *spectrum, struct error *error)
+enum status system_spectrum(struct solid_system *system, struct preconditioner *p, const double *u,
+                            const double *residual, int most_iterations, const double *start, double *scratch,
+                            struct spectrum *spectrum, struct error *error)
 {
     enum status status;
     double *diagonal = NULL, *off_diagonal = NULL, last = INFINITY, largest = 0.0;
@@ -275,7 +271,7 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
     *spectrum = (struct spectrum){.lowest = INFINITY};
     TRY(NEW_ARRAY(&diagonal, most_iterations, error));
     TRY(NEW_ARRAY(&off_diagonal, most_iterations, error));
-    struct lanczos l = lanczos_at(system, preconditioner, u, residual, start, scratch);
+    struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     if (!lanczos_begin(&l)) {
         spectrum->lowest = spectrum->largest = 1.0;
         goto done;
@@ -302,10 +298,9 @@ done:
     return status;
 }
 
-enum status system_unstable_mode(struct solid_system *system, struct preconditioner *preconditioner,
-                                 const double *u, const double *residual, const struct spectrum *spectrum,
-                                 const double *start, double *scratch, struct stability *stability,
-                                 struct error *error)
+enum status system_unstable_mode(struct solid_system *system, struct preconditioner *p, const double *u,
+                                 const double *residual, const struct spectrum *spectrum, const double *start,
+                                 double *scratch, struct stability *stability, struct error *error)
 {
     enum status status;
     int count = spectrum->iterations;
@@ -320,13 +315,13 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
     TRY(NEW_ARRAY(&share, count, error));
     TRY(NEW_ARRAY(&pivot, count, error));
     TRY(NEW_ARRAY(&mode, size, error));
-    struct lanczos l = lanczos_at(system, preconditioner, u, residual, start, scratch);
+    struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* the matrix first, */
         lanczos_step(&l, k, diagonal, off_diagonal);
     }
     least_eigenvector(count, diagonal, off_diagonal, spectrum->lowest, pivot, share);
-    l = lanczos_at(system, preconditioner, u, residual, start, scratch);
+    l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* then its vectors, of which the mode is a sum */
         lanczos_step(&l, k, diagonal, off_diagonal);
@@ -334,16 +329,12 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
             mode[i] += share[k] * l.before[i];
         }
     }
-    l = lanczos_at(system, preconditioner, u, residual, mode, scratch);
+    l = lanczos_at(system, p, u, residual, mode, scratch);
     (void)lanczos_begin(&l);
     lanczos_step(&l, 0, diagonal, off_diagonal);
     stability->least = diagonal[0] < least_told * spectrum->largest ? diagonal[0] / spectrum->largest : 0.0;
     stability->node = most_moved(system->dim, system->node_count, mode);
 done:
-    free(diagonal);
-    free(off_diagonal);
-    free(share);
-    free(pivot);
-    free(mode);
+    FREE_ALL(diagonal, off_diagonal, share, pivot, mode);
     return status;
 }

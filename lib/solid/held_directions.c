@@ -1,6 +1,7 @@
 #include "solid/held_directions.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,10 +31,7 @@ void held_free(struct held_directions *held)
 static void take_out(int dim, int count, const double *axis, double *rest)
 {
     for (int k = 0; k < count; k++) {
-        double along = 0.0;
-        for (int i = 0; i < dim; i++) {
-            along += axis[k * dim + i] * rest[i];
-        }
+        double along = vector_dot(dim, axis + k * dim, rest);
         for (int i = 0; i < dim; i++) {
             rest[i] -= along * axis[k * dim + i];
         }
@@ -44,16 +42,12 @@ double held_rest(const struct held_directions *held, int32_t node, int count, co
                  const double *direction, double *rest)
 {
     int dim = held->dim;
-    double sum = 0.0;
     memcpy(rest, direction, (size_t)dim * sizeof *rest);
     for (int twice = 0; twice < 2; twice++) { /* against round-off */
         take_out(dim, held->count[node], held->axis + (int64_t)node * dim * dim, rest);
         take_out(dim, count, more, rest);
     }
-    for (int i = 0; i < dim; i++) {
-        sum += rest[i] * rest[i];
-    }
-    return sqrt(sum);
+    return vector_length(dim, rest);
 }
 
 void held_note(struct held_directions *held, const struct constraint_rows *rows, int64_t first, int64_t last)

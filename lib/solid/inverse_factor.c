@@ -1,7 +1,9 @@
 #include "solid/inverse_factor.h"
 
 #include "base/dense.h"
+#include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/lower_stiffness.h"
 #include "solid/scalar_stiffness.h"
 #include "solid/system.h"
@@ -17,49 +19,25 @@ enum { MOST_ENTRIES = 24 };
 static const int64_t worthwhile = 500;
 static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 
-struct near {
-    double distance2;
-    int32_t node;
-};
-
-static int compare_near(const void *left, const void *right)
-{
-    const struct near *a = left, *b = right;
-    if (a->distance2 != b->distance2) {
-        return a->distance2 < b->distance2 ? -1 : 1;
-    }
-    return (a->node > b->node) - (a->node < b->node);
-}
-
-static int compare_nodes(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* The list p of row i, ascending, so that i is the last; `near` is scratch. */
 static int64_t choose(const struct solid_system *system, const struct lower *lower, int32_t i,
-                      struct near *near, int32_t list[MOST_ENTRIES])
+                      struct placed *near, int32_t list[MOST_ENTRIES])
 {
     int dim = system->dim;
     int64_t count = 0, kept = 0;
     struct lower_row row = lower_row(lower, i);
     for (int64_t k = 0; k < row.count; k++) {
-        int32_t node = row.idx[k];
-        double distance2 = 0.0;
-        for (int a = 0; a < dim && node < i; a++) {
-            double step = system->X[(int64_t)node * dim + a] - system->X[(int64_t)i * dim + a];
-            distance2 += step * step;
-        }
+        int64_t node = row.idx[k];
         if (node < i && fpclassify(row.value[k]) != FP_ZERO) {
-            near[count++] = (struct near){distance2, node};
+            near[count++] = (struct placed){
+                vector_distance2(dim, system->X + node * dim, system->X + (int64_t)i * dim), node};
         }
     }
-    qsort(near, (size_t)count, sizeof *near, compare_near);
+    qsort(near, (size_t)count, sizeof *near, compare_placed);
     for (; kept < count && kept < MOST_ENTRIES - 1; kept++) {
-        list[kept] = near[kept].node;
+        list[kept] = (int32_t)near[kept].item;
     }
-    qsort(list, (size_t)kept, sizeof *list, compare_nodes);
+    qsort(list, (size_t)kept, sizeof *list, compare_int32);
     list[kept] = i;
     return kept + 1;
 }
@@ -86,18 +64,18 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* The other rows of S that a stretch of rows of L is made of; rows->idx has their lists. */
+/* The rows of S that a stretch of rows of L is made of, as far as they are not there; rows->idx has their
+ * numbers. */
 static enum status add_rows(const struct solid_system *system, int64_t first, int64_t last,
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
 {
     enum status status;
-    int64_t own = system->body.share.begin_node;
     bool *wanted = NULL;
     TRY(NEW_ARRAY(&wanted, system->node_count, error));
     for (int64_t p = first; p < last; p++) {
         for (int64_t k = 0; k < length[p]; k++) {
-            wanted[rows->idx[(p - own) * MOST_ENTRIES + k]] = true;
+            wanted[rows->idx[p * MOST_ENTRIES + k]] = true;
         }
     }
     TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
@@ -107,16 +85,16 @@ done:
     return status;
 }
 
-/* Rows of the nodes from `first` to before `last` in the body's order, with room for MOST_ENTRIES in each,
- * the first at that of the process's first node; length[]: how long each is. `whole`: these are all nodes. */
-static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last, bool whole,
+/* Rows of the nodes from `first` to before `last` in the body's order, the one at place p at
+ * p * MOST_ENTRIES; length[]: how long each is. */
+static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last,
                              struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
     enum status status;
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
-    struct near *near = NULL;
-    int64_t most = 0, own = system->body.share.begin_node;
+    struct placed *near = NULL;
+    int64_t most = 0;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
@@ -125,16 +103,14 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
-            length[p] = choose(system, lower, (int32_t)node[p], near + c * most,
-                               rows->idx + (p - own) * MOST_ENTRIES);
+            length[p] =
+                choose(system, lower, (int32_t)node[p], near + c * most, rows->idx + p * MOST_ENTRIES);
         }
     }
-    if (!whole) {
-        TRY(add_rows(system, first, last, rows, length, lower, error));
-    }
+    TRY(add_rows(system, first, last, rows, length, lower, error));
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t p = first; p < last; p++) {
-        int64_t at = (p - own) * MOST_ENTRIES;
+        int64_t at = p * MOST_ENTRIES;
         solve_row(lower, length[p], rows->idx + at, rows->value + at);
     }
 done:
@@ -147,72 +123,57 @@ done:
 static enum status make_own_rows(const struct solid_system *system, int64_t stretch, struct lower *lower,
                                  struct sparse *rows, int64_t *length, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct body_share *share = &system->body.share;
     int64_t begin = share->begin_node, end = share->end_node;
     bool good = false;
     if (share->ranks != NULL || end - begin <= stretch) {
-        TRY(lower_make(begin, end, lower, error));
+        RETURN_IF_ERROR(lower_make(begin, end, lower, error));
         (void)lower_set_least(lower);
-        TRY(make_rows(system, begin, end, share->ranks == NULL, lower, rows, length, error));
-        goto done;
+        RETURN_IF_ERROR(make_rows(system, begin, end, lower, rows, length, error));
+        return STATUS_OK;
     }
     for (int time = 0; time < 2 && !good; time++) {
         for (int64_t p = begin; p < end; p += stretch) {
             int64_t last = end - p < stretch ? end : p + stretch;
-            TRY(lower_make(p, last, lower, error));
-            TRY(make_rows(system, p, last, false, lower, rows, length, error));
+            RETURN_IF_ERROR(lower_make(p, last, lower, error));
+            RETURN_IF_ERROR(make_rows(system, p, last, lower, rows, length, error));
         }
         good = lower_set_least(lower);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
-/* Own rows one behind the other. */
-static void pack_rows(const struct body_share *share, const int64_t *length, struct sparse *rows)
-{
-    int64_t at = 0;
-    for (int64_t q = 0; q < share->end_node - share->begin_node; q++) {
-        int64_t count = length[share->begin_node + q];
-        memmove(rows->idx + at, rows->idx + q * MOST_ENTRIES, (size_t)count * sizeof *rows->idx);
-        memmove(rows->value + at, rows->value + q * MOST_ENTRIES, (size_t)count * sizeof *rows->value);
-        at += count;
-    }
-}
-
-/* All rows to all, by the processes' stretches of the body's order: rows->ptr[] is of that order. */
+/* Rows one behind the other, rows->ptr[] by places in the body's order; those of all processes to all. */
 static enum status gather_rows(const struct body_share *share, int64_t *length, struct sparse *rows,
                                struct error *error)
 {
-    enum status status;
-    int rank = ranks_rank(share->ranks), count = ranks_count(share->ranks);
+    int count = ranks_count(share->ranks);
     int64_t *first = NULL;
     ranks_gather(share->ranks, length, sizeof *length, share->node_first);
     for (int64_t p = 0; p < rows->row_count; p++) {
         rows->ptr[p + 1] = rows->ptr[p] + length[p];
     }
-    TRY(NEW_ARRAY(&first, count + 1, error));
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        int64_t from = p * MOST_ENTRIES, to = rows->ptr[p];
+        memmove(rows->idx + to, rows->idx + from, (size_t)length[p] * sizeof *rows->idx);
+        memmove(rows->value + to, rows->value + from, (size_t)length[p] * sizeof *rows->value);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&first, count + 1, error));
     for (int r = 0; r <= count; r++) {
         first[r] = rows->ptr[share->node_first[r]];
     }
-    size_t own = (size_t)(first[rank + 1] - first[rank]);
-    memmove(rows->idx + first[rank], rows->idx, own * sizeof *rows->idx);
-    memmove(rows->value + first[rank], rows->value, own * sizeof *rows->value);
     ranks_gather(share->ranks, rows->idx, sizeof *rows->idx, first);
     ranks_gather(share->ranks, rows->value, sizeof *rows->value, first);
-done:
     free(first);
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows by the nodes' numbers. */
 static enum status sort_rows(const struct body *body, const struct sparse *by_place, struct sparse *rows,
                              struct error *error)
 {
-    enum status status;
     int64_t nodes = by_place->row_count;
-    TRY(sparse_new(nodes, nodes, by_place->ptr[nodes], rows, error));
+    RETURN_IF_ERROR(sparse_new(nodes, nodes, by_place->ptr[nodes], rows, error));
     for (int64_t i = 0; i < nodes; i++) {
         int64_t from = by_place->ptr[body->node_place[i]], to = rows->ptr[i];
         int64_t length = by_place->ptr[body->node_place[i] + 1] - from;
@@ -220,8 +181,7 @@ static enum status sort_rows(const struct body *body, const struct sparse *by_pl
         memcpy(rows->value + to, by_place->value + from, (size_t)length * sizeof *rows->value);
         rows->ptr[i + 1] = to + length;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
@@ -252,7 +212,6 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
     TRY(NEW_ARRAY(&length, nodes, error));
     TRY(make_own_rows(system, stretch, &lower, &by_place, length, error));
-    pack_rows(share, length, &by_place);
     TRY(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
     TRY(sort_rows(&system->body, &by_place, &factor->rows, error));
@@ -375,9 +334,7 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
         }
     }
 done:
-    free(at);
-    free(idx);
-    free(phi);
+    FREE_ALL(at, idx, phi);
     if (status != STATUS_OK) {
         constraint_rows_free(transformed);
     }

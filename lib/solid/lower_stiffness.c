@@ -17,13 +17,8 @@ static enum status make_room(struct lower_piece *piece, int64_t more, struct err
 {
     if (piece->count + more > piece->capacity) {
         int64_t capacity = (piece->count + more) / 4 * 5 + 4096;
-        int32_t *idx = array_grow(piece->idx, capacity, sizeof *idx);
-        piece->idx = idx != NULL ? idx : piece->idx;
-        double *value = array_grow(piece->value, capacity, sizeof *value);
-        piece->value = value != NULL ? value : piece->value;
-        if (idx == NULL || value == NULL) {
-            return fail_memory(error, "preconditioner");
-        }
+        RETURN_IF_ERROR(RESIZE_ARRAY(&piece->idx, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&piece->value, capacity, error));
         piece->capacity = capacity;
     }
     return STATUS_OK;
@@ -32,10 +27,9 @@ static enum status make_room(struct lower_piece *piece, int64_t more, struct err
 static enum status keep_row(const struct scalar_row *row, int64_t i, int number, struct lower *lower,
                             struct error *error)
 {
-    enum status status;
     struct lower_piece *piece = &lower->piece[number];
     int64_t at = piece->count;
-    TRY(make_room(piece, row->count, error));
+    RETURN_IF_ERROR(make_room(piece, row->count, error));
     if (row->count > 0) {
         memcpy(piece->idx + at, row->node, (size_t)row->count * sizeof *row->node);
         memcpy(piece->value + at, row->value, (size_t)row->count * sizeof *row->value);
@@ -43,25 +37,22 @@ static enum status keep_row(const struct scalar_row *row, int64_t i, int number,
     lower->piece_of[i] = (uint8_t)number;
     lower->begin[i] = at;
     lower->end[i] = piece->count = at + row->count;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows of nodes as a piece. */
 static enum status make_piece(const int32_t *place, int64_t count, int number, struct scalar_row *row,
                               struct lower *lower, struct error *error)
 {
-    enum status status;
     const struct body *body = &lower->stiffness.system->body;
-    TRY(scalar_row_prepare(&lower->stiffness, place, count, row, error));
+    RETURN_IF_ERROR(scalar_row_prepare(&lower->stiffness, place, count, row, error));
     for (int64_t k = 0; k < count; k++) {
         int64_t i = body->node_order[place[k]];
         scalar_stiffness_row(&lower->stiffness, i, row);
         lower->diagonal[place[k]] = row->count > 0 ? row->value[row->count - 1] : 0.0;
-        TRY(keep_row(row, i, number, lower, error));
+        RETURN_IF_ERROR(keep_row(row, i, number, lower, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows of nodes, as more pieces, each by one thread. */
@@ -95,16 +86,14 @@ static enum status make_pieces(const int32_t *place, int64_t count, struct lower
 
 enum status lower_begin(const struct solid_system *system, struct lower *lower, struct error *error)
 {
-    enum status status;
     int64_t nodes = system->node_count;
     *lower = (struct lower){0};
-    TRY(scalar_stiffness_make(system, &lower->stiffness, error));
-    TRY(NEW_ARRAY(&lower->begin, nodes, error));
-    TRY(NEW_ARRAY(&lower->end, nodes, error));
-    TRY(NEW_ARRAY(&lower->piece_of, nodes, error));
-    TRY(NEW_ARRAY(&lower->diagonal, nodes, error));
-done:
-    return status;
+    RETURN_IF_ERROR(scalar_stiffness_make(system, &lower->stiffness, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lower->begin, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lower->end, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lower->piece_of, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lower->diagonal, nodes, error));
+    return STATUS_OK;
 }
 
 static void drop_pieces(struct lower *lower)
@@ -236,21 +225,14 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
     fetched->count = receive_first[ranks->count];
 done:
     halo_free(&halo);
-    free(length);
-    free(send_first);
-    free(receive_first);
-    free(idx);
-    free(value);
+    FREE_ALL(length, send_first, receive_first, idx, value);
     return status;
 }
 
 void lower_free(struct lower *lower)
 {
     scalar_stiffness_free(&lower->stiffness);
-    free(lower->begin);
-    free(lower->end);
-    free(lower->piece_of);
-    free(lower->diagonal);
+    FREE_ALL(lower->begin, lower->end, lower->piece_of, lower->diagonal);
     drop_pieces(lower);
     *lower = (struct lower){0};
 }

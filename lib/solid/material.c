@@ -59,6 +59,16 @@ static void right_cauchy_green(const double F[9], double C[9])
     }
 }
 
+/* The product A B. */
+static void multiply(const double A[9], const double B[9], double AB[9])
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            AB[3 * i + k] = A[3 * i] * B[k] + A[3 * i + 1] * B[3 + k] + A[3 * i + 2] * B[6 + k];
+        }
+    }
+}
+
 /* mu J^(-2/3) (F - I1/3 F^-T) */
 static void neo_hookean_stress(double mu, const double F[9], double P[9])
 {
@@ -88,18 +98,16 @@ static void mooney_coefficients(const struct material *material, double *c10, do
 /* I2' part: 2 C01 J^(-4/3) (I1 F - F C - 2/3 I2 F^-T) */
 static void mooney_rivlin_stress(const struct material *material, const double F[9], double P[9])
 {
-    double c10, c01, cof[9], C[9], J = determinant(F), I1 = norm2(F);
+    double c10, c01, cof[9], C[9], FC[9], J = determinant(F), I1 = norm2(F);
     mooney_coefficients(material, &c10, &c01);
     neo_hookean_stress(2.0 * c10, F, P);
     cofactor(F, cof);
     right_cauchy_green(F, C);
     double I2 = 0.5 * (I1 * I1 - norm2(C));
     double scale = 2.0 * c01 / (cbrt(J) * J);
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            double FC = F[3 * i] * C[k] + F[3 * i + 1] * C[3 + k] + F[3 * i + 2] * C[6 + k];
-            P[3 * i + k] += scale * (I1 * F[3 * i + k] - FC - 2.0 / 3.0 * I2 * cof[3 * i + k] / J);
-        }
+    multiply(F, C, FC);
+    for (int i = 0; i < 9; i++) {
+        P[i] += scale * (I1 * F[i] - FC[i] - 2.0 / 3.0 * I2 * cof[i] / J);
     }
 }
 
@@ -109,7 +117,7 @@ static void ogden_stretches(const struct material *material, const double F[9], 
 {
     double C[9], J = determinant(F);
     right_cauchy_green(F, C);
-    eigen_symmetric(C, lambda2, V);
+    eigen_symmetric(3, C, lambda2, V);
     for (int a = 0; a < 3; a++) {
         power[a] = pow(lambda2[a] / cbrt(J * J), 0.5 * material->ogden_alpha);
     }
@@ -129,11 +137,7 @@ static void ogden_stress(const struct material *material, const double F[9], dou
             }
         }
     }
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            P[3 * i + k] = F[3 * i] * S[k] + F[3 * i + 1] * S[3 + k] + F[3 * i + 2] * S[6 + k];
-        }
-    }
+    multiply(F, S, P);
 }
 
 static void green_lagrange(const double F[9], double E[9])
@@ -146,14 +150,12 @@ static void green_lagrange(const double F[9], double E[9])
 
 static void st_venant_kirchhoff_stress(const struct material *material, const double F[9], double P[9])
 {
-    double E[9];
+    double E[9], FE[9];
     green_lagrange(F, E);
+    multiply(F, E, FE);
     double pressure = lame_lambda(material) * (E[0] + E[4] + E[8]);
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            double FE = F[3 * i] * E[k] + F[3 * i + 1] * E[3 + k] + F[3 * i + 2] * E[6 + k];
-            P[3 * i + k] = pressure * F[3 * i + k] + 2.0 * material->shear_modulus * FE;
-        }
+    for (int i = 0; i < 9; i++) {
+        P[i] = pressure * F[i] + 2.0 * material->shear_modulus * FE[i];
     }
 }
 

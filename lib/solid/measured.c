@@ -1,5 +1,6 @@
 #include "solid/measured.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -45,18 +46,6 @@ double measured_energy(const struct measured *measured, const struct measured_re
                                 : 6.0 * pi * region->shear_modulus * radius;
     double independent = (double)(count < region->nodes ? count : region->nodes);
     return count > 0 ? stiffness * region->model_error * region->model_error / independent : 0.0;
-}
-
-/* A point in the order of its first coordinate. */
-struct sorted {
-    double x;
-    int64_t point;
-};
-
-static int compare_sorted(const void *left, const void *right)
-{
-    const struct sorted *a = left, *b = right;
-    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->point > b->point) - (a->point < b->point);
 }
 
 /* No two displacements differ by more, noise included. */
@@ -111,17 +100,17 @@ enum status measured_compare(const struct measured *measured, double same, struc
                              struct error *error)
 {
     enum status status;
-    struct sorted *sorted = NULL;
+    struct placed *sorted = NULL; /* points by their first coordinates */
     double window = fmax(same, farthest_apart(measured));
     *exact = *others = *repeated = (struct measured_pair){.first = -1, .second = -1};
     TRY(NEW_ARRAY(&sorted, measured->count, error));
     for (int64_t i = 0; i < measured->count; i++) {
-        sorted[i] = (struct sorted){measured->x[i * measured->dim], i};
+        sorted[i] = (struct placed){measured->x[i * measured->dim], i};
     }
-    qsort(sorted, (size_t)measured->count, sizeof *sorted, compare_sorted);
+    qsort(sorted, (size_t)measured->count, sizeof *sorted, compare_placed);
     for (int64_t s = 0; s < measured->count; s++) {
-        for (int64_t t = s + 1; t < measured->count && sorted[t].x - sorted[s].x <= window; t++) {
-            int64_t i = sorted[s].point, k = sorted[t].point;
+        for (int64_t t = s + 1; t < measured->count && sorted[t].place - sorted[s].place <= window; t++) {
+            int64_t i = sorted[s].item, k = sorted[t].item;
             bool both = is_exact(measured, i) && is_exact(measured, k);
             double distance, apart;
             double deviation = hypot(measured->deviation[i], measured->deviation[k]);

@@ -79,10 +79,7 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
         size[end] += root[c] != c;
     }
 done:
-    free(poor);
-    free(volume);
-    free(partner);
-    free(size);
+    FREE_ALL(poor, volume, partner, size);
     return status;
 }
 

@@ -7,6 +7,7 @@
  * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
  * 2003, algorithm 12.1. */
 #include "base/memory.h"
+#include "base/processor.h"
 #include "solid/nodal_volume.h"
 
 #include <math.h>
@@ -78,11 +79,10 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
 static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
                            struct error *error)
 {
-    enum status status;
     const struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
     pressures->slices = (volumes->count + ROWS - 1) / ROWS;
-    TRY(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
     for (int64_t slice = 0; slice < pressures->slices; slice++) {
         int64_t widest = 0;
         for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
@@ -91,10 +91,9 @@ static enum status lay_out(const struct body *body, struct nodal_pressures *pres
         }
         pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
     }
-    TRY(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
-    TRY(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
+    return STATUS_OK;
 }
 
 /* The iterations for eigenvalues from rho to 1. */
@@ -221,9 +220,9 @@ double body_augment(struct body *body, bool steady, double strain)
 }
 
 /* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) static void
-iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep, double add,
-        const double *restrict move, double *restrict residual, double *restrict next, double *restrict value)
+ALL_SETS static void iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep,
+                             double add, const double *restrict move, double *restrict residual,
+                             double *restrict next, double *restrict value)
 {
     for (int64_t slice = first; slice < end; slice++) {
         const double *entry = pressures->value + pressures->ptr[slice] * ROWS;
@@ -278,11 +277,7 @@ void nodal_pressures_solve(struct body *body)
 
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
-    void *arrays[] = {pressures->ptr,     pressures->idx,   pressures->value,
-                      pressures->inverse, pressures->held,  pressures->change,
-                      pressures->weight,  pressures->entry, pressures->scratch};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(pressures->ptr, pressures->idx, pressures->value, pressures->inverse, pressures->held,
+             pressures->change, pressures->weight, pressures->entry, pressures->scratch);
     *pressures = (struct nodal_pressures){0};
 }

@@ -1,5 +1,6 @@
 #include "solid/nodal_volume.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -10,60 +11,44 @@ static const double points_part = 2.0;
 /* epsilon */
 static const double stabilisation = 0.125;
 
-/* A nodal volume for each pair of background node and group of materials. */
-struct key {
-    int32_t node, group;
-    int64_t slot; /* point * (dim + 1) + vertex */
-};
-
-static int compare_keys(const void *left, const void *right)
-{
-    const struct key *a = left, *b = right;
-    if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
-    }
-    if (a->group != b->group) {
-        return a->group < b->group ? -1 : 1;
-    }
-    return (a->slot > b->slot) - (a->slot < b->slot);
-}
-
-/* Number the nodal volumes and list their slots. */
-static enum status number_volumes(struct nodal_volumes *volumes, struct key *keys, int64_t slots,
+/* Number the nodal volumes, one for each pair of background node and group of materials, and list their
+ * slots, point * (dim + 1) + vertex. keys[slots]: the pair of each slot as one number. */
+static enum status number_volumes(struct nodal_volumes *volumes, struct placed *keys, int64_t slots,
                                   struct error *error)
 {
-    enum status status;
-    qsort(keys, (size_t)slots, sizeof *keys, compare_keys);
+    qsort(keys, (size_t)slots, sizeof *keys, compare_placed);
     for (int64_t i = 0; i < slots; i++) {
-        volumes->count += i == 0 || keys[i].node != keys[i - 1].node || keys[i].group != keys[i - 1].group;
-        volumes->of_point[keys[i].slot] = (int32_t)(volumes->count - 1);
-        volumes->slot[i] = (int32_t)keys[i].slot;
+        volumes->count += i == 0 || keys[i].place > keys[i - 1].place;
+        volumes->of_point[keys[i].item] = (int32_t)(volumes->count - 1);
+        volumes->slot[i] = (int32_t)keys[i].item;
     }
-    TRY(NEW_ARRAY(&volumes->ptr, volumes->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->ptr, volumes->count + 1, error));
     for (int64_t i = 0; i < slots; i++) {
-        volumes->ptr[volumes->of_point[keys[i].slot] + 1] = i + 1;
+        volumes->ptr[volumes->of_point[keys[i].item] + 1] = i + 1;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
-/* share[dim + 1] of point q: equal to its barycentric coordinates by its volume, but none of nodes at edges
- * if there are others. Returns whether there are such nodes. */
+/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges leave theirs to the
+ * other nodes of the cell, if there are any; returns whether they do. */
 static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
 {
     int vertices = body->dim + 1;
-    int64_t from = body->order[q] * vertices;
+    const int32_t *vertex = input->vertex + body->order[q] * vertices;
+    const double *coordinate = input->barycentric + body->order[q] * vertices;
     double others = 0.0;
     bool at_edge = false;
     for (int k = 0; k < vertices; k++) {
-        bool leaves = input->at_edge != NULL && input->at_edge[input->vertex[from + k]];
-        share[k] = leaves ? 0.0 : input->barycentric[from + k] * body->weight[q];
-        others += leaves ? 0.0 : input->barycentric[from + k];
+        bool leaves = input->at_edge != NULL && input->at_edge[vertex[k]];
+        others += leaves ? 0.0 : coordinate[k];
         at_edge = at_edge || leaves;
     }
     at_edge = at_edge && others > 0.0;
-    for (int k = 0; k < vertices && others < 1.0; k++) {
-        share[k] = at_edge ? share[k] / others : input->barycentric[from + k] * body->weight[q];
+    for (int k = 0; k < vertices; k++) {
+        share[k] = coordinate[k] * body->weight[q];
+        if (at_edge) {
+            share[k] = input->at_edge[vertex[k]] ? 0.0 : share[k] / others;
+        }
     }
     return at_edge;
 }
@@ -71,12 +56,11 @@ static bool share_out(const struct body_input *input, const struct body *body, i
 /* S of the nodal volumes that have a point at an edge. */
 static enum status sum_moduli(const bool *at_edge, struct body *body, struct error *error)
 {
-    enum status status;
     struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
-    TRY(NEW_ARRAY(&volumes->direct, body->point_count, error));
-    TRY(NEW_ARRAY(&volumes->modulus, volumes->count, error));
-    TRY(NEW_ARRAY(&volumes->mean, volumes->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->direct, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->modulus, volumes->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->mean, volumes->count, error));
     for (int64_t a = 0; a < volumes->count; a++) {
         double sum = 0.0;
         bool is_near = false;
@@ -87,8 +71,7 @@ static enum status sum_moduli(const bool *at_edge, struct body *body, struct err
         }
         volumes->modulus[a] = is_near ? sum : 0.0;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status nodal_volumes_build(const struct body_input *input, struct body *body, struct error *error)
@@ -97,7 +80,7 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
     int64_t slots = body->point_count * vertices;
-    struct key *keys = NULL;
+    struct placed *keys = NULL;
     bool *at_edge = NULL; /* points of cells with a node at an edge and others */
     TRY(NEW_ARRAY(&keys, slots, error));
     TRY(NEW_ARRAY(&volumes->of_point, slots, error));
@@ -108,7 +91,8 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     for (int64_t s = 0; s < slots; s++) {
         int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
         int32_t material = body->material[q];
-        keys[s] = (struct key){input->vertex[from], input->group ? input->group[material] : material, s};
+        int32_t group = input->group != NULL ? input->group[material] : material;
+        keys[s] = (struct placed){(double)((int64_t)input->vertex[from] * body->material_count + group), s};
     }
     for (int64_t q = 0; q < body->point_count; q++) {
         if (nodal_pressure_modulus(&body->materials[body->material[q]]) > 0.0) {
@@ -249,12 +233,8 @@ double nodal_volume_energy(const struct body *body, int64_t point)
 
 void nodal_volumes_free(struct nodal_volumes *volumes)
 {
-    void *arrays[] = {volumes->of_point, volumes->share,   volumes->ptr,      volumes->slot,
-                      volumes->strain,   volumes->content, volumes->pressure, volumes->direct,
-                      volumes->modulus,  volumes->mean};
     nodal_pressures_free(&volumes->pressures);
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(volumes->of_point, volumes->share, volumes->ptr, volumes->slot, volumes->strain,
+             volumes->content, volumes->pressure, volumes->direct, volumes->modulus, volumes->mean);
     *volumes = (struct nodal_volumes){0};
 }

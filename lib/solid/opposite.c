@@ -120,18 +120,17 @@ done:
 static enum status measure_rest(struct opposite *opposite, const struct facet_set *set, const int32_t *part,
                                 struct error *error)
 {
-    enum status status;
     const struct rigid_surface *surface = &opposite->surface;
     int dim = surface->dim;
-    TRY(NEW_ARRAY(&opposite->rest_normal, surface->facet_count * dim, error));
-    TRY(NEW_ARRAY(&opposite->middle, surface->facet_count * dim, error));
-    TRY(NEW_ARRAY(&opposite->width, surface->facet_count, error));
-    TRY(NEW_ARRAY(&opposite->part, surface->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->rest_normal, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->middle, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->width, surface->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->part, surface->facet_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         const int32_t *facet = surface->facet + f * dim;
-        double *normal = opposite->rest_normal + f * dim, zero[3] = {0.0, 0.0, 0.0};
+        double *normal = opposite->rest_normal + f * dim;
         face_area_vector(dim, opposite->rest, facet, normal);
-        double area = sqrt(vector_distance2(dim, normal, zero));
+        double area = vector_length(dim, normal);
         opposite->width[f] = dim == 2 ? area : sqrt(area);
         normalise(dim, normal);
         opposite->part[f] = -1;
@@ -141,8 +140,7 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
             opposite->part[f] = known >= 0 ? known : opposite->part[f];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The angle of a facet at its corner k; in 2D all weigh alike. */
@@ -153,14 +151,10 @@ static double corner_angle(const struct rigid_surface *surface, const int32_t *f
     }
     const double *x = surface->vertex + (int64_t)facet[k] * 3;
     double one[3], other[3], cross[3];
-    for (int a = 0; a < 3; a++) {
-        one[a] = surface->vertex[(int64_t)facet[(k + 1) % 3] * 3 + a] - x[a];
-        other[a] = surface->vertex[(int64_t)facet[(k + 2) % 3] * 3 + a] - x[a];
-    }
-    for (int a = 0; a < 3; a++) {
-        cross[a] = one[(a + 1) % 3] * other[(a + 2) % 3] - one[(a + 2) % 3] * other[(a + 1) % 3];
-    }
-    return atan2(sqrt(vector_dot(3, cross, cross)), vector_dot(3, one, other));
+    vector_subtract(3, surface->vertex + (int64_t)facet[(k + 1) % 3] * 3, x, one);
+    vector_subtract(3, surface->vertex + (int64_t)facet[(k + 2) % 3] * 3, x, other);
+    vector_cross(one, other, cross);
+    return atan2(vector_length(3, cross), vector_dot(3, one, other));
 }
 
 /* The boxes of the tree, which keeps its branches: those of a branch come behind it. */
@@ -246,14 +240,8 @@ void opposite_free(struct opposite *opposite)
 {
     rigid_free(&opposite->surface);
     boundary_averages_free(&opposite->rows);
-    free(opposite->stiffness);
-    free(opposite->rest);
-    free(opposite->rest_normal);
-    free(opposite->middle);
-    free(opposite->width);
-    free(opposite->part);
-    free(opposite->across);
-    free(opposite->load);
+    FREE_ALL(opposite->stiffness, opposite->rest, opposite->rest_normal, opposite->middle, opposite->width,
+             opposite->part, opposite->across, opposite->load);
     *opposite = (struct opposite){0};
 }
 
@@ -284,12 +272,11 @@ struct search {
 static bool through_body(const struct opposite *opposite, const struct seeker *seeker, int64_t f)
 {
     int dim = opposite->surface.dim;
-    double way[3] = {0.0, 0.0, 0.0};
+    double way[3];
     if (opposite->part[f] != seeker->part) {
         return false;
     }
-    add_scaled(dim, 1.0, opposite->middle + f * dim, way);
-    add_scaled(dim, -1.0, seeker->rest, way);
+    vector_subtract(dim, opposite->middle + f * dim, seeker->rest, way);
     double width = seeker->width > opposite->width[f] ? seeker->width : opposite->width[f];
     double away2 = vector_dot(dim, way, way), least2 = behind_share * behind_share * away2;
     if (!(away2 < near_widths * near_widths * width * width)) {

@@ -1,6 +1,7 @@
 #include "solid/preconditioner_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/rigid_modes.h"
 
 #include <stdlib.h>
@@ -17,116 +18,93 @@ static int64_t centre_count(const struct solid_system *system)
 }
 
 /* L^-T Z of the scalar coarse fields, by rows. */
-static enum status transform_fields(struct preconditioner *preconditioner, int threads, struct error *error)
+static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = preconditioner->factor.ranks;
-    int64_t nodes = preconditioner->node_count, *first = NULL;
+    const struct ranks *ranks = p->factor.ranks;
+    int64_t nodes = p->node_count, *first = NULL;
     int field[COARSE_MOST_AT_NODE];
     double value[COARSE_MOST_AT_NODE];
-    TRY(ranks_share(ranks, preconditioner->coarse.count, NULL, &preconditioner->field_first, error));
-    first = preconditioner->field_first;
-    TRY(NEW_ARRAY(&preconditioner->inverse_fields, preconditioner->coarse.count * nodes, error));
+    TRY(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
+    first = p->field_first;
+    TRY(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
-        int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
+        int count = coarse_space_at_node(&p->coarse, n, field, value);
         for (int k = 0; k < count; k++) {
-            preconditioner->inverse_fields[field[k] * nodes + n] = value[k];
+            p->inverse_fields[field[k] * nodes + n] = value[k];
         }
     }
     int64_t begin = first[ranks_rank(ranks)], end = first[ranks_rank(ranks) + 1];
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int64_t k = begin; k < end; k++) {
-        inverse_factor_solve_transposed(&preconditioner->factor, 1,
-                                        preconditioner->inverse_fields + k * nodes);
+        inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
     }
-    ranks_gather(ranks, preconditioner->inverse_fields, (size_t)nodes * sizeof(double), first);
+    ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
 done:
     return status;
 }
 
-static enum status build_inverse(struct solid_system *system, struct preconditioner *preconditioner,
+static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
+{
+    RETURN_IF_ERROR(inverse_factor_build(system, &p->factor, error));
+    RETURN_IF_ERROR(inverse_factor_transform_rows(&p->factor, &system->rows, &p->factor_rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
+    system_relaxation_mass(system, true, p->at_rest);
+    RETURN_IF_ERROR(transform_fields(p, system->body.threads, error));
+    return STATUS_OK;
+}
+
+enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
                                  struct error *error)
 {
     enum status status;
-    TRY(inverse_factor_build(system, &preconditioner->factor, error));
-    TRY(inverse_factor_transform_rows(&preconditioner->factor, &system->rows, &preconditioner->factor_rows,
-                                      error));
-    TRY(NEW_ARRAY(&preconditioner->at_rest, system->node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->on_inverse, 2 * system->node_count * system->dim, error));
-    system_relaxation_mass(system, true, preconditioner->at_rest);
-    TRY(transform_fields(preconditioner, system->body.threads, error));
-done:
-    return status;
-}
-
-enum status preconditioner_build(struct solid_system *system, bool coarse,
-                                 struct preconditioner *preconditioner, struct error *error)
-{
-    enum status status;
     int64_t cells;
-    *preconditioner = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
-    preconditioner->has_rigid_mode = system_has_rigid_mode(system);
+    *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
+    p->has_rigid_mode = system_has_rigid_mode(system);
     for (int64_t c = 0; c < system->contact_count; c++) {
-        preconditioner->contact_node_count += contact_nodes(&system->contacts[c])->count;
+        p->contact_node_count += contact_nodes(&system->contacts[c])->count;
     }
-    TRY(NEW_ARRAY(&preconditioner->mass, system->node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->stiffness, system->node_count, error));
+    TRY(NEW_ARRAY(&p->mass, system->node_count, error));
+    TRY(NEW_ARRAY(&p->stiffness, system->node_count, error));
     TRY(coarse_space_build(system->dim, system->node_count, system->X, coarse ? centre_count(system) : 0,
-                           &preconditioner->coarse, error));
-    preconditioner->size = preconditioner->coarse.count * preconditioner->dim;
-    cells = preconditioner->size * preconditioner->size;
-    TRY(NEW_ARRAY(&preconditioner->active, preconditioner->contact_node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->normal, preconditioner->contact_node_count * preconditioner->dim, error));
-    TRY(NEW_ARRAY(&preconditioner->creased, preconditioner->contact_node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->turned, preconditioner->contact_node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->idle, 2 * preconditioner->contact_node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->patience, 2 * preconditioner->contact_node_count, error));
-    TRY(NEW_ARRAY(&preconditioner->body, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->weight, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->free_weight, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->held, system->rows.count * preconditioner->size, error));
-    TRY(NEW_ARRAY(&preconditioner->inverse, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->capacitance_inverse, cells, error));
-    TRY(NEW_ARRAY(&preconditioner->amount, 2 * preconditioner->size, error));
+                           &p->coarse, error));
+    p->size = p->coarse.count * p->dim;
+    cells = p->size * p->size;
+    TRY(NEW_ARRAY(&p->active, p->contact_node_count, error));
+    TRY(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
+    TRY(NEW_ARRAY(&p->creased, p->contact_node_count, error));
+    TRY(NEW_ARRAY(&p->turned, p->contact_node_count, error));
+    TRY(NEW_ARRAY(&p->idle, 2 * p->contact_node_count, error));
+    TRY(NEW_ARRAY(&p->patience, 2 * p->contact_node_count, error));
+    TRY(NEW_ARRAY(&p->body, cells, error));
+    TRY(NEW_ARRAY(&p->weight, cells, error));
+    TRY(NEW_ARRAY(&p->free_weight, cells, error));
+    TRY(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
+    TRY(NEW_ARRAY(&p->inverse, cells, error));
+    TRY(NEW_ARRAY(&p->capacitance_inverse, cells, error));
+    TRY(NEW_ARRAY(&p->amount, 2 * p->size, error));
     if (coarse && system_has_inverse(system)) {
-        TRY(build_inverse(system, preconditioner, error));
+        TRY(build_inverse(system, p, error));
     }
-    TRY(ranks_share(preconditioner->factor.ranks, preconditioner->size, NULL, &preconditioner->column_first,
-                    error));
+    TRY(ranks_share(p->factor.ranks, p->size, NULL, &p->column_first, error));
 done:
     if (status != STATUS_OK) {
-        preconditioner_free(preconditioner);
+        preconditioner_free(p);
     }
     return status;
 }
 
-void preconditioner_free(struct preconditioner *preconditioner)
+void preconditioner_free(struct preconditioner *p)
 {
-    constraint_free(&preconditioner->constraint);
-    coarse_space_free(&preconditioner->coarse);
-    inverse_factor_free(&preconditioner->factor);
-    constraint_rows_free(&preconditioner->factor_rows);
-    free(preconditioner->inverse_fields);
-    free(preconditioner->field_first);
-    free(preconditioner->column_first);
-    free(preconditioner->on_inverse);
-    free(preconditioner->at_rest);
-    free(preconditioner->stiffness);
-    free(preconditioner->mass);
-    free(preconditioner->body);
-    free(preconditioner->active);
-    free(preconditioner->normal);
-    free(preconditioner->creased);
-    free(preconditioner->turned);
-    free(preconditioner->idle);
-    free(preconditioner->patience);
-    free(preconditioner->weight);
-    free(preconditioner->free_weight);
-    free(preconditioner->held);
-    free(preconditioner->inverse);
-    free(preconditioner->capacitance_inverse);
-    free(preconditioner->amount);
-    *preconditioner = (struct preconditioner){0};
+    constraint_free(&p->constraint);
+    coarse_space_free(&p->coarse);
+    inverse_factor_free(&p->factor);
+    constraint_rows_free(&p->factor_rows);
+    FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
+             p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
+             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount);
+    *p = (struct preconditioner){0};
 }
 
 /* y = matrix x, the matrix symmetric */
@@ -141,71 +119,71 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
 }
 
 /* y = D^-1 x */
-static void divide_by_mass(const struct preconditioner *preconditioner, const double *x, double *y)
+static void divide_by_mass(const struct preconditioner *p, const double *x, double *y)
 {
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        double inverse = 1.0 / preconditioner->mass[n];
-        for (int64_t i = n * preconditioner->dim; i < (n + 1) * preconditioner->dim; i++) {
+    for (int64_t n = 0; n < p->node_count; n++) {
+        double inverse = 1.0 / p->mass[n];
+        for (int64_t i = n * p->dim; i < (n + 1) * p->dim; i++) {
             y[i] = inverse * x[i];
         }
     }
 }
 
-void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result)
+void preconditioner_smooth(struct preconditioner *p, const double *force, double *result)
 {
-    const struct inverse_factor *inverse = &preconditioner->factor;
-    double *on_inverse = preconditioner->on_inverse;
+    const struct inverse_factor *inverse = &p->factor;
+    double *on_inverse = p->on_inverse;
     if (inverse->rows.row_count == 0) {
-        divide_by_mass(preconditioner, force, result);
+        divide_by_mass(p, force, result);
         return;
     }
-    inverse_factor_apply(inverse, preconditioner->dim, force, on_inverse);
-    divide_by_mass(preconditioner, on_inverse, on_inverse);
-    inverse_factor_apply_transposed(inverse, preconditioner->dim, on_inverse, result);
+    inverse_factor_apply(inverse, p->dim, force, on_inverse);
+    divide_by_mass(p, on_inverse, on_inverse);
+    inverse_factor_apply_transposed(inverse, p->dim, on_inverse, result);
 }
 
-void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
-                                   double *acceleration, double *amount)
+void preconditioner_restrict_force(struct preconditioner *p, const double *force, double *acceleration,
+                                   double *amount)
 {
-    const struct constraint_rows *rows = preconditioner->constraint.rows;
-    double *seen = preconditioner->constraint.multiplier;
-    preconditioner_smooth(preconditioner, force, acceleration);
-    if (preconditioner->size > 0) {
-        coarse_space_restrict(&preconditioner->coarse, NULL, force, amount);
+    const struct constraint_rows *rows = p->constraint.rows;
+    double *seen = p->constraint.multiplier;
+    preconditioner_smooth(p, force, acceleration);
+    if (p->size > 0) {
+        coarse_space_restrict(&p->coarse, NULL, force, amount);
     }
     if (rows == NULL) {
         return;
     }
-    constraint_values(&preconditioner->constraint, acceleration, seen);
-    const struct ranks *ranks = preconditioner->factor.ranks;
-    const int64_t *first = preconditioner->column_first + ranks_rank(ranks);
+    constraint_values(&p->constraint, acceleration, seen);
+    const struct ranks *ranks = p->factor.ranks;
+    const int64_t *first = p->column_first + ranks_rank(ranks);
     for (int64_t r = 0; r < rows->count; r++) {
-        const double *held = preconditioner->held + r * preconditioner->size;
+        const double *held = p->held + r * p->size;
         for (int64_t k = first[0]; k < first[1] && seen[r] != 0.0; k++) {
             amount[k] -= held[k] * seen[r];
         }
     }
-    ranks_gather(ranks, amount, sizeof *amount, preconditioner->column_first);
+    ranks_gather(ranks, amount, sizeof *amount, p->column_first);
 }
 
-void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration)
+void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
 {
-    struct constraint *constraint = &preconditioner->constraint;
+    struct constraint *constraint = &p->constraint;
     const struct constraint_rows *rows = constraint->rows;
-    double *multiplier = constraint->multiplier, *solved = preconditioner->amount + preconditioner->size;
-    preconditioner_restrict_force(preconditioner, force, acceleration, preconditioner->amount);
-    if (preconditioner->size > 0) {
-        multiply(preconditioner->size, preconditioner->inverse, preconditioner->amount, solved);
-        coarse_space_prolongate(&preconditioner->coarse, solved, acceleration);
+    double *multiplier = constraint->multiplier, *solved = p->amount + p->size;
+    preconditioner_restrict_force(p, force, acceleration, p->amount);
+    if (p->size > 0) {
+        multiply(p->size, p->inverse, p->amount, solved);
+        coarse_space_prolongate(&p->coarse, solved, acceleration);
     }
     if (rows == NULL || rows->count == 0) {
         return;
     }
     constraint_solve(constraint, multiplier);
     for (int64_t r = 0; r < rows->count; r++) {
-        const double *held = preconditioner->held + r * preconditioner->size;
+        const double *held = p->held + r * p->size;
         double sum = multiplier[r];
-        for (int64_t k = 0; k < preconditioner->size; k++) {
+        for (int64_t k = 0; k < p->size; k++) {
             sum += held[k] * solved[k];
         }
         multiplier[r] = -sum;
@@ -214,48 +192,43 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
 }
 
 /* L^-T move, into scratch; or the move itself. */
-static const double *on_inverse(const struct preconditioner *preconditioner, const double *move,
-                                double *scratch)
+static const double *on_inverse(const struct preconditioner *p, const double *move, double *scratch)
 {
-    if (preconditioner->factor.rows.row_count == 0) {
+    if (p->factor.rows.row_count == 0) {
         return move;
     }
-    memcpy(scratch, move, (size_t)(preconditioner->node_count * preconditioner->dim) * sizeof *move);
-    inverse_factor_solve_transposed(&preconditioner->factor, preconditioner->dim, scratch);
+    memcpy(scratch, move, (size_t)(p->node_count * p->dim) * sizeof *move);
+    inverse_factor_solve_transposed(&p->factor, p->dim, scratch);
     return scratch;
 }
 
 /* x . D y */
-static double weighted_product(const struct preconditioner *preconditioner, const double *x, const double *y)
+static double weighted_product(const struct preconditioner *p, const double *x, const double *y)
 {
-    int dim = preconditioner->dim;
+    int dim = p->dim;
     double sum = 0.0;
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        double part = 0.0;
-        for (int a = 0; a < dim; a++) {
-            part += x[n * dim + a] * y[n * dim + a];
-        }
-        sum += preconditioner->mass[n] * part;
+    for (int64_t n = 0; n < p->node_count; n++) {
+        sum += p->mass[n] * vector_dot(dim, x + n * dim, y + n * dim);
     }
     return sum;
 }
 
 /* amount[size] = Z^T B^-1 move = (L^-T Z)^T D L^-T move, of moved = L^-T move. */
-static void restrict_move(const struct preconditioner *preconditioner, const double *moved, double *amount)
+static void restrict_move(const struct preconditioner *p, const double *moved, double *amount)
 {
-    int dim = preconditioner->dim;
-    int64_t nodes = preconditioner->node_count;
-    if (preconditioner->factor.rows.row_count == 0) {
-        coarse_space_restrict(&preconditioner->coarse, preconditioner->mass, moved, amount);
+    int dim = p->dim;
+    int64_t nodes = p->node_count;
+    if (p->factor.rows.row_count == 0) {
+        coarse_space_restrict(&p->coarse, p->mass, moved, amount);
         return;
     }
-    const struct ranks *ranks = preconditioner->factor.ranks;
-    const int64_t *first = preconditioner->field_first;
-    memset(amount, 0, (size_t)preconditioner->size * sizeof *amount);
+    const struct ranks *ranks = p->factor.ranks;
+    const int64_t *first = p->field_first;
+    memset(amount, 0, (size_t)p->size * sizeof *amount);
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
-        const double *field = preconditioner->inverse_fields + k * nodes;
+        const double *field = p->inverse_fields + k * nodes;
         for (int64_t n = 0; n < nodes; n++) {
-            double weight = preconditioner->mass[n] * field[n];
+            double weight = p->mass[n] * field[n];
             for (int a = 0; a < dim; a++) {
                 amount[k * dim + a] += weight * moved[n * dim + a];
             }
@@ -265,55 +238,51 @@ static void restrict_move(const struct preconditioner *preconditioner, const dou
 }
 
 /* Both moves in terms of L. */
-static void take_moves(struct preconditioner *preconditioner, const double **x, const double **y)
+static void take_moves(struct preconditioner *p, const double **x, const double **y)
 {
-    double *scratch = preconditioner->on_inverse;
+    double *scratch = p->on_inverse;
     bool same = *x == *y;
-    *x = on_inverse(preconditioner, *x, scratch);
-    *y = same ? *x
-              : on_inverse(preconditioner, *y, scratch + preconditioner->node_count * preconditioner->dim);
+    *x = on_inverse(p, *x, scratch);
+    *y = same ? *x : on_inverse(p, *y, scratch + p->node_count * p->dim);
 }
 
-double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
-                                       const double *y)
+double preconditioner_product_diagonal(struct preconditioner *p, const double *x, const double *y)
 {
-    take_moves(preconditioner, &x, &y);
-    return weighted_product(preconditioner, x, y);
+    take_moves(p, &x, &y);
+    return weighted_product(p, x, y);
 }
 
-double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y)
+double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
 {
-    double *amount = preconditioner->amount, *solved = preconditioner->amount + preconditioner->size;
-    take_moves(preconditioner, &x, &y);
-    double sum = weighted_product(preconditioner, x, y);
-    if (preconditioner->size > 0) {
-        restrict_move(preconditioner, x, amount);
-        multiply(preconditioner->size, preconditioner->capacitance_inverse, amount, solved);
+    double *amount = p->amount, *solved = p->amount + p->size;
+    take_moves(p, &x, &y);
+    double sum = weighted_product(p, x, y);
+    if (p->size > 0) {
+        restrict_move(p, x, amount);
+        multiply(p->size, p->capacitance_inverse, amount, solved);
         if (y != x) {
-            restrict_move(preconditioner, y, amount);
+            restrict_move(p, y, amount);
         }
-        for (int64_t k = 0; k < preconditioner->size; k++) {
+        for (int64_t k = 0; k < p->size; k++) {
             sum -= amount[k] * solved[k];
         }
     }
     return sum;
 }
 
-enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
-                                 struct error *error)
+enum status preconditioner_state(struct preconditioner *p, const struct state *state, struct error *error)
 {
     const struct state_value values[] = {
-        {"mass", STATE_NUMBERS, preconditioner->mass, preconditioner->node_count},
-        {"stiffness", STATE_NUMBERS, preconditioner->stiffness, preconditioner->node_count},
-        {"body", STATE_NUMBERS, preconditioner->body, preconditioner->size * preconditioner->size},
-        {"measured", STATE_NUMBERS, &preconditioner->measured_mass, 1},
-        {"touching", STATE_FLAGS, preconditioner->active, preconditioner->contact_node_count},
-        {"normal", STATE_NUMBERS, preconditioner->normal,
-         preconditioner->contact_node_count * preconditioner->dim},
-        {"creased", STATE_FLAGS, preconditioner->creased, preconditioner->contact_node_count},
-        {"turned", STATE_FLAGS, preconditioner->turned, preconditioner->contact_node_count},
-        {"idle", STATE_COUNTS, preconditioner->idle, 2 * preconditioner->contact_node_count},
-        {"patience", STATE_COUNTS, preconditioner->patience, 2 * preconditioner->contact_node_count},
+        {"mass", STATE_NUMBERS, p->mass, p->node_count},
+        {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
+        {"body", STATE_NUMBERS, p->body, p->size * p->size},
+        {"measured", STATE_NUMBERS, &p->measured_mass, 1},
+        {"touching", STATE_FLAGS, p->active, p->contact_node_count},
+        {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
+        {"creased", STATE_FLAGS, p->creased, p->contact_node_count},
+        {"turned", STATE_FLAGS, p->turned, p->contact_node_count},
+        {"idle", STATE_COUNTS, p->idle, 2 * p->contact_node_count},
+        {"patience", STATE_COUNTS, p->patience, 2 * p->contact_node_count},
     };
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

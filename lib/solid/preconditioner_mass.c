@@ -9,42 +9,41 @@
 static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
 
 /* weight = (L^-T Z)^T D L^-T Z */
-static void weigh_inverse_fields(struct preconditioner *preconditioner)
+static void weigh_inverse_fields(struct preconditioner *p)
 {
-    int64_t dim = preconditioner->dim, size = preconditioner->size, nodes = preconditioner->node_count;
-    for (int64_t i = 0; i < preconditioner->coarse.count; i++) {
-        const double *first = preconditioner->inverse_fields + i * nodes;
+    int64_t dim = p->dim, size = p->size, nodes = p->node_count;
+    for (int64_t i = 0; i < p->coarse.count; i++) {
+        const double *first = p->inverse_fields + i * nodes;
         for (int64_t k = 0; k <= i; k++) {
-            const double *second = preconditioner->inverse_fields + k * nodes;
+            const double *second = p->inverse_fields + k * nodes;
             double sum = 0.0;
             for (int64_t n = 0; n < nodes; n++) {
-                sum += preconditioner->mass[n] * first[n] * second[n];
+                sum += p->mass[n] * first[n] * second[n];
             }
             for (int64_t a = 0; a < dim; a++) {
-                preconditioner->weight[(i * dim + a) * size + k * dim + a] =
-                    preconditioner->weight[(k * dim + a) * size + i * dim + a] = sum;
+                p->weight[(i * dim + a) * size + k * dim + a] =
+                    p->weight[(k * dim + a) * size + i * dim + a] = sum;
             }
         }
     }
 }
 
 /* weight = Z^T B^-1 Z: directions do not couple. */
-static void weigh_coarse_space(struct preconditioner *preconditioner)
+static void weigh_coarse_space(struct preconditioner *p)
 {
-    int64_t dim = preconditioner->dim, size = preconditioner->size;
-    double *weight = preconditioner->weight, value[COARSE_MOST_AT_NODE];
+    int64_t dim = p->dim, size = p->size;
+    double *weight = p->weight, value[COARSE_MOST_AT_NODE];
     int field[COARSE_MOST_AT_NODE];
     memset(weight, 0, (size_t)(size * size) * sizeof *weight);
-    if (preconditioner->factor.rows.row_count > 0) {
-        weigh_inverse_fields(preconditioner);
+    if (p->factor.rows.row_count > 0) {
+        weigh_inverse_fields(p);
         return;
     }
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        int count = coarse_space_at_node(&preconditioner->coarse, n, field, value);
+    for (int64_t n = 0; n < p->node_count; n++) {
+        int count = coarse_space_at_node(&p->coarse, n, field, value);
         for (int i = 0; i < count; i++) {
             for (int k = 0; k < count; k++) {
-                weight[field[i] * dim * size + field[k] * dim] +=
-                    preconditioner->mass[n] * value[i] * value[k];
+                weight[field[i] * dim * size + field[k] * dim] += p->mass[n] * value[i] * value[k];
             }
         }
     }
@@ -57,13 +56,13 @@ static void weigh_coarse_space(struct preconditioner *preconditioner)
     }
 }
 
-void preconditioner_add_row(const struct preconditioner *preconditioner, const struct average *average,
+void preconditioner_add_row(const struct preconditioner *p, const struct average *average,
                             const double *direction, double *row)
 {
-    int field[COARSE_MOST_AT_NODE], dim = preconditioner->dim;
+    int field[COARSE_MOST_AT_NODE], dim = p->dim;
     double value[COARSE_MOST_AT_NODE];
     for (int64_t i = 0; i < average->length; i++) {
-        int count = coarse_space_at_node(&preconditioner->coarse, average->idx[i], field, value);
+        int count = coarse_space_at_node(&p->coarse, average->idx[i], field, value);
         for (int k = 0; k < count; k++) {
             for (int a = 0; a < dim; a++) {
                 row[field[k] * dim + a] += average->phi[i] * value[k] * direction[a];
@@ -74,41 +73,39 @@ void preconditioner_add_row(const struct preconditioner *preconditioner, const s
 
 /* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid.
  * Each process computes some columns. */
-static enum status weigh_conditions(struct preconditioner *preconditioner, struct error *error)
+static enum status weigh_conditions(struct preconditioner *p, struct error *error)
 {
     enum status status;
-    const struct ranks *ranks = preconditioner->factor.ranks;
-    const struct constraint_rows *rows = preconditioner->constraint.rows;
-    const int64_t *first = preconditioner->column_first;
-    int64_t size = preconditioner->size;
+    const struct ranks *ranks = p->factor.ranks;
+    const struct constraint_rows *rows = p->constraint.rows;
+    const int64_t *first = p->column_first;
+    int64_t size = p->size;
     double *conditions = NULL, *solved = NULL; /* solved: by columns */
-    memcpy(preconditioner->free_weight, preconditioner->weight,
-           (size_t)(size * size) * sizeof *preconditioner->weight);
+    memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
     TRY(NEW_ARRAY(&conditions, rows->count * size, error));
     TRY(NEW_ARRAY(&solved, rows->count * size, error));
     for (int64_t r = 0; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
-        preconditioner_add_row(preconditioner, &average, rows->direction + r * preconditioner->dim,
-                               conditions + r * size);
+        preconditioner_add_row(p, &average, rows->direction + r * p->dim, conditions + r * size);
     }
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
-        double *weight = preconditioner->free_weight + k * size; /* or row: symmetric */
+        double *weight = p->free_weight + k * size; /* or row: symmetric */
         double *column = solved + k * rows->count;
         for (int64_t r = 0; r < rows->count; r++) {
             column[r] = conditions[r * size + k];
         }
-        envelope_solve(&preconditioner->constraint.factor, column);
+        envelope_solve(&p->constraint.factor, column);
         for (int64_t r = 0; r < rows->count; r++) {
             for (int64_t i = 0; i < size && column[r] != 0.0; i++) {
                 weight[i] -= column[r] * conditions[r * size + i];
             }
         }
     }
-    ranks_gather(ranks, preconditioner->free_weight, (size_t)size * sizeof(double), first);
+    ranks_gather(ranks, p->free_weight, (size_t)size * sizeof(double), first);
     ranks_gather(ranks, solved, (size_t)rows->count * sizeof(double), first);
     for (int64_t r = 0; r < rows->count; r++) {
         for (int64_t k = 0; k < size; k++) {
-            preconditioner->held[r * size + k] = solved[k * rows->count + r];
+            p->held[r * size + k] = solved[k * rows->count + r];
         }
     }
 done:
@@ -117,46 +114,42 @@ done:
     return status;
 }
 
-enum status preconditioner_set_mass(struct preconditioner *preconditioner, const struct solid_system *system,
+enum status preconditioner_set_mass(struct preconditioner *p, const struct solid_system *system,
                                     const double *stiffness, struct error *error)
 {
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        preconditioner->stiffness[n] = stiffness[n];
-        preconditioner->mass[n] =
-            preconditioner->at_rest != NULL ? stiffness[n] / preconditioner->at_rest[n] : stiffness[n];
+    for (int64_t n = 0; n < p->node_count; n++) {
+        p->stiffness[n] = stiffness[n];
+        p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
     }
-    return preconditioner_restore(preconditioner, system, error);
+    return preconditioner_restore(p, system, error);
 }
 
-enum status preconditioner_restore(struct preconditioner *preconditioner, const struct solid_system *system,
+enum status preconditioner_restore(struct preconditioner *p, const struct solid_system *system,
                                    struct error *error)
 {
-    enum status status;
-    constraint_free(&preconditioner->constraint);
-    bool within = preconditioner->factor.rows.row_count > 0;
-    TRY(system_constrain_within(system, preconditioner->mass, within ? &preconditioner->factor : NULL,
-                                within ? &preconditioner->factor_rows : NULL, &preconditioner->constraint,
-                                error));
-    if (preconditioner->size > 0) {
-        weigh_coarse_space(preconditioner);
-        TRY(weigh_conditions(preconditioner, error));
-        preconditioner_invert(preconditioner, system);
+    constraint_free(&p->constraint);
+    bool within = p->factor.rows.row_count > 0;
+    RETURN_IF_ERROR(system_constrain_within(system, p->mass, within ? &p->factor : NULL,
+                                            within ? &p->factor_rows : NULL, &p->constraint, error));
+    if (p->size > 0) {
+        weigh_coarse_space(p);
+        RETURN_IF_ERROR(weigh_conditions(p, error));
+        preconditioner_invert(p, system);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
-double preconditioner_sum_of_mass(const struct preconditioner *preconditioner)
+double preconditioner_sum_of_mass(const struct preconditioner *p)
 {
     double sum = 0.0;
-    for (int64_t n = 0; n < preconditioner->node_count; n++) {
-        sum += preconditioner->mass[n];
+    for (int64_t n = 0; n < p->node_count; n++) {
+        sum += p->mass[n];
     }
     return sum;
 }
 
-bool preconditioner_is_stale(const struct preconditioner *preconditioner)
+bool preconditioner_is_stale(const struct preconditioner *p)
 {
-    double change = preconditioner_sum_of_mass(preconditioner) / preconditioner->measured_mass;
-    return preconditioner->size > 0 && (change > most_change || change < 1.0 / most_change);
+    double change = preconditioner_sum_of_mass(p) / p->measured_mass;
+    return p->size > 0 && (change > most_change || change < 1.0 / most_change);
 }

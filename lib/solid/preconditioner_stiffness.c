@@ -4,6 +4,7 @@
 
 #include "base/dense.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/contact_between.h"
 
 #include <math.h>
@@ -44,162 +45,159 @@ static void add_square(int64_t size, double stiffness, const double *row, double
     }
 }
 
+/* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
+static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, struct average *average,
+                          double *weight)
+{
+    while (contact_between_part(contact, a, (*i)++, average, weight)) {
+        if (*weight != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* row -= what is opposite contact node a along a direction. */
-static void subtract_opposite(const struct preconditioner *preconditioner, const struct contact *contact,
-                              int64_t a, const double *direction, double *row)
+static void subtract_opposite(const struct preconditioner *p, const struct contact *contact, int64_t a,
+                              const double *direction, double *row)
 {
     struct average average;
-    double weight;
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        const double less[3] = {-weight * direction[0], -weight * direction[1],
-                                contact->dim == 3 ? -weight * direction[2] : 0.0};
-        if (weight != 0.0) {
-            preconditioner_add_row(preconditioner, &average, less, row);
+    double weight, less[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+        for (int c = 0; c < contact->dim; c++) {
+            less[c] = -weight * direction[c];
         }
+        preconditioner_add_row(p, &average, less, row);
     }
 }
 
 /* matrix += the stiffness along the coarse fields of the contact nodes that count as active. */
-static void add_contacts(const struct preconditioner *preconditioner, const struct solid_system *system,
-                         double *matrix)
+static void add_contacts(const struct preconditioner *p, const struct solid_system *system, double *matrix)
 {
-    double *row = preconditioner->amount;
-    int64_t size = preconditioner->size, at = 0;
+    double *row = p->amount;
+    int64_t size = p->size, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
         for (int64_t a = 0; a < averages->count; a++, at++) {
-            if (!preconditioner->active[at]) {
+            if (!p->active[at]) {
                 continue;
             }
             struct average average = average_of_boundary(averages, a);
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
-            bool creased = preconditioner->creased[at];
-            for (int64_t d = 0; d < (creased ? preconditioner->dim : 1); d++) {
+            bool creased = p->creased[at];
+            for (int64_t d = 0; d < (creased ? p->dim : 1); d++) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
-                const double *direction = creased ? axis : preconditioner->normal + at * preconditioner->dim;
+                const double *direction = creased ? axis : p->normal + at * p->dim;
                 memset(row, 0, (size_t)size * sizeof *row);
-                preconditioner_add_row(preconditioner, &average, direction, row);
-                subtract_opposite(preconditioner, contact, a, direction, row);
+                preconditioner_add_row(p, &average, direction, row);
+                subtract_opposite(p, contact, a, direction, row);
                 add_square(size, stiffness, row, matrix);
             }
         }
     }
 }
 
-/* mean[dim] += factor times the field opposite contact node a. */
-static void add_opposite(const struct contact *contact, int64_t a, double factor, const double *field,
-                         double *mean)
+/* mean[dim] -= the field opposite contact node a. */
+static void take_opposite(const struct contact *contact, int64_t a, const double *field, double *mean)
 {
     struct average average;
     double weight, there[3];
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        if (weight != 0.0) {
-            average_take(&average, contact->dim, field, there);
-        }
-        for (int c = 0; c < contact->dim && weight != 0.0; c++) {
-            mean[c] += factor * weight * there[c];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+        average_take(&average, contact->dim, field, there);
+        for (int c = 0; c < contact->dim; c++) {
+            mean[c] -= weight * there[c];
         }
     }
 }
 
 /* The transpose. */
-static void spread_opposite(const struct contact *contact, int64_t a, double factor, const double *amount,
-                            double *field)
+static void spread_opposite(const struct contact *contact, int64_t a, const double *amount, double *field)
 {
     struct average average;
-    double weight;
-    for (int64_t i = 0; contact_between_part(contact, a, i, &average, &weight); i++) {
-        double there[3] = {0.0, 0.0, 0.0};
+    double weight, there[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
         for (int c = 0; c < contact->dim; c++) {
-            there[c] = factor * weight * amount[c];
+            there[c] = -weight * amount[c];
         }
-        if (weight != 0.0) {
-            average_spread(&average, contact->dim, there, NULL, field);
-        }
+        average_spread(&average, contact->dim, there, NULL, field);
     }
 }
 
-void preconditioner_resist_open(const struct preconditioner *preconditioner,
-                                const struct solid_system *system, const double *move, double *force)
+void preconditioner_resist_open(const struct preconditioner *p, const struct solid_system *system,
+                                const double *move, double *force)
 {
-    int64_t dim = preconditioner->dim, at = 0;
-    if (preconditioner->active == NULL) {
+    int64_t dim = p->dim, at = 0;
+    if (p->active == NULL) {
         return;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
         for (int64_t a = 0; a < averages->count; a++, at++) {
-            if (!preconditioner->active[at]) {
+            if (!p->active[at]) {
                 continue;
             }
             struct contact_node node = contact_node(contact, a);
             struct average average = average_of_boundary(averages, a);
-            const double *normal = preconditioner->normal + at * dim;
-            double mean[3], on_node[3], along = 0.0, stiffness = node.stiffness * averages->area[a];
+            const double *normal = p->normal + at * dim;
+            double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];
             average_take(&average, (int)dim, move, mean);
-            add_opposite(contact, a, -1.0, move, mean);
+            take_opposite(contact, a, move, mean);
+            double along = vector_dot((int)dim, mean, normal);
             for (int64_t i = 0; i < dim; i++) {
-                along += mean[i] * normal[i];
-            }
-            for (int64_t i = 0; i < dim; i++) {
-                double aside =
-                    preconditioner->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
+                double aside = p->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
                 on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
             }
             average_spread(&average, (int)dim, on_node, NULL, force);
-            spread_opposite(contact, a, -1.0, on_node, force);
+            spread_opposite(contact, a, on_node, force);
         }
     }
 }
 
 /* Part of the coarse fields' mass that the conditions leave free. */
-static double free_part(const struct preconditioner *preconditioner)
+static double free_part(const struct preconditioner *p)
 {
     double all = 0.0, part = 0.0;
-    for (int64_t k = 0; k < preconditioner->size * preconditioner->size; k += preconditioner->size + 1) {
-        all += preconditioner->weight[k];
-        part += preconditioner->free_weight[k];
+    for (int64_t k = 0; k < p->size * p->size; k += p->size + 1) {
+        all += p->weight[k];
+        part += p->free_weight[k];
     }
     return part / all;
 }
 
-void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system)
+void preconditioner_invert(struct preconditioner *p, const struct solid_system *system)
 {
-    int64_t cells = preconditioner->size * preconditioner->size;
-    double *stiffness = preconditioner->capacitance_inverse;
+    int64_t cells = p->size * p->size;
+    double *stiffness = p->capacitance_inverse;
     bool good = false;
-    memcpy(stiffness, preconditioner->body, (size_t)cells * sizeof *stiffness);
-    add_contacts(preconditioner, system, stiffness);
-    bool useful = free_part(preconditioner) > least_free;
+    memcpy(stiffness, p->body, (size_t)cells * sizeof *stiffness);
+    add_contacts(p, system, stiffness);
+    bool useful = free_part(p) > least_free;
     for (double keep = kept; useful && !good && keep < 1e8;
          keep *= 10.0) { /* of an unstable body the stiffness is indefinite */
         for (int64_t i = 0; i < cells; i++) {
-            preconditioner->inverse[i] = stiffness[i] / share + keep * preconditioner->weight[i];
+            p->inverse[i] = stiffness[i] / share + keep * p->weight[i];
         }
-        good = invert(preconditioner->size, preconditioner->inverse);
+        good = invert(p->size, p->inverse);
         for (int64_t i = 0; good && i < cells; i++) {
-            stiffness[i] =
-                stiffness[i] / share + keep * preconditioner->weight[i] + preconditioner->free_weight[i];
+            stiffness[i] = stiffness[i] / share + keep * p->weight[i] + p->free_weight[i];
         }
     }
-    if (!good ||
-        !invert(preconditioner->size, preconditioner->capacitance_inverse)) { /* then no coarse space */
-        memset(preconditioner->inverse, 0, (size_t)cells * sizeof *preconditioner->inverse);
-        memset(preconditioner->capacitance_inverse, 0,
-               (size_t)cells * sizeof *preconditioner->capacitance_inverse);
+    if (!good || !invert(p->size, p->capacitance_inverse)) { /* then no coarse space */
+        memset(p->inverse, 0, (size_t)cells * sizeof *p->inverse);
+        memset(p->capacitance_inverse, 0, (size_t)cells * sizeof *p->capacitance_inverse);
     }
 }
 
 /* field = P Z e_k */
-static void set_field(struct preconditioner *preconditioner, int64_t k, double *field)
+static void set_field(struct preconditioner *p, int64_t k, double *field)
 {
-    memset(preconditioner->amount, 0, (size_t)preconditioner->size * sizeof *preconditioner->amount);
-    memset(field, 0, (size_t)(preconditioner->node_count * preconditioner->dim) * sizeof *field);
-    preconditioner->amount[k] = 1.0;
-    coarse_space_prolongate(&preconditioner->coarse, preconditioner->amount, field);
-    constraint_project(&preconditioner->constraint, NULL, field);
+    memset(p->amount, 0, (size_t)p->size * sizeof *p->amount);
+    memset(field, 0, (size_t)(p->node_count * p->dim) * sizeof *field);
+    p->amount[k] = 1.0;
+    coarse_space_prolongate(&p->coarse, p->amount, field);
+    constraint_project(&p->constraint, NULL, field);
 }
 
 static void make_symmetric(int64_t n, double *matrix)
@@ -211,22 +209,22 @@ static void make_symmetric(int64_t n, double *matrix)
     }
 }
 
-enum status preconditioner_measure(struct preconditioner *preconditioner, struct solid_system *system,
-                                   const double *u, struct error *error)
+enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
+                                   struct error *error)
 {
     enum status status = STATUS_OK;
-    int64_t values = preconditioner->node_count * preconditioner->dim;
+    int64_t values = p->node_count * p->dim;
     double *at_u = NULL, *moved = NULL, *force = NULL;
     double epsilon = strain * system_node_spacing(system);
-    if (preconditioner->size == 0) {
+    if (p->size == 0) {
         return STATUS_OK;
     }
     TRY(NEW_ARRAY(&at_u, values, error));
     TRY(NEW_ARRAY(&moved, values, error));
     TRY(NEW_ARRAY(&force, values, error));
     system_resist(system, u, at_u);
-    for (int64_t k = 0; k < preconditioner->size; k++) {
-        set_field(preconditioner, k, moved);
+    for (int64_t k = 0; k < p->size; k++) {
+        set_field(p, k, moved);
         for (int64_t i = 0; i < values; i++) {
             moved[i] = u[i] + epsilon * moved[i];
         }
@@ -234,35 +232,28 @@ enum status preconditioner_measure(struct preconditioner *preconditioner, struct
         for (int64_t i = 0; i < values; i++) {
             force[i] = (force[i] - at_u[i]) / epsilon;
         }
-        preconditioner_restrict_force(preconditioner, force, moved,
-                                      preconditioner->body + k * preconditioner->size);
+        preconditioner_restrict_force(p, force, moved, p->body + k * p->size);
     }
-    make_symmetric(preconditioner->size, preconditioner->body);
-    preconditioner->measured_mass = preconditioner_sum_of_mass(preconditioner);
-    preconditioner_invert(preconditioner, system);
+    make_symmetric(p->size, p->body);
+    p->measured_mass = preconditioner_sum_of_mass(p);
+    preconditioner_invert(p, system);
 done:
-    free(at_u);
-    free(moved);
-    free(force);
+    FREE_ALL(at_u, moved, force);
     return status;
 }
 
 /* Whether the normal has turned since the contact node was counted in. */
 static bool has_turned(const struct contact_node *node, int dim, const double *counted_normal)
 {
-    double cosine = 0.0;
-    for (int i = 0; i < dim; i++) {
-        cosine += node->normal[i] * counted_normal[i];
-    }
-    return cosine < least_cosine;
+    return vector_dot(dim, node->normal, counted_normal) < least_cosine;
 }
 
 /* At a check, `i` as in idle: whether a contact node that no longer needs to be counted in is left out. Each
  * time it has been, it stays for twice as many checks: a node that is left out too soon comes back, and as M
  * changes each time, that could go on for ever. */
-static bool leaves(struct preconditioner *preconditioner, int64_t i)
+static bool leaves(struct preconditioner *p, int64_t i)
 {
-    int64_t *idle = &preconditioner->idle[i], *patience = &preconditioner->patience[i];
+    int64_t *idle = &p->idle[i], *patience = &p->patience[i];
     if (*idle < *patience) {
         ++*idle;
         return false;
@@ -275,35 +266,34 @@ static bool leaves(struct preconditioner *preconditioner, int64_t i)
 /* Set whether contact node `at` is taken to lie in a crease, where it is held in all directions: it has
  * turned twice in a short time. A node that slides from facet to facet turns only once. Returns whether this
  * has changed. */
-static bool follow_crease(struct preconditioner *preconditioner, const struct contact_node *node, int64_t at,
-                          bool leave)
+static bool follow_crease(struct preconditioner *p, const struct contact_node *node, int64_t at, bool leave)
 {
-    bool *turned = &preconditioner->turned[at], *creased = &preconditioner->creased[at], was = *creased;
-    int64_t i = preconditioner->contact_node_count + at;
+    bool *turned = &p->turned[at], *creased = &p->creased[at], was = *creased;
+    int64_t i = p->contact_node_count + at;
     bool again = *turned && node->turned;
     *turned = *turned || node->turned;
-    preconditioner->idle[i] = *turned ? 0 : preconditioner->idle[i];
-    *creased = again || (*creased && (!leave || *turned || !leaves(preconditioner, i)));
+    p->idle[i] = *turned ? 0 : p->idle[i];
+    *creased = again || (*creased && (!leave || *turned || !leaves(p, i)));
     *turned = *turned && !leave;
     return *creased != was;
 }
 
 /* Count contact node a in or out; returns whether A changes. In a body with free rigid-body modes nodes far
  * from the surface stay counted in, as it may come to rest on them. */
-static bool follow_node(struct preconditioner *preconditioner, const struct contact *contact, int64_t a,
-                        int64_t at, bool leave)
+static bool follow_node(struct preconditioner *p, const struct contact *contact, int64_t a, int64_t at,
+                        bool leave)
 {
     double area = contact_nodes(contact)->area[a], length = contact->dim == 2 ? area : sqrt(area);
-    double *normal = preconditioner->normal + at * contact->dim;
+    double *normal = p->normal + at * contact->dim;
     struct contact_node node = contact_node(contact, a);
-    bool *counts = &preconditioner->active[at], pressed = node.pressure > 0.0;
-    bool creased = follow_crease(preconditioner, &node, at, leave);
-    if (!pressed && !preconditioner->has_rigid_mode && !(node.gap < near_share * length)) {
-        bool left = *counts && leave && leaves(preconditioner, at);
+    bool *counts = &p->active[at], pressed = node.pressure > 0.0;
+    bool creased = follow_crease(p, &node, at, leave);
+    if (!pressed && !p->has_rigid_mode && !(node.gap < near_share * length)) {
+        bool left = *counts && leave && leaves(p, at);
         *counts = *counts && !left;
         return left || creased;
     }
-    preconditioner->idle[at] = 0;
+    p->idle[at] = 0;
     if (*counts ? !pressed || !has_turned(&node, contact->dim, normal) : !pressed && !leave) {
         return creased;
     }
@@ -312,22 +302,21 @@ static bool follow_node(struct preconditioner *preconditioner, const struct cont
     return true;
 }
 
-bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
-                           bool leave)
+bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave)
 {
     bool changed = false;
     int64_t at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++) {
-            changed = follow_node(preconditioner, &system->contacts[c], a, at++, leave) || changed;
+            changed = follow_node(p, &system->contacts[c], a, at++, leave) || changed;
         }
     }
     for (int64_t c = 0; c < system->contact_count && changed; c++) {
         contact_between_take(&system->contacts[c]);
     }
-    if (!changed || preconditioner->size == 0) {
+    if (!changed || p->size == 0) {
         return false;
     }
-    preconditioner_invert(preconditioner, system);
+    preconditioner_invert(p, system);
     return true;
 }

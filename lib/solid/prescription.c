@@ -1,5 +1,6 @@
 #include "solid/prescription.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -40,18 +41,6 @@ static enum status value_at(const struct prescription *p, int32_t node, const do
     return STATUS_OK;
 }
 
-/* A row in the order of its first coordinate. */
-struct sorted {
-    double x;
-    int64_t row;
-};
-
-static int compare_sorted(const void *left, const void *right)
-{
-    const struct sorted *a = left, *b = right;
-    return a->x != b->x ? (a->x > b->x) - (a->x < b->x) : (a->row > b->row) - (a->row < b->row);
-}
-
 /* The largest difference of two rows in `count` entries. */
 static double apart(const double *row, const double *other, int count)
 {
@@ -69,19 +58,19 @@ enum status prescription_check_table(const struct prescription *p, struct error 
     int dim = p->input->cells.dim;
     int64_t count = condition->row_count;
     double largest = 0.0, same = round_off * p->input->extent / condition->unit;
-    struct sorted *sorted;
+    struct placed *sorted; /* rows by their first coordinates */
     char place[96];
     TRY(NEW_ARRAY(&sorted, count, error));
     for (int64_t i = 0; i < count; i++) {
         const double zeros[3] = {0.0, 0.0, 0.0};
-        sorted[i] = (struct sorted){condition->rows[i * 2 * dim], i};
+        sorted[i] = (struct placed){condition->rows[i * 2 * dim], i};
         largest = fmax(largest, apart(condition->rows + i * 2 * dim + dim, zeros, dim));
     }
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_placed);
     for (int64_t s = 0; s < count; s++) {
-        for (int64_t t = s + 1; t < count && sorted[t].x - sorted[s].x <= same; t++) {
-            const double *a = condition->rows + sorted[s].row * 2 * dim,
-                         *b = condition->rows + sorted[t].row * 2 * dim;
+        for (int64_t t = s + 1; t < count && sorted[t].place - sorted[s].place <= same; t++) {
+            const double *a = condition->rows + sorted[s].item * 2 * dim,
+                         *b = condition->rows + sorted[t].item * 2 * dim;
             double difference = apart(a + dim, b + dim, dim);
             if (apart(a, b, dim) <= same && difference > round_off * largest && status == STATUS_OK) {
                 double at[3] = {0.0, 0.0, 0.0};
@@ -91,8 +80,8 @@ enum status prescription_check_table(const struct prescription *p, struct error 
                 point_text(dim, at, place);
                 status = fail(error, STATUS_INPUT,
                               "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
-                              condition->where, condition->table, (long long)sorted[s].row + 1,
-                              (long long)sorted[t].row + 1, place, difference * condition->unit);
+                              condition->where, condition->table, (long long)sorted[s].item + 1,
+                              (long long)sorted[t].item + 1, place, difference * condition->unit);
             }
         }
     }

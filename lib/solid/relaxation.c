@@ -257,12 +257,10 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         r->converged_checks = 0;
     }
     relaxation_note_best(r);
-    if (whole && *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200) &&
-        multipliers_hold(r)) {
-        return true;
-    }
-    if (whole && r->system->contact_count > 0 && *error_now <= most_hovering &&
-        relaxation_stays(r, 20.0, 1000) && multipliers_hold(r)) {
+    bool round_off = *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200);
+    bool hovering =
+        r->system->contact_count > 0 && *error_now <= most_hovering && relaxation_stays(r, 20.0, 1000);
+    if (whole && (round_off || hovering) && multipliers_hold(r)) {
         return true;
     }
     *outcome = RELAXATION_STALLED;
@@ -318,7 +316,6 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
 /* From u, brought onto the conditions, at rest and without load. */
 static enum status begin(struct relaxation *r, struct error *error)
 {
-    enum status status;
     struct solid_system *system = r->system;
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
@@ -326,31 +323,28 @@ static enum status begin(struct relaxation *r, struct error *error)
         r->options->frame(r->options->context, 0, 0.0, r->u);
     }
     system_relaxation_mass(system, false, r->scratch);
-    TRY(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
+    RETURN_IF_ERROR(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
     constraint_project(&r->preconditioner.constraint, system->factor, r->u);
     r->residual_at = r->u;
     r->low2 = r->pressures_lack = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
         r->window[i] = INFINITY;
     }
-    TRY(relaxation_measure_preconditioner(r, error));
+    RETURN_IF_ERROR(relaxation_measure_preconditioner(r, error));
     for (int i = 0; i < 2; i++) {
         relaxation_keep_state(r);
         relaxation_keep_check(r);
     }
     r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* From where another run was. */
 static enum status resume(struct relaxation *r, struct error *error)
 {
-    enum status status;
-    TRY(relaxation_visit(r, r->options->restored, error));
-    TRY(preconditioner_restore(&r->preconditioner, r->system, error));
-done:
-    return status;
+    RETURN_IF_ERROR(relaxation_visit(r, r->options->restored, error));
+    RETURN_IF_ERROR(preconditioner_restore(&r->preconditioner, r->system, error));
+    return STATUS_OK;
 }
 
 enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,

@@ -55,7 +55,8 @@ void relaxation_control_load(struct relaxation *r)
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
-static double relaxation_share(const struct relaxation *r)
+/* Of the critical step, in use. */
+static double step_share(const struct relaxation *r)
 {
     return r->step_safety * r->options->time_step_margin;
 }
@@ -67,7 +68,7 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
     r->report->force_evaluations += iterations;
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
-    r->time_step = relaxation_share(r) * 2.0 / r->frequency;
+    r->time_step = step_share(r) * 2.0 / r->frequency;
 }
 
 /* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
@@ -159,7 +160,8 @@ void relaxation_keep_check(struct relaxation *r)
     keep(r, &r->check_now, &r->check_before);
 }
 
-void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
+/* Go back to a state that was kept. */
+static void go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
     r->back_step = r->report->steps;
@@ -177,7 +179,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     r->step_safety *= 0.8;
     r->top_rate *= 0.5;
     r->load_rate = r->top_rate;
-    relaxation_go_back(r, &r->older);
+    go_back(r, &r->older);
     memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
     relaxation_keep_state(r);
     relaxation_keep_check(r);
@@ -217,7 +219,7 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
         r->report->force_evaluations++;
         return;
     }
-    relaxation_go_back(r, &r->check_before);
+    go_back(r, &r->check_before);
     relaxation_keep_check(r);
     r->residual_at = r->u;
     (void)system_residual(r->system, r->residual_at, r->residual);

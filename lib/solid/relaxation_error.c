@@ -3,6 +3,7 @@
 #include "solid/relaxation_private.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -22,11 +23,8 @@ static double largest_of_nodes(const struct relaxation *r, const double *x)
     int dim = r->system->dim;
     double largest2 = 0.0;
     for (int64_t n = 0; n < r->system->node_count; n++) {
-        double sum = 0.0;
-        for (int a = 0; a < dim; a++) {
-            sum += x[n * dim + a] * x[n * dim + a];
-        }
-        largest2 = sum > largest2 ? sum : largest2;
+        double length2 = vector_dot(dim, x + n * dim, x + n * dim);
+        largest2 = length2 > largest2 ? length2 : largest2;
     }
     return sqrt(largest2);
 }
@@ -89,14 +87,9 @@ void relaxation_estimate(struct relaxation *r)
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
                               struct spectrum *spectrum, struct error *error)
 {
-    double *scratch = NULL;
-    r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
-    if (r->failure == STATUS_OK) {
-        r->failure = system_spectrum(r->system, &r->preconditioner, u, r->residual, most_iterations,
-                                     r->velocity, scratch, spectrum, error);
-        r->report->force_evaluations += spectrum->iterations;
-    }
-    free(scratch);
+    r->failure = system_spectrum(r->system, &r->preconditioner, u, r->residual, most_iterations, r->velocity,
+                                 r->scratch, spectrum, error);
+    r->report->force_evaluations += spectrum->iterations;
     return r->failure == STATUS_OK;
 }
 
@@ -114,17 +107,12 @@ void relaxation_damp_at_most(struct relaxation *r, double low2)
 static bool note_stability(struct relaxation *r, const double *u, const struct spectrum *spectrum,
                            struct error *error)
 {
-    double *scratch = NULL;
-    r->failure = NEW_ARRAY(&scratch, 4 * r->size, error);
-    if (r->failure == STATUS_OK) {
-        r->failure = system_unstable_mode(r->system, &r->preconditioner, u, r->residual, spectrum,
-                                          r->velocity, scratch, &r->system->stability, error);
-    }
     struct stability *stability = &r->system->stability;
+    r->failure = system_unstable_mode(r->system, &r->preconditioner, u, r->residual, spectrum, r->velocity,
+                                      r->scratch, stability, error);
     if (stability->least > -r->report->error || r->system->contact_count > 0) {
         stability->least = fmax(stability->least, 0.0);
     }
-    free(scratch);
     return r->failure == STATUS_OK;
 }
 

@@ -30,7 +30,8 @@ struct relaxation {
     double *velocity, *residual, *before;
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
-    double *mode, *scratch;
+    double *mode;
+    double *scratch;                    /* 4 * size */
     double *last_u, *last_acceleration; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
@@ -132,9 +133,6 @@ bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
 /* Measure the stiffness along the coarse fields of the preconditioner at the state where the residual is
  * known, and take the time step from it. */
 MUST_CHECK enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error);
-
-/* Go back to a state that was kept, at rest. */
-void relaxation_go_back(struct relaxation *r, const struct kept_state *kept);
 
 /* At a check: keep the state. */
 void relaxation_keep_check(struct relaxation *r);

@@ -8,40 +8,28 @@
 
 enum status relaxation_allocate(struct relaxation *r, struct error *error)
 {
-    enum status status;
-    TRY(preconditioner_build(r->system, true, &r->preconditioner, error));
-    TRY(NEW_ARRAY(&r->velocity, r->size, error));
-    TRY(NEW_ARRAY(&r->residual, r->size, error));
-    TRY(NEW_ARRAY(&r->before, r->size, error));
-    TRY(NEW_ARRAY(&r->factor_change, r->system->curve_count, error));
-    TRY(NEW_ARRAY(&r->mode, r->size, error));
-    TRY(NEW_ARRAY(&r->scratch, 2 * r->size, error));
-    TRY(NEW_ARRAY(&r->last_u, r->size, error));
-    TRY(NEW_ARRAY(&r->last_acceleration, r->size, error));
-    TRY(NEW_ARRAY(&r->acceleration, r->size, error));
-    TRY(NEW_ARRAY(&r->newer.u, 2 * r->size, error));
-    TRY(NEW_ARRAY(&r->older.u, 2 * r->size, error));
-    TRY(NEW_ARRAY(&r->check_now.u, 2 * r->size, error));
-    TRY(NEW_ARRAY(&r->check_before.u, 2 * r->size, error));
-done:
-    return status;
+    RETURN_IF_ERROR(preconditioner_build(r->system, true, &r->preconditioner, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->velocity, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->residual, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->before, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->factor_change, r->system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->mode, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->scratch, 4 * r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->last_u, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->last_acceleration, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->acceleration, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->newer.u, 2 * r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->older.u, 2 * r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->check_now.u, 2 * r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->check_before.u, 2 * r->size, error));
+    return STATUS_OK;
 }
 
 void relaxation_release(struct relaxation *r)
 {
-    free(r->velocity);
-    free(r->residual);
-    free(r->before);
-    free(r->factor_change);
-    free(r->mode);
-    free(r->scratch);
-    free(r->last_u);
-    free(r->last_acceleration);
-    free(r->acceleration);
-    free(r->newer.u);
-    free(r->older.u);
-    free(r->check_now.u);
-    free(r->check_before.u);
+    FREE_ALL(r->velocity, r->residual, r->before, r->factor_change, r->mode, r->scratch, r->last_u,
+             r->last_acceleration, r->acceleration, r->newer.u, r->older.u, r->check_now.u,
+             r->check_before.u);
     preconditioner_free(&r->preconditioner);
 }
 
@@ -107,10 +95,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"lowest_frequency", STATE_NUMBERS, &report->lowest_frequency, 1},
         {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
     };
-    enum status status;
-    TRY(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
-    TRY(preconditioner_state(&r->preconditioner, state, error));
-    TRY(system_state(r->system, state, error));
-done:
-    return status;
+    RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(preconditioner_state(&r->preconditioner, state, error));
+    RETURN_IF_ERROR(system_state(r->system, state, error));
+    return STATUS_OK;
 }

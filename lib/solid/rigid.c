@@ -2,6 +2,7 @@
 #include "solid/rigid.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
@@ -28,21 +29,6 @@ static enum status check_corners(const struct rigid_surface *surface, const doub
     return STATUS_OK;
 }
 
-/* A corner by its place along a direction in which few distinct corners coincide. */
-struct placed_corner {
-    double place;
-    int64_t corner;
-};
-
-static int compare_placed(const void *left, const void *right)
-{
-    const struct placed_corner *a = left, *b = right;
-    if (a->place != b->place) {
-        return a->place < b->place ? -1 : 1;
-    }
-    return (a->corner > b->corner) - (a->corner < b->corner);
-}
-
 /* same[corner]: the first corner, along the direction, of those that coincide with it. */
 static enum status find_coincident(const struct rigid_surface *surface, const double *corners, int64_t *same,
                                    struct error *error)
@@ -52,20 +38,20 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
     double near = merge_tolerance * surface->extent;
-    struct placed_corner *placed = NULL;
+    struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
     TRY(NEW_ARRAY(&placed, count, error));
     for (int64_t c = 0; c < count; c++) {
-        placed[c].corner = c;
+        placed[c].item = c;
         for (int a = 0; a < dim; a++) {
             placed[c].place += direction[a] * corners[c * dim + a];
         }
     }
     qsort(placed, (size_t)count, sizeof *placed, compare_placed);
     for (int64_t i = 0; i < count; i++) {
-        int64_t c = placed[i].corner;
+        int64_t c = placed[i].item;
         same[c] = c;
         for (int64_t k = i - 1; k >= 0 && placed[i].place - placed[k].place <= near; k--) {
-            int64_t other = same[placed[k].corner];
+            int64_t other = same[placed[k].item];
             if (vector_distance2(dim, corners + c * dim, corners + other * dim) <= near * near) {
                 same[c] = other;
                 break;
@@ -118,34 +104,31 @@ static void facet_normal(const struct rigid_surface *surface, int64_t f, double 
     } else {
         const double *x2 = surface->vertex + (int64_t)corner[2] * dim;
         *size2 = fmax(*size2, fmax(vector_distance2(3, x0, x2), vector_distance2(3, x1, x2)));
-        for (int a = 0; a < 3; a++) {
-            int b = (a + 1) % 3, c = (a + 2) % 3;
-            normal[a] = (x1[b] - x0[b]) * (x2[c] - x0[c]) - (x1[c] - x0[c]) * (x2[b] - x0[b]);
-        }
+        double first[3], second[3];
+        vector_subtract(3, x1, x0, first);
+        vector_subtract(3, x2, x0, second);
+        vector_cross(first, second, normal);
     }
 }
 
 static enum status make_normals(struct rigid_surface *surface, bool flip, struct error *error)
 {
-    enum status status;
     int dim = surface->dim;
-    TRY(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
-        double *normal = surface->normal + f * dim, size2, zero[3] = {0.0, 0.0, 0.0};
+        double *normal = surface->normal + f * dim, size2;
         facet_normal(surface, f, normal, &size2);
         double least = dim == 2 ? 0.0 : least_slenderness * size2;
-        if (!(sqrt(vector_distance2(dim, normal, zero)) > least)) {
-            status = fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
-                          (long long)(f + 1));
-            goto done;
+        if (!(vector_length(dim, normal) > least)) {
+            return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
+                        (long long)(f + 1));
         }
         normalise(dim, normal);
         for (int a = 0; a < dim && flip; a++) {
             normal[a] = -normal[a];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
@@ -173,15 +156,7 @@ done:
 
 void rigid_free(struct rigid_surface *surface)
 {
-    free(surface->vertex);
-    free(surface->facet);
-    free(surface->normal);
-    free(surface->vertex_normal);
-    free(surface->edge_normal);
-    free(surface->is_rim);
-    free(surface->edge_is_rim);
-    free(surface->turn);
-    free(surface->branch);
-    free(surface->in_order);
+    FREE_ALL(surface->vertex, surface->facet, surface->normal, surface->vertex_normal, surface->edge_normal,
+             surface->is_rim, surface->edge_is_rim, surface->turn, surface->branch, surface->in_order);
     *surface = (struct rigid_surface){0};
 }

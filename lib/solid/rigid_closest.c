@@ -1,8 +1,9 @@
 /* The closest point of a rigid surface, by its tree of boxes; see rigid.h. */
-#include "solid/rigid.h"
+#include "solid/rigid_private.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Where on a facet the closest point lies; edge k goes from corner k to corner k + 1. */
 enum feature { ON_FACE, ON_CORNER_0, ON_CORNER_1, ON_CORNER_2, ON_EDGE_0, ON_EDGE_1, ON_EDGE_2 };
@@ -28,37 +29,6 @@ static const double *corner_of(const struct rigid_surface *surface, int64_t f, i
     return surface->vertex + (int64_t)surface->facet[f * surface->dim + k] * surface->dim;
 }
 
-static double dot(int dim, const double *a, const double *b)
-{
-    double sum = a[0] * b[0];
-    for (int i = 1; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-static void difference(int dim, const double *a, const double *b, double *d)
-{
-    for (int i = 0; i < dim; i++) {
-        d[i] = a[i] - b[i];
-    }
-}
-
-/* point = a + s b */
-static void along(int dim, const double *a, double s, const double *b, double *point)
-{
-    for (int i = 0; i < dim; i++) {
-        point[i] = a[i] + s * b[i];
-    }
-}
-
-static void scaled(int dim, double s, const double *v, double *result)
-{
-    for (int i = 0; i < dim; i++) {
-        result[i] = s * v[i];
-    }
-}
-
 static enum feature corner_feature(int k, double weight[3])
 {
     weight[k] = 1.0;
@@ -77,9 +47,9 @@ static enum feature edge_feature(int k, double s, double weight[3])
 static enum feature closest_on_segment(const double *a, const double *b, const double *x, double weight[3])
 {
     double ab[2], ax[2];
-    difference(2, b, a, ab);
-    difference(2, x, a, ax);
-    double s = dot(2, ab, ax) / dot(2, ab, ab);
+    vector_subtract(2, b, a, ab);
+    vector_subtract(2, x, a, ax);
+    double s = vector_dot(2, ab, ax) / vector_dot(2, ab, ab);
     if (s <= 0.0) {
         return corner_feature(0, weight);
     }
@@ -96,13 +66,13 @@ static enum feature closest_on_triangle(const double *a, const double *b, const 
                                         double weight[3])
 {
     double ab[3], ac[3], ax[3], bx[3], cx[3];
-    difference(3, b, a, ab);
-    difference(3, c, a, ac);
-    difference(3, x, a, ax);
-    difference(3, x, b, bx);
-    difference(3, x, c, cx);
-    double d1 = dot(3, ab, ax), d2 = dot(3, ac, ax), d3 = dot(3, ab, bx), d4 = dot(3, ac, bx),
-           d5 = dot(3, ab, cx), d6 = dot(3, ac, cx);
+    vector_subtract(3, b, a, ab);
+    vector_subtract(3, c, a, ac);
+    vector_subtract(3, x, a, ax);
+    vector_subtract(3, x, b, bx);
+    vector_subtract(3, x, c, cx);
+    double d1 = vector_dot(3, ab, ax), d2 = vector_dot(3, ac, ax), d3 = vector_dot(3, ab, bx),
+           d4 = vector_dot(3, ac, bx), d5 = vector_dot(3, ab, cx), d6 = vector_dot(3, ac, cx);
     double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     if (d1 <= 0.0 && d2 <= 0.0) {
         return corner_feature(0, weight);
@@ -153,15 +123,15 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     here.feature = dim == 2 ? closest_on_segment(a, b, x, weight)
                             : closest_on_triangle(a, b, corner_of(surface, f, 2), x, weight);
     /* From the first corner, so that an offset of the origin costs nothing. */
-    scaled(dim, 1.0, a, here.point);
+    memcpy(here.point, a, (size_t)dim * sizeof *a);
     for (int k = 1; k < dim; k++) {
         double side[3] = {0.0, 0.0, 0.0};
-        difference(dim, corner_of(surface, f, k), a, side);
-        along(dim, here.point, weight[k], side, here.point);
+        vector_subtract(dim, corner_of(surface, f, k), a, side);
+        add_scaled(dim, weight[k], side, here.point);
     }
     here.rim = on_rim(surface, f, here.feature);
-    difference(dim, x, here.point, away);
-    here.distance2 = dot(dim, away, away);
+    vector_subtract(dim, x, here.point, away);
+    here.distance2 = vector_dot(dim, away, away);
     if ((here.distance2 < nearest->distance2 * (1.0 - tie) ||
          (here.distance2 <= nearest->distance2 * (1.0 + tie) && nearest->rim && !here.rim)) &&
         (filter == NULL || filter->admits(filter->context, f, away))) {
@@ -222,7 +192,7 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
                 (int64_t)surface->facet[nearest->facet * dim + (int)nearest->feature - ON_CORNER_0] * dim;
     }
     /* Facets folded onto each other have no mean normal. */
-    return dot(dim, joint, joint) > 0.5 ? joint : normal;
+    return vector_dot(dim, joint, joint) > 0.5 ? joint : normal;
 }
 
 /* Where x lies beside the rim that the nearest point is on: how far beyond it, and the least way to where the
@@ -235,9 +205,9 @@ static double beyond_rim(const struct rigid_surface *surface, const struct neare
      * more than an angle; at the end of a segment and on an edge the plane of the facet. */
     bool corner = dim == 3 && nearest->feature < ON_EDGE_0;
     const double *normal = corner ? pseudo_normal(surface, nearest) : surface->normal + nearest->facet * dim;
-    double aside[3] = {0.0, 0.0, 0.0}, height = dot(dim, away, normal);
-    along(dim, away, -height, normal, aside);
-    double beyond = sqrt(dot(dim, aside, aside));
+    double aside[3] = {away[0], away[1], away[2]}, height = vector_dot(dim, away, normal);
+    add_scaled(dim, -height, normal, aside);
+    double beyond = vector_length(dim, aside);
     double over = beyond, level = fabs(height);
     if (corner) {
         int64_t vertex = surface->facet[nearest->facet * dim + (int)nearest->feature - ON_CORNER_0];
@@ -261,12 +231,12 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     struct rigid_contact contact = {.distance = reach};
     struct nearest nearest = find_nearest(surface, x, reach, filter);
     if (nearest.facet < 0 || !(nearest.distance2 < reach * reach)) {
-        contact.distance = isnan(dot(dim, x, x)) ? 0.0 : reach;
+        contact.distance = isnan(vector_dot(dim, x, x)) ? 0.0 : reach;
         return contact;
     }
     double away[3] = {0.0, 0.0, 0.0};
     const double *normal = pseudo_normal(surface, &nearest);
-    difference(dim, x, nearest.point, away);
+    vector_subtract(dim, x, nearest.point, away);
     contact.distance = sqrt(nearest.distance2);
     if (nearest.rim) {
         double least_way, beyond = beyond_rim(surface, &nearest, away, &least_way);
@@ -277,21 +247,21 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     }
     contact.found = true;
     contact.facet = nearest.facet;
-    scaled(3, 1.0, nearest.weight, contact.weight);
+    memcpy(contact.weight, nearest.weight, sizeof contact.weight);
     contact.on_edge = nearest.feature != ON_FACE;
     if (nearest.feature == ON_FACE) {
         /* From a corner: free of the cancellation in the distance to the point on the face. */
-        difference(dim, x, corner_of(surface, nearest.facet, 0), away);
-        contact.gap = dot(dim, away, normal);
+        vector_subtract(dim, x, corner_of(surface, nearest.facet, 0), away);
+        contact.gap = vector_dot(dim, away, normal);
         contact.distance = fabs(contact.gap);
-        scaled(dim, 1.0, normal, contact.normal);
+        memcpy(contact.normal, normal, (size_t)dim * sizeof *normal);
     } else {
-        double sign = dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
+        double sign = vector_dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
         contact.gap = sign * contact.distance;
         if (contact.distance > 1e3 * round_off * surface->extent) {
-            scaled(dim, sign / contact.distance, away, contact.normal);
+            add_scaled(dim, sign / contact.distance, away, contact.normal);
         } else {
-            scaled(dim, 1.0, normal, contact.normal);
+            memcpy(contact.normal, normal, (size_t)dim * sizeof *normal);
         }
     }
     return contact;

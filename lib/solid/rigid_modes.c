@@ -1,20 +1,21 @@
 #include "solid/rigid_modes.h"
 
 #include "base/box.h"
+#include "base/eigen.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_MODES = 6, SWEEPS = 30 };
+enum { MOST_MODES = EIGEN_MOST };
 /* A rigid mode is free when the squared norm of G times it is below this share of the largest one. */
 static const double least_seen = 1e-8;
 
 /* A body, and the Gram matrix of the conditions on its rigid modes: sum over the rows of value value^T. */
 struct seen {
     struct box box;
-    double matrix[MOST_MODES][MOST_MODES];
+    double matrix[MOST_MODES * MOST_MODES]; /* rows of as many as there are rigid modes */
 };
 
 static int move_count(int dim)
@@ -61,50 +62,7 @@ static void look(const struct solid_system *system, const struct constraint_rows
     }
     for (int i = 0; i < moves; i++) {
         for (int k = 0; k < moves; k++) {
-            seen->matrix[i][k] += value[i] * value[k];
-        }
-    }
-}
-
-/* Rotate rows and columns p, q of the symmetric matrix so that entry (p, q) vanishes; vector's columns
- * follow. */
-static void rotate(int n, double matrix[][MOST_MODES], double vector[][MOST_MODES], int p, int q)
-{
-    double theta = 0.5 * (matrix[q][q] - matrix[p][p]) / matrix[p][q];
-    double t = copysign(1.0, theta) / (fabs(theta) + sqrt(theta * theta + 1.0));
-    double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
-    for (int i = 0; i < n; i++) {
-        double at_p = matrix[i][p], at_q = matrix[i][q];
-        matrix[i][p] = c * at_p - s * at_q;
-        matrix[i][q] = s * at_p + c * at_q;
-        at_p = vector[i][p];
-        at_q = vector[i][q];
-        vector[i][p] = c * at_p - s * at_q;
-        vector[i][q] = s * at_p + c * at_q;
-    }
-    for (int i = 0; i < n; i++) {
-        double at_p = matrix[p][i], at_q = matrix[q][i];
-        matrix[p][i] = c * at_p - s * at_q;
-        matrix[q][i] = s * at_p + c * at_q;
-    }
-}
-
-/* Eigenvalues of a symmetric matrix, left on its diagonal, and eigenvectors, the columns of `vector`: cyclic
- * Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5). */
-static void diagonalise(int n, double matrix[][MOST_MODES], double vector[][MOST_MODES])
-{
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < n; k++) {
-            vector[i][k] = i == k ? 1.0 : 0.0;
-        }
-    }
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        for (int p = 0; p < n; p++) {
-            for (int q = p + 1; q < n; q++) {
-                if (fabs(matrix[p][q]) > 1e-18 * (fabs(matrix[p][p]) + fabs(matrix[q][q]))) {
-                    rotate(n, matrix, vector, p, q);
-                }
-            }
+            seen->matrix[i * moves + k] += value[i] * value[k];
         }
     }
 }
@@ -113,16 +71,15 @@ static void diagonalise(int n, double matrix[][MOST_MODES], double vector[][MOST
 static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MODES])
 {
     int n = move_count(dim), count = 0;
-    double matrix[MOST_MODES][MOST_MODES], vector[MOST_MODES][MOST_MODES], largest = 0.0;
-    memcpy(matrix, seen->matrix, sizeof matrix);
-    diagonalise(n, matrix, vector);
+    double seen_by[MOST_MODES], vector[MOST_MODES * MOST_MODES], largest = 0.0;
+    eigen_symmetric(n, seen->matrix, seen_by, vector);
     for (int k = 0; k < n; k++) {
-        largest = fmax(largest, matrix[k][k]);
+        largest = fmax(largest, seen_by[k]);
     }
     for (int k = 0; k < n; k++) {
-        if (!(matrix[k][k] > least_seen * largest)) {
+        if (!(seen_by[k] > least_seen * largest)) {
             for (int i = 0; i < n; i++) {
-                basis[count][i] = vector[i][k];
+                basis[count][i] = vector[i * n + k];
             }
             count++;
         }
@@ -154,25 +111,26 @@ static void put_turn(const struct box *box, const double *move, struct rigid_mod
 static void name_moves(int dim, const struct seen *seen, struct rigid_modes *moves)
 {
     int n = move_count(dim);
-    double basis[MOST_MODES][MOST_MODES], turning[MOST_MODES][MOST_MODES], mix[MOST_MODES][MOST_MODES];
+    double basis[MOST_MODES][MOST_MODES], turning[MOST_MODES * MOST_MODES], mix[MOST_MODES * MOST_MODES];
+    double turned[MOST_MODES];
     int count = free_moves(dim, seen, basis);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < count; k++) {
-            turning[i][k] = 0.0;
+            turning[i * count + k] = 0.0;
             for (int a = dim; a < n; a++) {
-                turning[i][k] += basis[i][a] * basis[k][a];
+                turning[i * count + k] += basis[i][a] * basis[k][a];
             }
         }
     }
-    diagonalise(count, turning, mix);
+    eigen_symmetric(count, turning, turned, mix);
     for (int k = 0; k < count; k++) {
         double move[MOST_MODES] = {0.0};
         for (int i = 0; i < count; i++) {
             for (int a = 0; a < n; a++) {
-                move[a] += mix[i][k] * basis[i][a];
+                move[a] += mix[i * count + k] * basis[i][a];
             }
         }
-        if (turning[k][k] > least_seen) {
+        if (turned[k] > least_seen) {
             put_turn(&seen->box, move, moves);
         } else {
             memcpy(moves->along[moves->translations++], move, (size_t)dim * sizeof *move);

@@ -32,10 +32,7 @@ MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct err
 /* Make v unit; a zero vector stays zero. */
 static inline void normalise(int dim, double *v)
 {
-    double sum = 0.0;
-    for (int a = 0; a < dim; a++) {
-        sum += v[a] * v[a];
-    }
+    double sum = vector_dot(dim, v, v);
     for (int a = 0; a < dim && sum > 0.0; a++) {
         v[a] /= sqrt(sum);
     }

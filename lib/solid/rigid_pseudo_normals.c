@@ -1,4 +1,5 @@
 /* Where the facets of a rigid surface meet: normals at vertices and edges, and rims. */
+#include "base/lists.h"
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
@@ -20,37 +21,20 @@ static enum status fail_twice(int64_t one, int64_t other, struct error *error)
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* A segment by its vertices. */
-struct segment {
-    int32_t first, second;
-    int64_t facet;
-};
-
-static int compare_segments(const void *left, const void *right)
-{
-    const struct segment *a = left, *b = right;
-    if (a->first != b->first) {
-        return a->first < b->first ? -1 : 1;
-    }
-    if (a->second != b->second) {
-        return a->second < b->second ? -1 : 1;
-    }
-    return (a->facet > b->facet) - (a->facet < b->facet);
-}
-
+/* 2D: no segment stands twice. */
 static enum status check_segments(const struct rigid_surface *surface, struct error *error)
 {
     enum status status;
-    struct segment *segments = NULL;
+    struct placed *segments = NULL; /* each by its two vertices as one number */
     TRY(NEW_ARRAY(&segments, surface->facet_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
-        segments[f] = (struct segment){surface->facet[2 * f], surface->facet[2 * f + 1], f};
+        int64_t first = surface->facet[2 * f], second = surface->facet[2 * f + 1];
+        segments[f] = (struct placed){(double)(first * surface->vertex_count + second), f};
     }
-    qsort(segments, (size_t)surface->facet_count, sizeof *segments, compare_segments);
+    qsort(segments, (size_t)surface->facet_count, sizeof *segments, compare_placed);
     for (int64_t i = 1; i < surface->facet_count; i++) {
-        const struct segment *one = &segments[i - 1], *other = &segments[i];
-        if (one->first == other->first && one->second == other->second) {
-            status = fail_twice(one->facet, other->facet, error);
+        if (!(segments[i].place > segments[i - 1].place)) {
+            status = fail_twice(segments[i - 1].item, segments[i].item, error);
             goto done;
         }
     }
@@ -186,23 +170,22 @@ static double corner_angle(const struct rigid_surface *surface, int64_t f, int k
     const double *x = surface->vertex + (int64_t)corner[k] * 3;
     const double *next = surface->vertex + (int64_t)corner[(k + 1) % 3] * 3;
     const double *previous = surface->vertex + (int64_t)corner[(k + 2) % 3] * 3;
-    double dot = 0.0, one = vector_distance2(3, x, next), other = vector_distance2(3, x, previous);
-    for (int a = 0; a < 3; a++) {
-        dot += (next[a] - x[a]) * (previous[a] - x[a]);
-    }
-    return acos(fmin(fmax(dot / sqrt(one * other), -1.0), 1.0));
+    double one[3], other[3];
+    vector_subtract(3, next, x, one);
+    vector_subtract(3, previous, x, other);
+    double lengths = sqrt(vector_dot(3, one, one) * vector_dot(3, other, other));
+    return acos(fmin(fmax(vector_dot(3, one, other) / lengths, -1.0), 1.0));
 }
 
 enum status rigid_join_facets(struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
-    TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
     if (surface->dim == 2) {
-        TRY(join_segments(surface, error));
+        RETURN_IF_ERROR(join_segments(surface, error));
     } else {
-        TRY(join_edges(surface, error));
+        RETURN_IF_ERROR(join_edges(surface, error));
         for (int64_t slot = 0; slot < surface->facet_count * 3; slot++) {
             add_scaled(3, corner_angle(surface, slot / 3, (int)(slot % 3)), surface->normal + slot / 3 * 3,
                        surface->vertex_normal + (int64_t)surface->facet[slot] * 3);
@@ -215,9 +198,8 @@ enum status rigid_join_facets(struct rigid_surface *surface, struct error *error
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * surface->dim;
         const double *normal = surface->normal + c / surface->dim * surface->dim;
-        double half = 0.5 * sqrt(vector_distance2(surface->dim, mean, normal));
+        double half = 0.5 * vector_distance(surface->dim, mean, normal);
         surface->turn[vertex] = fmax(surface->turn[vertex], 2.0 * asin(fmin(half, 1.0)));
     }
-done:
-    return status;
+    return STATUS_OK;
 }

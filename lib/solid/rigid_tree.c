@@ -1,4 +1,5 @@
 /* A tree of boxes over the facets of a rigid surface, halved along the longest side again and again. */
+#include "base/lists.h"
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
@@ -6,25 +7,6 @@
 #include <string.h>
 
 enum { LEAF_FACETS = 4 };
-
-/* A facet by the middle of its box. */
-struct placed_facet {
-    double middle[3];
-    int32_t facet;
-};
-
-#define COMPARE_ALONG(axis)                                                                                  \
-    static int compare_##axis(const void *left, const void *right)                                           \
-    {                                                                                                        \
-        const struct placed_facet *a = left, *b = right;                                                     \
-        if (a->middle[axis] != b->middle[axis]) {                                                            \
-            return a->middle[axis] < b->middle[axis] ? -1 : 1;                                               \
-        }                                                                                                    \
-        return (a->facet > b->facet) - (a->facet < b->facet);                                                \
-    }
-COMPARE_ALONG(0)
-COMPARE_ALONG(1)
-COMPARE_ALONG(2)
 
 static struct box facet_box(const struct rigid_surface *surface, int64_t f)
 {
@@ -36,17 +18,16 @@ static struct box facet_box(const struct rigid_surface *surface, int64_t f)
     return box;
 }
 
-/* The branch of placed[first] to before placed[end], with all below it. Halves differ by one facet at the
- * most, so that the depth is that of their number's bits. */
-static void grow(struct rigid_surface *surface, struct placed_facet *placed, int64_t first, int64_t end)
+/* The branch of the facets placed[first] to before placed[end], with all below it. Halves differ by one facet
+ * at the most, so that the depth is that of their number's bits. */
+static void grow(struct rigid_surface *surface, struct placed *placed, int64_t first, int64_t end)
 {
-    static int (*const compare[3])(const void *, const void *) = {compare_0, compare_1, compare_2};
     int64_t at = surface->branch_count++;
     struct rigid_branch *branch = &surface->branch[at];
     struct box box = box_of(surface->dim, 0, NULL);
     int longest = 0;
     for (int64_t i = first; i < end; i++) {
-        struct box facet = facet_box(surface, placed[i].facet);
+        struct box facet = facet_box(surface, placed[i].item);
         box_add(&box, 1, facet.low);
         box_add(&box, 1, facet.high);
     }
@@ -59,7 +40,11 @@ static void grow(struct rigid_surface *surface, struct placed_facet *placed, int
     branch->end = end;
     if (end - first > LEAF_FACETS) {
         int64_t middle = first + (end - first) / 2;
-        qsort(placed + first, (size_t)(end - first), sizeof *placed, compare[longest]);
+        for (int64_t i = first; i < end; i++) {
+            struct box facet = facet_box(surface, placed[i].item);
+            placed[i].place = 0.5 * (facet.low[longest] + facet.high[longest]);
+        }
+        qsort(placed + first, (size_t)(end - first), sizeof *placed, compare_placed);
         grow(surface, placed, first, middle);
         surface->branch[at].second = surface->branch_count;
         grow(surface, placed, middle, end);
@@ -70,20 +55,16 @@ enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error)
 {
     enum status status;
     int64_t count = surface->facet_count;
-    struct placed_facet *placed = NULL;
+    struct placed *placed = NULL;
     TRY(NEW_ARRAY(&placed, count, error));
     TRY(NEW_ARRAY(&surface->branch, 2 * count, error));
     TRY(NEW_ARRAY(&surface->in_order, count, error));
     for (int64_t f = 0; f < count; f++) {
-        struct box box = facet_box(surface, f);
-        for (int a = 0; a < surface->dim; a++) {
-            placed[f].middle[a] = 0.5 * (box.low[a] + box.high[a]);
-        }
-        placed[f].facet = (int32_t)f;
+        placed[f].item = f;
     }
     grow(surface, placed, 0, count);
     for (int64_t i = 0; i < count; i++) {
-        surface->in_order[i] = placed[i].facet;
+        surface->in_order[i] = (int32_t)placed[i].item;
     }
 done:
     free(placed);

@@ -1,5 +1,6 @@
 #include "solid/scalar_stiffness.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "solid/merged_cells.h"
 #include "solid/system.h"
@@ -161,11 +162,8 @@ enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const i
 void scalar_row_free(struct scalar_row *row)
 {
     sparse_free(&row->fields);
-    void *arrays[] = {row->slot, row->node,    row->value,     row->at_field,  row->on_field,
-                      row->sum,  row->touched, row->cell_seen, row->field_seen};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(arrays[i]);
-    }
+    FREE_ALL(row->slot, row->node, row->value, row->at_field, row->on_field, row->sum, row->touched,
+             row->cell_seen, row->field_seen);
     *row = (struct scalar_row){0};
 }
 
@@ -234,12 +232,6 @@ static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64
     }
 }
 
-static int compare_nodes(const void *left, const void *right)
-{
-    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Force on a node of the body's order, listed in row->node. */
 static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
 {
@@ -263,7 +255,7 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
         struct average field = field_at(stiffness, row->touched[t], &place);
         double force = row->on_field[row->touched[t]];
         for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = place != NULL ? place[field.idx[k]] : row_operator_column(field.idx[k]);
+            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
             add_to_node(node, force * field.phi[k], i, row);
         }
     }
@@ -274,7 +266,7 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
         }
     }
     row->count = kept;
-    qsort(row->node, (size_t)row->count, sizeof *row->node, compare_nodes);
+    qsort(row->node, (size_t)row->count, sizeof *row->node, compare_int32);
     for (int64_t k = 0; k < row->count; k++) {
         row->value[k] = row->sum[body->node_place[row->node[k]]].sum;
     }

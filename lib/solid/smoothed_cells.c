@@ -31,8 +31,8 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
                                         const int64_t *order, struct smoothed_cells *smoothed,
                                         struct error *error)
 {
-    enum status status;
-    TRY(NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&smoothed->linear_gradient, cell_count * dim * dim + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < cell_count; q++) {
         double gradient[9];
         linear_gradients(dim, input->x, input->cell_node + order[q] * (dim + 1), gradient);
@@ -40,8 +40,7 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
             smoothed->linear_gradient[k * cell_count + q] = gradient[k];
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
@@ -176,27 +175,6 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
     return STATUS_OK;
 }
 
-/* For several processes: copy the rows that this one's cells need, and the columns of its nodes. */
-static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
-                               struct error *error)
-{
-    enum status status;
-    struct body_share *share = &body->share;
-    struct field_averages *averages = &body->cells.averages;
-    struct row_operator *rows = &body->rows;
-    bool *needed = NULL, *used = NULL;
-    TRY(body_share_values(body, &needed, error));
-    TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
-    TRY(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
-    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
-    TRY(sparse_rows_used(&rows->columns, &used, error));
-    TRY(body_share_rows(body, used, error));
-done:
-    free(needed);
-    free(used);
-    return status;
-}
-
 /* Mark in wanted[] all rows of the cells that have a row in touched[]: the stiffness of own nodes needs them.
  */
 static void add_rows_of_cells(const struct body *body, const bool *touched, bool *wanted)
@@ -271,6 +249,43 @@ done:
     return status;
 }
 
+/* One process: copy all rows. */
+static enum status copy_all(const struct smoothed_cells_input *input,
+                            const struct field_averages_input *tables, struct body *body, struct error *error)
+{
+    RETURN_IF_ERROR(field_averages_copy(tables, NULL, 0, body->node_count, &body->rows.matrix, error));
+    if (input->copied != NULL) {
+        input->copied(input->context);
+    }
+    RETURN_IF_ERROR(body_share_rows(body, NULL, error));
+    return stretches_of(0, body->cells.averages.row_count, NULL, &body->share.values, error);
+}
+
+/* Several processes: copy the rows that this one's cells need, and the columns of its nodes. */
+static enum status copy_shares(const struct smoothed_cells_input *input, struct field_averages_input *tables,
+                               struct body *body, struct error *error)
+{
+    enum status status;
+    struct body_share *share = &body->share;
+    struct field_averages *averages = &body->cells.averages;
+    struct row_operator *rows = &body->rows;
+    bool *needed = NULL, *used = NULL;
+    if (input->face_reader != NULL) {
+        TRY(fetch_faces(input, body, &tables->tables[0], error));
+    }
+    TRY(body_share_values(body, &needed, error));
+    TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
+    TRY(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
+    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
+    TRY(sparse_rows_used(&rows->columns, &used, error));
+    TRY(body_share_rows(body, used, error));
+    memcpy(averages->given, tables->tables, sizeof averages->given);
+done:
+    free(needed);
+    free(used);
+    return status;
+}
+
 /* Build the rows of the faces and of the nodes. The corners of a face's row are those opposite the face; the
  * corners of a node's row are the vertices of cells at the node. */
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
@@ -312,27 +327,14 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
                                                      {body->node_count, body->node_order, input->node_ptr,
                                                       input->node_idx, input->node_phi, node_of_corner}}};
     TRY(field_averages_build(&tables, averages, error));
-    if (body->share.ranks != NULL) {
-        if (input->face_reader != NULL) {
-            TRY(fetch_faces(input, body, &tables.tables[0], error));
-        }
-        TRY(copy_shares(&tables, body, error));
-        memcpy(averages->given, tables.tables, sizeof averages->given);
-        averages->face_order = order;
-        order = NULL;
-        goto done;
+    if (body->share.ranks == NULL) {
+        TRY(copy_all(input, &tables, body, error));
+    } else {
+        TRY(copy_shares(input, &tables, body, error));
+        averages->face_order = array_take(&order);
     }
-    TRY(field_averages_copy(&tables, NULL, 0, body->node_count, &body->rows.matrix, error));
-    if (input->copied != NULL) {
-        input->copied(input->context);
-    }
-    TRY(body_share_rows(body, NULL, error));
-    TRY(stretches_of(0, averages->row_count, NULL, &body->share.values, error));
 done:
-    free(node_of_corner);
-    free(row_of_corner);
-    free(order);
-    free(x);
+    FREE_ALL(node_of_corner, row_of_corner, order, x);
     return status;
 }
 
@@ -355,10 +357,7 @@ done:
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
-    free(smoothed->interpolant);
-    free(smoothed->linear_gradient);
-    free(smoothed->group);
-    free(smoothed->group_end);
+    FREE_ALL(smoothed->interpolant, smoothed->linear_gradient, smoothed->group, smoothed->group_end);
     *smoothed = (struct smoothed_cells){0};
 }
 

@@ -65,7 +65,8 @@ double stress_smoothing_energy(const struct body *body, int64_t point, const dou
     return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * squares;
 }
 
-void cofactor_along(const double H[9], const double D[9], double along[9])
+/* d cof H along D, by which cof H : D changes with H: along : dH. */
+static void cofactor_along(const double H[9], const double D[9], double along[9])
 {
     double sum[9], both[9], of_H[9], of_D[9];
     for (int k = 0; k < 9; k++) {

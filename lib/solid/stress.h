@@ -11,9 +11,6 @@ void body_visit(const struct body *body, int64_t first, int64_t last, body_visit
 /* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
 
-/* d cof H along D, by which cof H : D changes with H: along : dH. */
-void cofactor_along(const double H[9], const double D[9], double along[9]);
-
 /* Weighted stresses P of a block of points. */
 void stress_points(const struct body *body, const struct block *block, block_rows P);
 

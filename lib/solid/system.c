@@ -4,6 +4,7 @@
 #include "approx/support.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/condition.h"
 #include "solid/contact_between.h"
 
@@ -26,11 +27,7 @@ void system_free(struct solid_system *system)
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
-    free(system->loads);
-    free(system->pressures);
-    free(system->curves);
-    free(system->lumped_mass);
-    free(system->factor);
+    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->penalties);
     constraint_rows_free_kept(&system->penalties_here);
@@ -42,19 +39,17 @@ void system_free(struct solid_system *system)
 
 enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
 {
-    enum status status;
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
                                             {"node", STATE_COUNTS, &system->stability.node, 1}};
-    TRY(state_visit(state, "loads", &factor, 1, error));
-    TRY(state_visit(state, "stability", stability, 2, error));
+    RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
+    RETURN_IF_ERROR(state_visit(state, "stability", stability, 2, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
-        TRY(contact_state(&system->contacts[c], prefix, state, error));
+        RETURN_IF_ERROR(contact_state(&system->contacts[c], prefix, state, error));
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Constraints found linearly dependent are dropped. The solution is accepted only if each of them holds to
@@ -69,13 +64,9 @@ static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
     int dim = system->dim;
     double least = INFINITY;
     for (int64_t s = 0; s < rows->count; s++) {
-        double cosine = 0.0, distance2 = 0.0;
-        for (int a = 0; a < dim; a++) {
-            double apart =
-                system->X[(int64_t)rows->node[s] * dim + a] - system->X[(int64_t)rows->node[r] * dim + a];
-            cosine += rows->direction[s * dim + a] * rows->direction[r * dim + a];
-            distance2 += apart * apart;
-        }
+        double cosine = vector_dot(dim, rows->direction + s * dim, rows->direction + r * dim);
+        double distance2 = vector_distance2(dim, system->X + (int64_t)rows->node[s] * dim,
+                                            system->X + (int64_t)rows->node[r] * dim);
         if (rows->section[s] != rows->section[r] && fabs(cosine) > 0.5 && distance2 < least) {
             least = distance2;
             nearest = s;

@@ -2,6 +2,7 @@
 #include "solid/system.h"
 
 #include "base/clock.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,9 +16,7 @@ void system_free_contacts(struct solid_system *system)
             boundary_averages_free(&system->contact_averages[i]);
         }
     }
-    free(system->contacts);
-    free(system->contact_points);
-    free(system->contact_averages);
+    FREE_ALL(system->contacts, system->contact_points, system->contact_averages);
     system->contacts = NULL;
     system->contact_points = system->contact_averages = NULL;
     system->contact_count = 0;

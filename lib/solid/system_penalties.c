@@ -10,19 +10,11 @@ enum status system_append_penalty(struct solid_system *system, const struct aver
                                   int32_t node, double stiffness, struct error *error)
 {
     struct constraint_rows *penalties = &system->penalties;
-    enum status status = constraint_rows_add(penalties, average->length, average->idx, average->phi,
-                                             direction, target, curve, section, node, error);
-    if (status != STATUS_OK) {
-        return status;
-    }
-    double *grown = array_grow(system->penalty_stiffness, penalties->count, sizeof *grown);
-    system->penalty_stiffness = grown != NULL ? grown : system->penalty_stiffness;
-    double *pull = array_grow(system->penalty_force, penalties->count, sizeof *pull);
-    system->penalty_force = pull != NULL ? pull : system->penalty_force;
-    if (grown == NULL || pull == NULL) {
-        return fail_memory(error, "springs");
-    }
-    grown[penalties->count - 1] = stiffness;
+    RETURN_IF_ERROR(constraint_rows_add(penalties, average->length, average->idx, average->phi, direction,
+                                        target, curve, section, node, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_stiffness, penalties->count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_force, penalties->count, error));
+    system->penalty_stiffness[penalties->count - 1] = stiffness;
     return STATUS_OK;
 }
 

@@ -79,7 +79,7 @@ static void sort_descending(double values[3])
 static void principal_values(const double A[9], double *row)
 {
     double V[9];
-    eigen_symmetric(A, row, V);
+    eigen_symmetric(3, A, row, V);
     sort_descending(row);
 }
 
