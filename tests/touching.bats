@@ -252,12 +252,32 @@ END
     { block quasi-static | sed 's/^nu = .*/nu = 0.49/'; printf '[material stiff]\nregion = stiff\nE = 6000\nnu = 0.2\n'
         printf '[displacement bottom]\nfacets = bottom\nnormal = 0\n[displacement left]\nfacets = left\nnormal = 0\n'
         printf '[contact pair]\nfacets = up\nagainst = low\n[pressure top]\nfacets = top\nvalue = 400\n[output]\nreactions = yes\n'; } > pair.scene
-    for load in 400 600; do
+    # At last the corner lies in a crease that it makes, of 40 degrees.
+    for load in 400 600 900 1000; do
         sed "s/^value = .*/value = $load/" pair.scene > press.scene
-        mtled press.scene pair.mts > u.dat
+        mtled -v press.scene pair.mts > u.dat 2> log
+        awk '$1 == "steps" { print; exit !($2 < 2000) }' log
         # What presses goes through: the load on the width that the top has by now.
         rows reactions u.dat | awk -v p="$load" 'NR == 1 { down = $2 } NR == 3 { through = $2 }
             { print } END { s = (through - down) / down; exit !(down > 0.1 * p && down < 0.103 * p && s * s < 1e-8) }'
+    done
+}
+
+@test "the lips of a ring meet corner on corner, and slip past each other" {
+    gmsh_body 2 ring << 'END'
+SetFactory("OpenCASCADE");
+Disk(1) = {0, 0, 0, 50}; Disk(2) = {0, 0, 0, 35}; Rectangle(3) = {20, -4, 0, 40, 8};
+BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2, 3}; Delete; };
+Physical Surface("body") = {4};
+Mesh.MeshSizeMin = 4; Mesh.MeshSizeMax = 4;
+END
+    nodes -u mm ring.msh 2> note | groups -u mm -f top=ball:0,50,12 -f bottom=ball:0,-50,12 | shapefn > ring.mts 2> note
+    for way in 0.008 0.012 0.016; do
+        { block quasi-static; printf '[displacement top]\nfacets = top\ncomponents = 0, -%s\n[displacement bottom]\nfacets = bottom\ncomponents = 0, %s\n' $way $way
+            printf '[contact self]\nfacets = *\nagainst = *\n[output]\nreactions = yes\nenergy = yes\n'; } > ring.scene
+        mtled -v ring.scene ring.mts > u.dat 2> log
+        awk '$1 == "steps" { print; exit !($2 < 3000) }' log
+        rows reactions u.dat | awk '{ print; f[NR] = $2 } END { s = f[1] / f[2] + 1; exit !(f[1] < -0.5 && s * s < 1e-8) }'
     done
 }
 

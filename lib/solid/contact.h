@@ -44,7 +44,8 @@ struct contact_view {
     double sought[3]; /* y_p, whose closest point of the surface is searched for, in its frame, m */
     bool searched;    /* else the surface is too far away for a pressure; by the search: */
     bool behind;      /* as in the state */
-    bool turned;      /* pressed by an edge or a vertex, or by another facet than at the last step */
+    bool turned;      /* pressed by an edge or a vertex, or by another facet of a rigid surface than at the
+                       * last step */
     double distance;  /* as checked_distance */
     double normal[3]; /* as checked_normal */
 };

@@ -78,7 +78,7 @@ static void place_facet(struct contact *contact, int64_t f, const double *u)
         average_take(&average, dim, u, view->x);
         for (int c = 0; c < dim; c++) {
             view->x[c] += contact->rest[p * dim + c];
-            view->sought[c] = view->x[c];
+            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
         }
     }
 }
@@ -101,19 +101,31 @@ static void facet_normal(const struct contact *contact, int64_t f, double normal
     }
 }
 
-/* The closest opposite place to point p of a facet with that normal. */
+/* How far y_p is from x_p, m. */
+static double held_way(const struct contact *contact, int64_t p)
+{
+    double sum = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        sum += contact->held[p * contact->dim + c] * contact->held[p * contact->dim + c];
+    }
+    return sum > 0.0 ? sqrt(sum) / contact->stiffness[p] : 0.0; /* at rest there is no stiffness yet */
+}
+
+/* The opposite place closest to y_p, of point p of a facet with that normal. */
 static struct rigid_contact find_place(const struct contact *contact, int64_t p, const double *normal,
                                        double reach, double *free_way)
 {
     const struct contact_between *between = contact->between;
-    struct seeker seeker = {.x = contact->view[p].x,
+    struct seeker seeker = {.x = contact->view[p].sought,
                             .rest = contact->points->position + p * contact->dim,
                             .rest_normal = contact->points->normal + p * contact->dim,
                             .normal = normal,
                             .width = contact_width(contact, p),
-                            .depth = contact_most_depth(contact, p),
+                            .depth = contact_most_depth(contact, p) + held_way(contact, p),
                             .part = between->part[p]};
-    return opposite_closest(&between->opposite, &seeker, reach, free_way);
+    struct rigid_contact closest = opposite_closest(&between->opposite, &seeker, reach, free_way);
+    *free_way -= held_way(contact, p);
+    return closest;
 }
 
 /* How far a search looks, m. */
@@ -140,10 +152,13 @@ static void search(struct contact *contact, int64_t p, const double *normal, boo
                                 p / between->per_facet, closest.facet);
     memcpy(here->weight, closest.weight, sizeof here->weight);
     memcpy(view->normal, closest.normal, sizeof view->normal);
-    view->distance = contact->gap[p] = closest.gap - between->begin[p];
-    if (!here->led) {
-        double held = contact->held[p * contact->dim];
-        contact->pressure[p] = fmax(0.0, held - contact->stiffness[p] * contact->gap[p]);
+    double gap = closest.gap - between->begin[p];
+    view->distance = gap - held_way(contact, p);
+    contact->pressure[p] = here->led ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
+    view->turned = contact->pressure[p] > 0.0 && closest.on_edge;
+    contact->gap[p] = gap;
+    for (int c = 0; c < contact->dim; c++) {
+        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
     }
 }
 
@@ -151,9 +166,8 @@ static void search(struct contact *contact, int64_t p, const double *normal, boo
 static bool may_touch(const struct contact *contact, int64_t p)
 {
     const struct contact_between *between = contact->between;
-    double held = contact->held[p * contact->dim] / contact->stiffness[p];
-    double free_way = fmin(contact->checked_distance[p] - held, between->checked_free[p]);
-    return !(between->way + between->moved < between->checked_way[p] + free_way);
+    double free_way = fmin(contact->checked_distance[p], between->checked_free[p]);
+    return !(between->way + between->moved < between->checked_way[p] + free_way - held_way(contact, p));
 }
 
 /* What is opposite the points of facet f is looked for where that is needed; else their gaps are those of the
@@ -204,6 +218,7 @@ void contact_between_measure(struct contact *contact, const double *u, bool all)
     for (int64_t p = 0; p < contact->count; p++) {
         struct contact_view *view = &contact->view[p];
         view->searched = all || may_touch(contact, p);
+        view->turned = false;
         any = any || view->searched;
         between->view[p].facet = -1;
         between->view[p].led = false;
@@ -290,7 +305,7 @@ static bool begin(struct contact *contact, bool far)
     int dim = contact->dim;
     bool any = false;
     for (int64_t p = 0; p < contact->count; p++) {
-        memcpy(contact->view[p].x, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
+        memcpy(contact->view[p].sought, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
     }
     for (int64_t p = 0; p < contact->count; p++) {
         double reach = far && !any ? INFINITY : reach_of(contact, p);

@@ -1,15 +1,16 @@
 /* What a contact has in place of a rigid surface when its points press on facets of the body itself
  * (opposite.h): two bodies, two lips, or a boundary that touches itself.
  *
- * The multiplier is a number, lambda_a, the first component of what contact.h keeps as a vector. With the
- * place q of the opposite facets that is closest to point p, in front or a little behind, the weights M_b of
- * their corners there, its normal n and the gap g_p,
+ * With the place q of the opposite facets that is closest to y_p = x_p - held_p / k_p, in front or a little
+ * behind, the weights M_b of their corners there, and its normal n and gap g_p,
  *
- *     t_p = max(0, sum_a N_a(p) lambda_a - k_p g_p) n
+ *     t_p = max(0, - k_p g_p) n
  *
- * acts on the point, and - t_p on the corners by M_b: minus the gradient of the energy, and as x_p - q is
- * along n, without a resultant and without a moment. Points are not raised from chords of a curved boundary.
- * Those that start behind a facet, as such chords may, count their gap from there.
+ * acts on the point, and - t_p on the corners by M_b: minus the gradient of the energy (contact.h), so
+ * without a resultant. The line of t_p goes through y_p and q, and has a moment as far as held_p is not along
+ * n. In a crease of the opposite facets t_p does not jump where the closest facet changes. Points are not
+ * raised from chords of a curved boundary. Those that start behind a facet, as such chords may, count their
+ * gap from there.
  *
  * Of a boundary against itself, one of two places that face each other has the points that press
  * (opposite_leads), so that nothing is held twice. The augmentation leaves out points that are led. */

@@ -71,7 +71,7 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
                            double *direction)
 {
     for (int c = 0; c < contact->dim; c++) {
-        double normal = contact->between == NULL ? contact->view[p].normal[c] : c == 0 ? 1.0 : 0.0;
+        double normal = contact->view[p].normal[c];
         sum[c] += weight * (contact->pressure[p] * normal - contact->held[p * contact->dim + c]);
         direction[c] += weight * normal;
     }

@@ -12,6 +12,7 @@ static const double round_off = 1e-12;
 /* See folds_find_beyond, are_deep. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
 static const double turned_share = 0.1; /* see is_turned_over */
+static const double held_share = 0.5;   /* see are_deep; contact_most_depth */
 
 static const double *at(const struct folds *folds, int32_t node)
 {
@@ -281,14 +282,15 @@ static bool is_touched(const struct folds *folds, int64_t f)
  * must one of them be moved to set them apart. Less is no more than what a field at the nodes is uncertain
  * by, as conditions and contacts hold averages: a node on a support is beyond its plane by round-off and
  * more. Where parts of the body press on each other the corner of one may sink into the chord of the other:
- * by a tenth of the larger facet, as cells may that are inverted. */
+ * the contact acts at points, a fifth of a facet away from its ends, and by less than half of the larger
+ * facet is still held. */
 static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 {
     double width[2];
     double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
     depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
     if (is_touched(folds, f) && is_touched(folds, g)) {
-        return depth > turned_share * fmax(width[0], width[1]);
+        return depth > held_share * fmax(width[0], width[1]);
     }
     return depth > beyond_facet * fmin(width[0], width[1]);
 }

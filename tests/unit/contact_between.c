@@ -105,8 +105,9 @@ static void overlap(const struct pair *pair, double depth, double rough, struct 
 
 static void hold(struct contact *contact, struct random *random)
 {
-    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-        contact->multiplier[a * contact->dim] = uniform(random, 0.0, 200.0);
+    int64_t dim = contact->dim;
+    for (int64_t i = 0; i < contact_nodes(contact)->count * dim; i++) { /* the points press along axis 0 */
+        contact->multiplier[i] = i % dim == 0 ? uniform(random, -200.0, 0.0) : uniform(random, -50.0, 50.0);
     }
     contact_spread_multipliers(contact);
 }
@@ -151,7 +152,7 @@ TEST(forces_balance)
         int dim = pair->sample->dim;
         int64_t size = 2 * pair->nodes * dim;
         double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force);
-        double sum[3] = {0.0}, moment[3] = {0.0}, total[3], scale = 0.0;
+        double sum[3] = {0.0}, moment[3] = {0.0}, levers[3] = {0.0}, total[3], scale = 0.0;
         hold(&pair->contact, &random);
         overlap(pair, 1e-3, 1e-3, &random, u);
         contact_force(&pair->contact, u, force);
@@ -168,11 +169,62 @@ TEST(forces_balance)
                 moment[a] += x[(a + 1) % 3] * f[(a + 2) % 3] - x[(a + 2) % 3] * f[(a + 1) % 3];
             }
         }
+        /* The line of a force goes through y_p, which is held_p / k_p from where the force acts. */
+        for (int64_t p = 0; p < pair->contact.count; p++) {
+            const double *held = pair->contact.held + p * dim;
+            double lever[3] = {0.0}, f[3] = {0.0};
+            contact_point_force(&pair->contact, p, f);
+            for (int a = 0; a < dim; a++) {
+                lever[a] = held[a] / pair->contact.stiffness[p];
+            }
+            for (int a = 0; a < 3; a++) {
+                levers[a] += lever[(a + 1) % 3] * f[(a + 2) % 3] - lever[(a + 2) % 3] * f[(a + 1) % 3];
+            }
+        }
         assert_true(total[0] < -1e-3 * scale); /* the points are on the left, and are pushed back */
         for (int a = 0; a < 3; a++) {
             NEAR_TO(sum[a], 0.0, 1e-14 * scale);
-            NEAR_TO(moment[a], 0.0, 1e-14 * sample_size * scale);
+            NEAR_TO(moment[a], levers[a], 1e-14 * sample_size * scale);
         }
+        pair_free(pair);
+    }
+}
+
+/* Points that are held, and pass the creases of a hollow side, into which they bulge: their tractions change
+ * by no more than the penalty times the way. */
+TEST(creases)
+{
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], false, &any);
+        struct contact *contact = &pair->contact;
+        int dim = pair->sample->dim;
+        int64_t size = 2 * pair->nodes * dim, turned = 0;
+        double *u = zeros(size, sizeof *u), *before = zeros(contact->count * 3, sizeof *before), way = 1e-5;
+        for (int64_t a = 0; a < pair->averages.count; a++) {
+            contact->multiplier[a * dim] = -150.0;
+        }
+        contact_spread_multipliers(contact);
+        for (int step = 0; step < 1000; step++) {
+            for (int64_t n = 0; n < 2 * pair->nodes; n++) {
+                double aside = pair->X[n * dim + 1] - 0.5 * sample_size;
+                u[n * dim] = -8.0 * aside * aside - (n < pair->nodes ? 0.0 : 1e-3);
+                u[n * dim + 1] = n < pair->nodes ? way * step : 0.0;
+            }
+            contact_measure(contact, u, true);
+            for (int64_t p = 0; p < contact->count; p++) {
+                double traction[3] = {0.0}, change2 = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    traction[a] = contact->pressure[p] * contact->normal[p * dim + a];
+                    change2 += pow(traction[a] - before[p * 3 + a], 2);
+                    before[p * 3 + a] = traction[a];
+                }
+                bool on = contact->gap[p] < INFINITY && contact->pressure[p] > 0.0;
+                assert_true(step == 0 || !on || sqrt(change2) <= contact->stiffness[p] * way * 1.001);
+                turned += contact->view[p].turned;
+            }
+        }
+        assert_true(turned > 10);
         pair_free(pair);
     }
 }
