@@ -1,5 +1,5 @@
-/* One section of a scene: its values, read as its keys are declared, and what has to be said of them. Inside
- * of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
+/* One section of a scene: its values, read as its keys are declared, and what has to be said of them.
+ * Inside of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
 #ifndef IO_SCENE_VALUE_H
 #define IO_SCENE_VALUE_H
 
