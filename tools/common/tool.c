@@ -291,7 +291,7 @@ void tool_write(const struct tool *tool, struct stream *stream, bool text)
 static enum status write_stdout(const struct stream *stream, bool text, struct error *error)
 {
     if (!text && isatty(STDOUT_FILENO)) {
-        return fail(error, STATUS_INPUT, "no binary to a terminal: ask for text with -t, or redirect it");
+        return fail(error, STATUS_INPUT, "no binary to a terminal: redirect it, name a file by -o, or ask for text");
     }
     RETURN_IF_ERROR(fail_in(error, stream_write(stream, STDOUT_FILENO, text, error), "standard output"));
     stdout_closed = close(STDOUT_FILENO) == 0;
