@@ -53,7 +53,8 @@ static enum status read_section(const struct place *place, struct scene *scene)
     for (const struct scene_key *key = kind->keys; key->name != NULL; key++) {
         RETURN_IF_ERROR(place_read(place, key, scene->dim, values));
     }
-    return kind->check != NULL ? kind->check(place, scene) : STATUS_OK;
+    RETURN_IF_ERROR(kind->check != NULL ? kind->check(place, scene) : STATUS_OK);
+    return place_check_units(place, kind->keys);
 }
 
 /* [scene] first: the others depend on its dimension and analysis. */

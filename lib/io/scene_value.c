@@ -253,10 +253,14 @@ static enum status read_file(const struct place *place, const char *text, const 
     return STATUS_OK;
 }
 
-static enum status read_table(const struct place *place, const char *key, const char *text, const char **path)
+enum status place_check_units(const struct place *place, const struct scene_key *keys)
 {
-    return place_has(place, "unit") ? read_file(place, text, path)
-                                    : place_fail(place, key, "needs unit = m, cm, mm or um of its lengths");
+    for (const struct scene_key *key = keys; key->name != NULL; key++) {
+        if (key->type == VALUE_TABLE && place_has(place, key->name) && !place_has(place, "unit")) {
+            return place_fail(place, key->name, "needs unit = m, cm, mm or um of its lengths");
+        }
+    }
+    return STATUS_OK;
 }
 
 /* The unit of a file, which the section has to name by one of these keys. */
@@ -311,7 +315,7 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
     case VALUE_NAMES:
         return read_names(place, key->name, text, value);
     case VALUE_TABLE:
-        return read_table(place, key->name, text, value);
+        return read_file(place, text, value);
     case VALUE_UNIT:
         return read_unit(place, key->name, text, value);
     case VALUE_CURVE:

@@ -49,6 +49,9 @@ struct scene_key {
 MUST_CHECK enum status place_read(const struct place *place, const struct scene_key *key, int dim,
                                   void *item);
 
+/* An error if a file of lengths is named without their unit. */
+MUST_CHECK enum status place_check_units(const struct place *place, const struct scene_key *keys);
+
 /* fail() with STATUS_INPUT at a key's line, or with key NULL at the section's. */
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

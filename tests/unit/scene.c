@@ -307,7 +307,8 @@ TEST(material_keys)
     fails(HEAD BODY "model = ogden\nalpha = 0\n", 10, "must not be 0");
     fails(HEAD BODY "ratio = 1\n", 9, "not allowed: it belongs to model mooney-rivlin");
     fails(HEAD BODY "model = mooney-rivlin\nratio = -1\n", 10, "-1 is not at least 0");
-    fails(HEAD BODY "table = t\n", 9, "table: needs unit");
+    fails(HEAD BODY "table = t\n", 6, "E: not allowed: the table gives E and nu");
+    fails(HEAD "[material m]\nregion = r\nrho = 1\ntable = t\n", 7, "table: needs unit");
     fails(HEAD BODY "unit = mm\n", 9, "unit: not allowed");
     fails(HEAD BODY "unit = mm\ntable = t\n", 6, "E: not allowed: the table gives E and nu");
     fails(HEAD BODY "[material n]\nregion = q,r\nE = 1\nnu = 0\nrho = 1\n", 9,
