@@ -112,7 +112,6 @@ bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
 
 void relaxation_note_new_mass(struct relaxation *r)
 {
-    r->mass_changed = true;
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
 }

@@ -46,20 +46,21 @@ static double least_of_window(const struct relaxation *r)
 
 void relaxation_estimate(struct relaxation *r)
 {
-    double *du = r->scratch, *da = r->scratch + r->size;
+    double *du = r->scratch, along = 0.0; /* the change of the residual along du */
     for (int64_t i = 0; i < r->size; i++) {
         du[i] = r->before[i] - r->last_u[i];
-        da[i] = r->last_acceleration[i] - r->acceleration[i];
     }
     r->moved = largest_of_nodes(r, du);
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
-    memcpy(r->last_acceleration, r->acceleration, (size_t)r->size * sizeof *r->acceleration);
     constraint_project(&r->preconditioner.constraint, NULL, du);
-    constraint_project(&r->preconditioner.constraint, NULL, da);
+    for (int64_t i = 0; i < r->size; i++) {
+        along += du[i] * (r->last_residual[i] - r->residual[i]);
+    }
+    memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
     double bottom = preconditioner_product(&r->preconditioner, du, du);
-    double quotient = bottom > 0.0 ? preconditioner_product(&r->preconditioner, du, da) / bottom : 0.0;
+    double quotient = bottom > 0.0 ? along / bottom : 0.0;
     bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
-    if (quotient > 0.0 && r->checks > 0 && !r->mass_changed && !augmented) {
+    if (quotient > 0.0 && r->checks > 0 && !augmented) {
         quotient = fmin(quotient, r->frequency * r->frequency);
         r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
         r->low2 = fmin(r->low2, r->spectrum2);
@@ -81,7 +82,6 @@ void relaxation_estimate(struct relaxation *r)
     bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
     r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least2);
-    r->mass_changed = false;
 }
 
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,

@@ -32,7 +32,7 @@ struct relaxation {
     double *factor_change;     /* of the load curves in this step */
     double *mode;
     double *scratch;                    /* 4 * size */
-    double *last_u, *last_acceleration; /* at the last check */
+    double *last_u, *last_residual; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
     double low2;                          /* current estimate of the lowest frequency, squared */
@@ -49,7 +49,6 @@ struct relaxation {
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
     int64_t back_step;                        /* the last step that went back to a kept state */
-    bool mass_changed;            /* since the last check: increments of the acceleration mean nothing */
     int64_t augmented_step;       /* when multipliers took over last */
     int64_t augmentations;        /* of contacts at the load that is held */
     int64_t steady_augmentations; /* of pressures, all under the load that is held */

@@ -16,7 +16,7 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&r->mode, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->scratch, 4 * r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->last_u, r->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&r->last_acceleration, r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->last_residual, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->acceleration, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->newer.u, 2 * r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->older.u, 2 * r->size, error));
@@ -28,7 +28,7 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
 void relaxation_release(struct relaxation *r)
 {
     FREE_ALL(r->velocity, r->residual, r->before, r->factor_change, r->mode, r->scratch, r->last_u,
-             r->last_acceleration, r->acceleration, r->newer.u, r->older.u, r->check_now.u,
+             r->last_residual, r->acceleration, r->newer.u, r->older.u, r->check_now.u,
              r->check_before.u);
     preconditioner_free(&r->preconditioner);
 }
@@ -43,7 +43,7 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"velocity", STATE_NUMBERS, r->velocity, r->size},
         {"mode", STATE_NUMBERS, r->mode, r->size},
         {"last_u", STATE_NUMBERS, r->last_u, r->size},
-        {"last_acceleration", STATE_NUMBERS, r->last_acceleration, r->size},
+        {"last_residual", STATE_NUMBERS, r->last_residual, r->size},
         {"newer.u", STATE_NUMBERS, r->newer.u, 2 * r->size},
         {"newer.load", STATE_NUMBERS, &r->newer.load, 1},
         {"older.u", STATE_NUMBERS, r->older.u, 2 * r->size},
@@ -73,7 +73,6 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"best_step", STATE_COUNTS, &r->best_step, 1},
         {"largest_move", STATE_NUMBERS, &r->largest_move, 1},
         {"checks", STATE_COUNTS, &r->checks, 1},
-        {"mass_changed", STATE_FLAGS, &r->mass_changed, 1},
         {"largest_displacement", STATE_NUMBERS, &r->largest_displacement, 1},
         {"ramp_steps", STATE_COUNTS, &report->ramp_steps, 1},
         {"load", STATE_NUMBERS, &r->load, 1},
