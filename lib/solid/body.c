@@ -223,8 +223,7 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         TRY(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
-    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads,
-                            VECTOR_STRIDE(body->dim), error));
+    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
     TRY(body_share_nodes(body, error));
     TRY(body_make_bounds(body, error));
 done:

@@ -122,7 +122,7 @@ static void add_point(const struct body *body, int64_t q, const double F[9], dou
         work->gradient[i] = matrix->value[at + i % dim * count + i / dim];
     }
     for (int64_t i = 0; i < count; i++) {
-        work->node[i] = row_operator_column(matrix->idx[at + i]);
+        work->node[i] = matrix->idx[at + i];
     }
     add_functions(body, &bound, count, work->node, work->gradient, to->of_node);
 }

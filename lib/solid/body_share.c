@@ -340,7 +340,7 @@ enum status body_share_nodes(struct body *body, struct error *error)
     bool *wanted = NULL;
     TRY(NEW_ARRAY(&wanted, body->node_count, error));
     for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
-        wanted[row_operator_column(matrix->idx[i])] = true;
+        wanted[matrix->idx[i]] = true;
     }
     TRY(stretches_of(0, body->node_count, wanted, &body->share.placed, error));
 done:

@@ -95,8 +95,7 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
         }
         for (int r = 0; r < count; r++) {
             for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-                add_function(row_operator_column(matrix->idx[i]), dim, matrix->value[i], gradient + r * dim,
-                             functions);
+                add_function(matrix->idx[i], dim, matrix->value[i], gradient + r * dim, functions);
             }
         }
     }

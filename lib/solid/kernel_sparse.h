@@ -5,8 +5,8 @@
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
 
-/* y_r = sum_j A_rj x_j of vectors VECTOR_STRIDE(dim) apart, in four chains, as one would be bound by the
- * latency of the additions; and the sums of the forces of corners. */
+/* y_r = sum_j A_rj x_j of vectors VECTOR_STRIDE(dim) apart, in four partial sums, as one would be bound by
+ * the latency of the additions; the transpose; and the sums of the forces of corners. */
 #define ROW_KERNELS(dim, vector)                                                                             \
     KERNEL_INLINE void apply_rows_##dim(const struct sparse *matrix, int64_t begin, int64_t end,             \
                                         const double *x, double *restrict y)                                 \
@@ -16,12 +16,12 @@
             int64_t i = matrix->ptr[r], last = matrix->ptr[r + 1];                                           \
             for (; i + 4 <= last; i += 4) {                                                                  \
                 for (int k = 0; k < 4; k++) {                                                                \
-                    LOAD(at, x + (int64_t)row_operator_column(matrix->idx[i + k]) * VECTOR_STRIDE(dim));     \
+                    LOAD(at, x + (int64_t)matrix->idx[i + k] * VECTOR_STRIDE(dim));                          \
                     sum[k] += matrix->value[i + k] * at;                                                     \
                 }                                                                                            \
             }                                                                                                \
             for (; i < last; i++) {                                                                          \
-                LOAD(at, x + (int64_t)row_operator_column(matrix->idx[i]) * VECTOR_STRIDE(dim));             \
+                LOAD(at, x + (int64_t)matrix->idx[i] * VECTOR_STRIDE(dim));                                  \
                 sum[0] += matrix->value[i] * at;                                                             \
             }                                                                                                \
             sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);                                                  \
@@ -33,10 +33,9 @@
                                               double *restrict y)                                            \
     {                                                                                                        \
         const struct sparse *whole = rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;           \
-        double *sums = rows->sum;                                                                            \
-        int64_t each = ROW_CHAINS * VECTOR_STRIDE(dim), cut = 0;                                             \
-        memset(sums + stripe->begin * each, 0,                                                               \
-               (size_t)((stripe->end - stripe->begin) * each) * sizeof *sums);                               \
+        int64_t cut = 0;                                                                                     \
+        memset(y + stripe->begin * VECTOR_STRIDE(dim), 0,                                                    \
+               (size_t)((stripe->end - stripe->begin) * VECTOR_STRIDE(dim)) * sizeof *y);                    \
         for (int64_t k = 0; k < stripe->row_count; k++) {                                                    \
             bool is_cut = stripe->row[k] < 0;                                                                \
             const struct sparse *table = is_cut ? &stripe->cut : whole;                                      \
@@ -46,17 +45,11 @@
             vector value, sum;                                                                               \
             LOAD(value, x + r * VECTOR_STRIDE(dim));                                                         \
             for (int64_t i = table->ptr[at], last = table->ptr[at + 1]; i < last; i++) {                     \
-                double *to = sums + (int64_t)idx[i] * VECTOR_STRIDE(dim);                                    \
+                double *to = y + (int64_t)idx[i] * VECTOR_STRIDE(dim);                                       \
                 LOAD(sum, to);                                                                               \
                 sum += of[i] * value;                                                                        \
                 STORE(to, sum);                                                                              \
             }                                                                                                \
-        }                                                                                                    \
-        for (int64_t n = stripe->begin; n < stripe->end; n++) {                                              \
-            vector sum[ROW_CHAINS];                                                                          \
-            LOAD(sum, sums + n * each);                                                                      \
-            sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);                                                  \
-            STORE(y + n * VECTOR_STRIDE(dim), sum[0]);                                                       \
         }                                                                                                    \
     }                                                                                                        \
     KERNEL_INLINE void sum_corners_##dim(struct field_averages *averages, int64_t begin, int64_t end)        \

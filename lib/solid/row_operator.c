@@ -11,22 +11,6 @@ static const struct sparse *transposed_table(const struct row_operator *rows)
     return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
 }
 
-/* Number the entries of each column, whose count is known, and put their chains into idx. */
-static enum status set_chains(struct sparse *table, const int32_t *count, struct error *error)
-{
-    enum status status;
-    int32_t *seen = NULL;
-    TRY(NEW_ARRAY(&seen, table->column_count, error));
-    for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
-        int32_t column = table->idx[i], number = seen[column]++;
-        bool in_turn = number < count[column] / ROW_CHAINS * ROW_CHAINS;
-        table->idx[i] = ROW_CHAINS * column + (in_turn ? number % ROW_CHAINS : 0);
-    }
-done:
-    free(seen);
-    return status;
-}
-
 /* Stripes of about as many entries each. */
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
@@ -54,7 +38,7 @@ static void list_row(const struct sparse *table, int64_t r, int32_t low, int32_t
     bool whole = low >= stripe->begin && high < stripe->end;
     int64_t found = 0, entries = cut->ptr != NULL ? cut->ptr[cut->row_count] : 0;
     for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && !whole; i++) {
-        int32_t column = row_operator_column(table->idx[i]);
+        int32_t column = table->idx[i];
         if (column < stripe->begin || column >= stripe->end) {
             continue;
         }
@@ -103,29 +87,23 @@ static enum status make_stripe(const struct sparse *table, const int32_t *range,
 }
 
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
-                                int64_t stride, struct error *error)
+                                struct error *error)
 {
     enum status status;
-    struct sparse *matrix = &rows->matrix, *columns = &rows->columns;
     const struct sparse *table = transposed_table(rows);
     int32_t *count = NULL, *range = NULL;
-    if (matrix->column_count > INT32_MAX / ROW_CHAINS) {
-        return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)matrix->column_count);
+    if (table->column_count > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
     }
-    TRY(NEW_ARRAY(&count, matrix->column_count, error));
+    TRY(NEW_ARRAY(&count, table->column_count, error));
     for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
         count[table->idx[i]]++;
     }
     TRY(cut_columns(rows, count, begin, end, threads, error));
-    TRY(set_chains(matrix, count, error));
-    if (columns->row_count > 0) {
-        TRY(set_chains(columns, count, error));
-    }
     TRY(row_operator_ranges(rows, &range, error));
     for (int s = 0; s < threads; s++) {
         TRY(make_stripe(table, range, &rows->stripes[s], error));
     }
-    TRY(NEW_ARRAY_UNTOUCHED(&rows->sum, ROW_CHAINS * stride * matrix->column_count, error));
 done:
     free(count);
     free(range);
@@ -139,7 +117,6 @@ void row_operator_free(struct row_operator *rows)
         sparse_free(&rows->stripes[s].cut);
     }
     free(rows->stripes);
-    free(rows->sum);
     sparse_free(&rows->matrix);
     sparse_free(&rows->columns);
     *rows = (struct row_operator){0};
@@ -152,7 +129,7 @@ enum status row_operator_ranges(const struct row_operator *rows, int32_t **range
     for (int64_t r = 0; r < table->row_count && status == STATUS_OK; r++) {
         int32_t low = INT32_MAX, high = -1;
         for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
-            int32_t column = row_operator_column(table->idx[i]);
+            int32_t column = table->idx[i];
             low = column < low ? column : low;
             high = column > high ? column : high;
         }
@@ -169,7 +146,7 @@ static void visit_columns(const struct sparse *table, const int32_t *range, cons
     for (int64_t r = 0; r < table->row_count && count > 0; r++) {
         bool has = range[2 * r] <= column[count - 1] && range[2 * r + 1] >= column[0];
         for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && has; i++) {
-            int32_t of = row_operator_column(table->idx[i]), at = slot[of];
+            int32_t of = table->idx[i], at = slot[of];
             if (at < 0 || at >= count || column[at] != of) {
                 continue;
             }

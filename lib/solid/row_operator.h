@@ -1,13 +1,10 @@
 /* The sparse operator B of the force loop, equation (12) of lib/README.md, and its transpose, from one table
- * by rows: y = B x gathers, and y = B^T x adds each entry to sums of its column. A column is summed by one
- * thread, in the order of the rows, in four chains that take its entries in turn (those behind the last four:
- * the first chain), so that any number of threads and of processes gives the same bits. */
+ * by rows: y = B x gathers, and y = B^T x adds each entry to the sum of its column. A column is summed by one
+ * thread, in the order of the rows, so that any number of threads and of processes gives the same bits. */
 #ifndef SOLID_ROW_OPERATOR_H
 #define SOLID_ROW_OPERATOR_H
 
 #include "base/sparse.h"
-
-#define ROW_CHAINS 4
 
 /* The columns that one thread sums. */
 struct row_stripe {
@@ -18,25 +15,18 @@ struct row_stripe {
 };
 
 struct row_operator {
-    struct sparse matrix;  /* B; once row_operator_finish has been called, idx: ROW_CHAINS * column + chain */
-    struct sparse columns; /* of several processes: entries in columns of own nodes, likewise. Without rows:
-                              the matrix has them */
+    struct sparse matrix;  /* B */
+    struct sparse columns; /* of several processes: its entries in columns of own nodes. Without rows: the
+                              matrix has them */
     int stripe_count;
     struct row_stripe *stripes;
-    double *sum; /* scratch: ROW_CHAINS vectors for each column */
 };
 
 /* Cut the columns from `begin` to before `end`, whose entries matrix or columns have, into stripes for so
- * many threads; vectors are `stride` apart. STATUS_INPUT with 2^29 columns or more. */
+ * many threads. STATUS_INPUT with 2^31 columns or more. */
 MUST_CHECK enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
-                                           int64_t stride, struct error *error);
+                                           struct error *error);
 void row_operator_free(struct row_operator *rows);
-
-/* Column of an entry. */
-static inline int32_t row_operator_column(int32_t entry)
-{
-    return (int32_t)((uint32_t)entry / ROW_CHAINS);
-}
 
 /* Some columns of B, ascending, as rows. range[2 * rows], of row_operator_ranges; slot[columns]: scratch,
  * which receives the row of each of these. */

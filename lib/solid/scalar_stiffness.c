@@ -255,7 +255,7 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
         struct average field = field_at(stiffness, row->touched[t], &place);
         double force = row->on_field[row->touched[t]];
         for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = place != NULL ? place[field.idx[k]] : row_operator_column(field.idx[k]);
+            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
             add_to_node(node, force * field.phi[k], i, row);
         }
     }
