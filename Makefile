@@ -29,6 +29,9 @@ PREFIX ?= /usr/local
 CC = gcc
 # SAN=1: sanitizers; FUZZ=1: for libFuzzer (make fuzz); COVERAGE=1: for gcov (make coverage).
 BUILD := build$(if $(SAN),-san)$(if $(FUZZ),-fuzz)$(if $(COVERAGE),-coverage)$(if $(filter clang%,$(CC)),-clang)
+ifeq ($(strip $(BUILD)),)
+$(error BUILD is empty: name a folder, else what is built would lie in /bin)
+endif
 OUT := build/out
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla

@@ -3,6 +3,10 @@
 
 bats_require_minimum_version 1.5.0
 
+# The programs of the build, also where bats is called by hand.
+: "${BUILD:=$(realpath "$BATS_TEST_DIRNAME/../build")}"
+export BUILD PATH="$BUILD/bin:$PATH"
+
 # A test begins in a folder of its own; $top is the repository; a pipe fails when any of its stages does.
 enter() {
     cd "$BATS_TEST_TMPDIR" || return
