@@ -2,6 +2,7 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -104,11 +105,8 @@ static void facet_normal(const struct contact *contact, int64_t f, double normal
 /* How far y_p is from x_p, m. */
 static double held_way(const struct contact *contact, int64_t p)
 {
-    double sum = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        sum += contact->held[p * contact->dim + c] * contact->held[p * contact->dim + c];
-    }
-    return sum > 0.0 ? sqrt(sum) / contact->stiffness[p] : 0.0; /* at rest there is no stiffness yet */
+    double held = vector_length(contact->dim, contact->held + p * contact->dim);
+    return held > 0.0 ? held / contact->stiffness[p] : 0.0; /* at rest there is no stiffness yet */
 }
 
 /* The opposite place closest to y_p, of point p of a facet with that normal. */
