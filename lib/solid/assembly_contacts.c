@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "solid/contact_between.h"
+#include "solid/contact_rest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,45 +54,28 @@ static enum status add_motion(const struct contact_condition *condition, const s
     return STATUS_OK;
 }
 
-/* Whether the facets around each node are flat, to 1e-3 in the normals. Else they are chords of a curved
- * boundary. */
-static bool is_flat(const struct boundary_averages *points, const struct boundary_averages *averages, int dim)
-{
-    for (int64_t a = 0; a < averages->count; a++) {
-        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-            double away2 = 0.0;
-            for (int c = 0; c < dim; c++) {
-                double d =
-                    averages->normal[a * dim + c] - points->normal[averages->sample_point[s] * dim + c];
-                away2 += d * d;
-            }
-            if (away2 > 1e-6) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-/* The points that the contact acts on. On flat facets a relaxation uses the quadrature points, with
- * multipliers at the nodes. On chords of a curved boundary these lie below it, each by another amount: there
- * boundary averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each
- * point costs time in every step. `between` facets of the body the points are always the former. */
+/* The points that the contact acts on. In a relaxation they are quadrature points with multipliers at the nodes.
+ * Between the nodes of a boundary that its facets do not resolve nobody knows where it is: there boundary
+ * averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each point costs time
+ * in every step. `between` facets of the body the points are always the former. */
 static enum status build_points(const struct assembly *input, const struct facet_set *set, bool between,
                                 struct boundary_averages *points, struct boundary_averages *averages,
                                 struct error *error)
 {
     const struct face_table *table = &input->face_table;
+    bool resolved = true;
     RETURN_IF_ERROR(boundary_averages_build(table, set, averages, error));
     RETURN_IF_ERROR(boundary_points_build(table, set, points, error));
-    if (!between && (input->in_time || !is_flat(points, averages, table->dim))) {
+    for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
+        points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
+    }
+    if (!between) {
+        RETURN_IF_ERROR(contact_rest_resolved(table->dim, points, averages, table->x, &resolved, error));
+    }
+    if (!between && (input->in_time || !resolved)) {
         boundary_averages_free(points);
         *points = *averages;
         *averages = (struct boundary_averages){0};
-        return STATUS_OK;
-    }
-    for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
-        points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
     }
     return STATUS_OK;
 }

@@ -2,6 +2,7 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "solid/contact_rest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -75,43 +76,6 @@ static enum status check_side(const struct contact *contact, struct error *error
                 contact->points->node[worst]);
 }
 
-/* Add to x `share` of the way from `from` to the plane through a node with that normal. */
-static void raise(int dim, double share, const double *from, const double *node, const double *normal,
-                  double *x)
-{
-    double height = 0.0;
-    for (int c = 0; c < dim; c++) {
-        height += (node[c] - from[c]) * normal[c];
-    }
-    for (int c = 0; c < dim; c++) {
-        x[c] += share * height * normal[c];
-    }
-}
-
-/* Positions of the points at rest. The facets are chords of a curved boundary. A quadratic boundary with the
- * normals n_a at the nodes lies above point p by sum_a N_a(p) (x_a - x_p) . n_a / 2. A boundary average lies
- * below its node and is raised to it. Both offsets are zero on flat facets. */
-static void place_at_rest(struct contact *contact, const double *X)
-{
-    int dim = contact->dim;
-    const struct boundary_averages *points = contact->points, *averages = contact->averages;
-    for (int64_t p = 0; p < contact->count; p++) {
-        double *x = contact->rest + p * dim;
-        take_mean(contact, p, X, x);
-        if (averages == NULL) {
-            raise(dim, 1.0, x, X + (int64_t)points->node[p] * dim, points->normal + p * dim, x);
-        }
-    }
-    for (int64_t a = 0; averages != NULL && a < averages->count; a++) {
-        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
-            int64_t p = averages->sample_point[s];
-            double weight = averages->sample_share[s] * averages->area[a] / points->area[p];
-            raise(dim, 0.5 * weight, points->position + p * dim, X + (int64_t)averages->node[a] * dim,
-                  averages->normal + a * dim, contact->rest + p * dim);
-        }
-    }
-}
-
 enum status contact_allocate(struct contact *contact, double stiffness, struct error *error)
 {
     enum status status;
@@ -148,7 +112,7 @@ enum status contact_build(const struct boundary_averages *points, const struct b
         .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
     *surface = (struct rigid_surface){0};
     TRY(contact_allocate(contact, stiffness, error));
-    place_at_rest(contact, X);
+    TRY(contact_rest_place(contact, X, error));
     TRY(check_side(contact, error));
 done:
     if (status != STATUS_OK) {

@@ -70,8 +70,12 @@ struct average contact_bond(const struct contact *contact, int64_t b, double *st
 
 static void add_bond(const struct average *average, double stiffness, double *mass)
 {
+    double sum = 0.0;
     for (int64_t i = 0; i < average->length; i++) {
-        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
+        sum += fabs(average->phi[i]);
+    }
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * fabs(average->phi[i]) * sum;
     }
 }
 

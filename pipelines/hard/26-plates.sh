@@ -107,6 +107,75 @@ done
 plates=no press 2 fine alone 0.035 2> "$work/said"
 row 26 'block, 70 %, without plates: told that it folds' "$(grep -c 'the body folds from 0\.[0-9]* of the load on' "$work/said")" 1 none
 
+# A disc and a ball of the same size, which nothing bonds: a quarter of the disc, an eighth of the ball, between the
+# same plates. Pressures reach ten shear moduli.
+squeeze() { # DIM MESH OUT PUSH
+    local down symmetry='normal = 0' side=right
+    down="0, $(calc "-($4)")"
+    [ "$1" -eq 2 ] || down="0, $down" side=front
+    dim=$1 scene "$work/a.scene" <<END
+[displacement symmetry]
+facets = xmin
+$symmetry
+[displacement middle]
+facets = middle
+$symmetry
+$([ "$1" -eq 2 ] || printf '[displacement other]\nfacets = ymin\n%s\n' "$symmetry")
+[contact rigid]
+facets = round
+rigid = plate$1.tsv
+unit = m
+side = $side
+translation = $down
+curve = smooth
+[output]
+reactions = yes
+energy = yes
+[solver]
+tolerance = 1e-5
+END
+    relax "$work/a.scene" "$work/$2.mts" "$work/$3.dat"
+}
+
+# round DIM MESH SIZE
+round() {
+    { printf 'SetFactory("OpenCASCADE"); Mesh.MeshSizeMin = %s; Mesh.MeshSizeMax = %s;\n' "$3" "$3"
+        if [ "$1" -eq 2 ]; then
+            printf 'Disk(1) = {0, 0, 0, .05}; Rectangle(2) = {0, 0, 0, 1, 1}; BooleanIntersection(3) = { Surface{1}; Delete; }{ Surface{2}; Delete; };
+b[] = Boundary{ Surface{3}; }; x[] = Curve In BoundingBox{-1e-6, -1, -1, 1e-6, 1, 1}; z[] = Curve In BoundingBox{-1, -1e-6, -1, 1, 1e-6, 1};
+Physical Surface("body") = {3}; Physical Curve("xmin") = {x[]}; Physical Curve("middle") = {z[]}; b[] -= x[]; b[] -= z[]; Physical Curve("round") = {b[]};\n'
+        else
+            printf 'Sphere(1) = {0, 0, 0, .05}; Box(2) = {0, 0, 0, 1, 1, 1}; BooleanIntersection(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+b[] = Boundary{ Volume{3}; }; x[] = Surface In BoundingBox{-1e-6, -1, -1, 1e-6, 1, 1}; y[] = Surface In BoundingBox{-1, -1e-6, -1, 1, 1e-6, 1};
+z[] = Surface In BoundingBox{-1, -1, -1e-6, 1, 1, 1e-6}; b[] -= x[]; b[] -= y[]; b[] -= z[]; Physical Volume("body") = {3};
+Physical Surface("xmin") = {x[]}; Physical Surface("ymin") = {y[]}; Physical Surface("middle") = {z[]}; Physical Surface("round") = {b[]};\n'
+        fi; } > "$work/round.geo"
+    gmsh -"$1" -v 1 -nt 1 "$work/round.geo" -o "$work/body.msh" > /dev/null
+    nodes -u m "$work/body.msh" | shapefn -o "$work/$2.mts" 2> /dev/null
+}
+squeezing2() {
+    squeeze 2 round2 push "$1"
+    calc "-($(reaction "$work/push.dat" rigid 2))"
+}
+squeezing3() {
+    squeeze 3 round3 push "$1"
+    calc "-($(reaction "$work/push.dat" rigid 3))"
+}
+for body in 'disc 2 0.007 0.0045' 'ball 3 0.011 0.008'; do
+    read -r name dim3 h half <<< "$body"
+    round "$dim3" "round$dim3" "$h"
+    round "$dim3" "finer$dim3" "$half"
+    for part in '50 0.025' '70 0.035'; do
+        read -r percent push <<< "$part"
+        squeeze "$dim3" "round$dim3" round "$push"
+        squeeze "$dim3" "finer$dim3" finer "$push"
+        row 26 "$name, $percent %, plates: work / stored energy ($(count "round$dim3") nodes)" \
+            "$(calc "$(work "squeezing$dim3" "$push") / $(stored "$work/round.dat")")" 1 work
+        row 26 "$name, $percent %, plates: force, N, $(count "finer$dim3") nodes against $(count "round$dim3")" \
+            "$(reaction "$work/finer.dat" rigid "$dim3")" "$(reaction "$work/round.dat" rigid "$dim3")" plates-refined
+    done
+done
+
 # A plate over a block that is held at its bottom, tilted by 5 degrees as it comes down by 15 %: the force is along its normal.
 cloud -d 2 -k regular -n 13 --box 0,0.1,0,0.1 | shapefn -o "$work/tilted.mts" 2> /dev/null
 printf -- '-1 0.1\n1 0.1\n' > "$work/lid.tsv"
