@@ -220,3 +220,24 @@ buckled() {
     [ "$(grep 'folds' note)" = "$(cat said)" ]
     cmp <(bare whole.dat) <(bare u.dat)
 }
+
+@test "a disc that a plate presses to 70 %: the force is the same on two meshes" {
+    printf -- '-1 0.05\n1 0.05\n' > plate.tsv
+    { block quasi-static && printf '[displacement x]\nfacets = xmin\nnormal = 0\n[displacement y]\nfacets = middle\nnormal = 0\n' &&
+        printf '[contact plate]\nfacets = round\nrigid = plate.tsv\nunit = m\nside = right\ntranslation = 0, -0.035\ncurve = smooth\n[output]\nreactions = yes\n' ; } |
+        sed 's/^nu = .*/nu = 0.49/' > disc.scene
+    for size in 7 4.5; do
+        cat > disc.geo << END
+Mesh.MeshSizeMax = $size;
+Point(1) = {0, 0, 0}; Point(2) = {50, 0, 0}; Point(3) = {0, 50, 0}; Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1};
+Curve Loop(1) = {1:3}; Plane Surface(1) = {1}; Physical Surface("body") = {1};
+Physical Curve("middle") = {1}; Physical Curve("round") = {2}; Physical Curve("xmin") = {3};
+END
+        gmsh -v 1 -2 disc.geo -o disc.msh
+        nodes -u mm disc.msh | shapefn > disc.mts 2> note
+        mtled disc.scene disc.mts > u.dat
+        reaction 3 2 >> forces
+    done
+    cat forces
+    awk '{ f[NR] = $1 } END { d = f[1] / f[2] - 1; exit !(NR == 2 && f[1] < -500 && d < 0.02 && -d < 0.02) }' forces
+}

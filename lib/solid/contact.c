@@ -2,6 +2,7 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/contact_rest.h"
 
 #include <math.h>
@@ -12,6 +13,8 @@
 static const double round_off = 1e-6;
 /* Unit normals that differ by less are the same. */
 static const double same_normal = 1e-6;
+/* Modulus of the penalty by the largest pressure that multipliers exert: at least, and when it is raised. */
+static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
 /* A point of a facet is half or a third of it. */
@@ -123,10 +126,24 @@ done:
 
 void contact_set_stiffness(struct contact *contact, double modulus)
 {
+    contact->modulus = modulus;
     for (int64_t p = 0; p < contact->count; p++) {
         contact->stiffness[p] = modulus / contact_width(contact, p);
     }
     contact_between_stiffen(contact, modulus);
+}
+
+bool contact_stiffen(struct contact *contact)
+{
+    double largest = 0.0;
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        largest = fmax(largest, vector_length(contact->dim, contact->multiplier + a * contact->dim));
+    }
+    if (contact->modulus == 0.0 || contact->modulus >= least_modulus * largest) {
+        return false;
+    }
+    contact_set_stiffness(contact, most_modulus * largest);
+    return true;
 }
 
 void contact_free(struct contact *contact)
@@ -156,6 +173,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
         {"behind", STATE_FLAGS, contact->behind, count},
         {"pressed", STATE_FLAGS, &contact->pressed, 1},
+        {"modulus", STATE_NUMBERS, &contact->modulus, 1},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
@@ -163,6 +181,9 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     enum status status;
     TRY(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     TRY(contact_between_state(contact, prefix, state, error));
+    if (contact->modulus > 0.0) {
+        contact_set_stiffness(contact, contact->modulus);
+    }
     contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
 done:
     return status;

@@ -63,6 +63,7 @@ struct contact {
     struct rigid_place place;                 /* placement of the surface: see contact_move */
     int32_t section;                          /* the caller's label */
     double *stiffness;                        /* count: k_p, Pa/m, > 0 */
+    double modulus;                           /* k_p by the width there, Pa; 0: k_p is stated */
     double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
@@ -105,6 +106,10 @@ void contact_point_force(const struct contact *contact, int64_t p, double force[
 
 /* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
 void contact_set_stiffness(struct contact *contact, double modulus);
+
+/* Make the penalty stiffer where multipliers demand it: under a pressure that is not small against the
+ * modulus the boundary buckles between its nodes. Returns whether it became stiffer. */
+bool contact_stiffen(struct contact *contact);
 
 /* The state of a contact; `prefix` goes in front of the names. */
 MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,

@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The two ends of an edge of a circle are as high above each other's tangents. A boundary is resolved when the
- * heights differ by less than this part of them, on average: balls and discs of a dozen facets around do, brains
- * with their folds do not. */
+/* The two ends of an edge of a circle are as high above each other's tangents. A boundary is resolved when
+ * the heights differ by less than this part of them, on average: balls and discs of a dozen facets around do,
+ * brains with their folds do not. */
 static const double most_rough = 0.2;
 
 /* What a contact's facets are, by its points. */
@@ -106,9 +106,9 @@ struct heights {
     double mean;        /* by the corners' hat functions at the point */
 };
 
-/* The part of the heights that is due to a curve. A curve turns about alike at all corners of a facet: all of it.
- * An edge between plane sides turns at some corners only: nothing. In between, twice the least height counts
- * (the limiter MC of van Leer 1977). */
+/* The part of the heights that is due to a curve. A curve turns about alike at all corners of a facet: all of
+ * it. An edge between plane sides turns at some corners only: nothing. In between, twice the least height
+ * counts (the limiter MC of van Leer 1977). */
 static double share_of_curve(const struct heights *heights)
 {
     double mean = heights->mean;

@@ -215,6 +215,9 @@ static bool follow(struct relaxation *r, struct error *error)
     }
     relaxation_keep_check(r);
     r->residual_at = r->before;
+    if (system_stiffen_contacts(r->system)) {
+        r->next_mass_check = r->checks;
+    }
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
     }

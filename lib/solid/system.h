@@ -118,6 +118,9 @@ void system_free_contacts(struct solid_system *system);
 
 /* contact_augment, and the largest contact_miss, of all contacts. */
 void system_augment_contacts(struct solid_system *system);
+
+/* Make penalties stiffer where multipliers demand it (contact_stiffen); whether any became so. */
+bool system_stiffen_contacts(struct solid_system *system);
 double system_contact_miss(const struct solid_system *system);
 
 /* Gaps and pressures of the contacts at parameters u and system->factor, see contact_measure. Other

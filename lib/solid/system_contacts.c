@@ -46,6 +46,15 @@ void system_augment_contacts(struct solid_system *system)
     }
 }
 
+bool system_stiffen_contacts(struct solid_system *system)
+{
+    bool stiffer = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        stiffer = contact_stiffen(&system->contacts[c]) || stiffer;
+    }
+    return stiffer;
+}
+
 double system_contact_miss(const struct solid_system *system)
 {
     double miss = 0.0;
