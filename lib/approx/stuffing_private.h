@@ -110,7 +110,7 @@ static inline double stuffing_direction(int dim, int number, double direction[3]
 }
 
 /* Cells at each node and the labels that meet there. */
-enum { STUFFING_MOST_LABELS = 4 };
+enum { STUFFING_MOST_LABELS = 8 };
 struct stuffing_star {
     int64_t *ptr;  /* node_count + 1 */
     int32_t *cell; /* ptr[node_count] */
@@ -186,7 +186,7 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell);
  * these. False, and all as it was, where that does not help. */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
-/* Move x onto the interface of the labels, at most four; false where there is none near. */
+/* Move x onto the interface of the labels; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
 /* Move x onto what a node lies on: on the boundary the surface of the body, elsewhere where all labels of the
