@@ -218,7 +218,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
     if (!surface) {
         tool_note_thin(tool, &cells);
     }
-    if (verbose) {
+    if (verbose || stuffing->astray > 0) {
         tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
                   stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
                   STUFFING_MOST_ASTRAY);

@@ -1,4 +1,5 @@
 #include "approx/cells.h"
+#include "approx/quality.h"
 #include "approx/stuffing_private.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -22,15 +23,15 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     int dim = stuffing->dim;
     const double *x[4];
     double angles[2];
-    for (int k = 0; k <= dim; k++) {
-        x[k] = stuffing->x + (int64_t)stuffing->cell[cell * (dim + 1) + k] * dim;
-    }
+    struct cells cells = stuffing_cells(stuffing);
+    cell_corners(&cells, cell, x);
     simplex_angles(dim, x, angles);
     if (angles[0] > 0) {
-        return fmin(angles[0] / STUFFING_LEAST_ANGLE, (180 - angles[1]) / (180 - STUFFING_MOST_ANGLE));
+        double of_angles =
+            fmin(angles[0] / STUFFING_LEAST_ANGLE, (180 - angles[1]) / (180 - STUFFING_MOST_ANGLE));
+        return fmin(of_angles, cell_quality(&cells, cell) / POOR_QUALITY);
     }
     /* Inverted: its volume, of the product of its edges at one corner. */
-    struct cells cells = stuffing_cells(stuffing);
     double product = 1;
     for (int k = 1; k <= dim; k++) {
         product *= vector_distance(dim, x[k], x[0]);
@@ -140,10 +141,11 @@ static void fit(const struct shaping *shaping)
 /* ---- apart ---- */
 
 /* Move nodes that have others at the same place towards the middle of their own cells. */
-static void separate(const struct shaping *shaping, const bool *apart)
+static void separate(const struct shaping *shaping)
 {
     const struct stuffing *stuffing = shaping->stuffing;
     const struct stuffing_star *star = &shaping->star;
+    const bool *apart = shaping->apart;
     int dim = stuffing->dim;
     double most = most_separation * labels_voxel(&shaping->labels);
     struct cells cells = stuffing_cells(stuffing);
@@ -172,7 +174,7 @@ static void separate(const struct shaping *shaping, const bool *apart)
 }
 
 /* How far a node of interfaces is off them, m: on the boundary from the surface of the body, elsewhere from
- * where the label there gives way to another one that meets at the node. */
+ * where the label there gives way to another one that meets at the node, or to a gap that cells fill. */
 static double distance(const struct shaping *shaping, int64_t node)
 {
     const struct labels *labels = &shaping->labels;
@@ -188,6 +190,10 @@ static double distance(const struct shaping *shaping, int64_t node)
     for (int i = 0; i < star->labels[node]; i++) {
         const struct interface_beyond region = {star->label[node][i], keep, true};
         least = region.label != here ? fmin(least, interface_distance(labels, x, &region)) : least;
+    }
+    if (keep[here] && least > STUFFING_MOST_ASTRAY * labels_voxel(labels)) {
+        const struct interface_beyond gap = {-1, keep, false};
+        least = fmin(least, interface_distance(labels, x, &gap));
     }
     return least;
 }
@@ -218,15 +224,14 @@ static void settle(const struct shaping *shaping)
     int dim = stuffing->dim;
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double *x = stuffing->x + n * dim, from[3] = {0}, target[3] = {0};
-        if (!find_astray(shaping, n, target) ||
-            (shaping->rim[n][0] != 0 && star_make_room(shaping, last_score, n, target))) {
+        if (!find_astray(shaping, n, target)) {
             continue;
         }
-        double score = fmin(star_score(shaping, n), last_score);
         memcpy(from, x, (size_t)dim * sizeof *x);
-        for (int step = 8; step >= 0; step--) {
-            vector_between(dim, from, target, step / 8.0, x);
-            if (star_score(shaping, n) >= score) {
+        for (int step = 8; step > 0; step--) {
+            double place[3];
+            vector_between(dim, from, target, step / 8.0, place);
+            if (star_make_room(shaping, last_score, n, place)) {
                 break;
             }
         }
@@ -248,7 +253,8 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
                              struct error *error)
 {
     enum status status;
-    struct shaping shaping = {.parts = parts, .labels = *parts, .keep = options->keep, .stuffing = stuffing};
+    struct shaping shaping = {
+        .parts = parts, .labels = *parts, .keep = options->keep, .apart = apart, .stuffing = stuffing};
     TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
     TRY(stuffing_rims(parts, options, stuffing, &shaping.rim, error));
     TRY(star_make(stuffing, options->whole, &shaping.star, error));
@@ -256,12 +262,12 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
         fit(&shaping);
         stuffing_repair(&shaping, least_score, 0);
     }
-    separate(&shaping, apart);
-    TRY(stuffing_volumes(&shaping, options, apart, dropped, error));
-    stuffing_repair(&shaping, last_score, last_slack * labels_voxel(parts));
+    separate(&shaping);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(&shaping);
     }
+    TRY(stuffing_volumes(&shaping, options, dropped, error));
+    stuffing_repair(&shaping, last_score, last_slack * labels_voxel(parts));
     measure(&shaping);
 done:
     if (shaping.labels.label != parts->label) {

@@ -110,7 +110,7 @@ static inline double stuffing_direction(int dim, int number, double direction[3]
 }
 
 /* Cells at each node and the labels that meet there. */
-enum { STUFFING_MOST_LABELS = 4 };
+enum { STUFFING_MOST_LABELS = 8 };
 struct stuffing_star {
     int64_t *ptr;  /* node_count + 1 */
     int32_t *cell; /* ptr[node_count] */
@@ -170,22 +170,23 @@ struct shaping {
     const struct labels *parts; /* the labels, */
     struct labels labels;       /* and with the whole in place of its parts */
     const bool *keep;           /* labels.count: labels of the body */
+    const bool *apart;          /* nodes that have others at the same place */
     struct stuffing *stuffing;
     struct stuffing_star star;
     uint16_t (*rim)[3]; /* stuffing_rims */
 };
 
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
- * bounds, and negative where it is inverted. */
+ * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. */
 double star_score(const struct shaping *shaping, int64_t node);
 double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 
 /* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
- * nodes around it that are on no interface out of the way. False, and all as it was, where that does not
- * help. */
+ * nodes around it, but those of rims and those that are apart, out of the way: those of interfaces within
+ * these. False, and all as it was, where that does not help. */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
-/* Move x onto the interface of the labels, at most four; false where there is none near. */
+/* Move x onto the interface of the labels; false where there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
 /* Move x onto what a node lies on: on the boundary the surface of the body, elsewhere where all labels of the
@@ -222,9 +223,9 @@ MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struc
                                         struct error *error);
 
 /* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
- * the nodes apart[]. */
+ * the nodes that are apart. */
 MUST_CHECK enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
-                                        const bool *apart, const double *dropped, struct error *error);
+                                        const double *dropped, struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(const struct shaping *shaping, int64_t node, const double target[]);

@@ -142,15 +142,25 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
     if (interface_project(labels, star->labels[node], star->label[node], x)) {
         return true;
     }
-    /* Not where all meet, but two of them. */
+    /* Not where all meet, but two of them, the nearest. */
     uint16_t pair[2] = {(uint16_t)labels_at(labels, x), 0};
+    double best[3] = {0}, least = INFINITY;
     for (int i = 0; i < star->labels[node]; i++) {
+        const struct interface_beyond region = {star->label[node][i], shaping->keep, true};
+        double place[3] = {0};
+        memcpy(place, x, (size_t)labels->dim * sizeof *place);
         pair[1] = star->label[node][i];
-        if (pair[1] != pair[0] && interface_project(labels, 2, pair, x)) {
-            return true;
+        if (pair[1] != pair[0] &&
+            (interface_project(labels, 2, pair, place) || search_change(labels, &region, place)) &&
+            vector_distance(labels->dim, place, x) < least) {
+            least = vector_distance(labels->dim, place, x);
+            memcpy(best, place, sizeof best);
         }
     }
-    return false;
+    if (least < INFINITY) {
+        memcpy(x, best, (size_t)labels->dim * sizeof *x);
+    }
+    return least < INFINITY;
 }
 
 double interface_distance(const struct labels *labels, const double x[],
@@ -166,10 +176,16 @@ double interface_distance(const struct labels *labels, const double x[],
     int32_t there = beyond->label >= 0 ? beyond->label : label_largest(&mix, beyond->keep, beyond->kept);
     const uint16_t pair[2] = {(uint16_t)here, (uint16_t)there};
     memcpy(place, x, (size_t)labels->dim * sizeof *place);
-    if (there < 0 || !interface_project(labels, 2, pair, place)) {
-        return search_beyond(labels, x, beyond, place);
+    double least = INFINITY;
+    if (there >= 0 && interface_project(labels, 2, pair, place)) {
+        least = vector_distance(labels->dim, place, x);
     }
-    return vector_distance(labels->dim, place, x);
+    /* Newton's method does not go to the nearest place. */
+    memcpy(place, x, (size_t)labels->dim * sizeof *place);
+    if (!(least < labels_voxel(labels) / 2) && search_change(labels, beyond, place)) {
+        least = fmin(least, vector_distance(labels->dim, place, x));
+    }
+    return least;
 }
 
 bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],

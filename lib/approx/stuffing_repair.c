@@ -95,7 +95,7 @@ void stuffing_repair(const struct shaping *shaping, double least, double slack)
 
 enum { ROOM_MOST = 64, ROOM_SWEEPS = 3 };
 
-/* The nodes around a node that are on no interface, and their places. */
+/* The nodes around a node that may move, and their places. */
 struct room {
     int count;
     int64_t node[ROOM_MOST];
@@ -111,7 +111,8 @@ static void find_room(const struct shaping *shaping, int64_t node, struct room *
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         for (int k = 0; k <= dim; k++) {
             int64_t other = stuffing->cell[(int64_t)star->cell[i] * (dim + 1) + k];
-            bool listed = other == node || star->labels[other] > 1 || room->count == ROOM_MOST;
+            bool fixed = shaping->rim[other][0] != 0 || shaping->apart[other];
+            bool listed = other == node || fixed || room->count == ROOM_MOST;
             for (int r = 0; r < room->count && !listed; r++) {
                 listed = room->node[r] == other;
             }

@@ -26,11 +26,10 @@ void stuffing_gradient(const struct stuffing *stuffing, int64_t cell, int k, dou
 struct volumes {
     const struct shaping *shaping;
     const int32_t *whole; /* labels->count: the label whose part each is, of which the arrays below are */
-    const bool *apart;    /* nodes that stay */
     double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
     double *pressure;     /* labels->count */
     double *matrix;       /* labels->count squared */
-    double *place;        /* nodes: before the first move */
+    double *place;        /* nodes: on their interface, or where there is none near as they were */
 };
 
 /* Gradients of the volumes of the labels at a node: one row for each label of its star. */
@@ -91,7 +90,7 @@ static bool find_pressures(struct volumes *volumes)
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3];
         const uint16_t *label = star->label[n];
-        if (star->labels[n] < 2 || volumes->apart[n]) {
+        if (star->labels[n] < 2 || volumes->shaping->apart[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -124,7 +123,7 @@ static void correct_volumes(struct volumes *volumes)
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3], target[3] = {0}, length = 0;
         const double *place = volumes->place + n * dim;
-        if (star->labels[n] < 2 || volumes->apart[n]) {
+        if (star->labels[n] < 2 || volumes->shaping->apart[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -164,14 +163,14 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
 }
 
 enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
-                             const bool *apart, const double *dropped, struct error *error)
+                             const double *dropped, struct error *error)
 {
     enum status status;
     const struct labels *labels = &shaping->labels;
     const struct stuffing *stuffing = shaping->stuffing;
     int32_t *whole = NULL;
     double *voxels = NULL;
-    struct volumes volumes = {.shaping = shaping, .apart = apart};
+    struct volumes volumes = {.shaping = shaping};
     TRY(NEW_ARRAY(&whole, labels->count, error));
     TRY(NEW_ARRAY(&voxels, labels->count, error));
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
@@ -179,6 +178,11 @@ enum status stuffing_volumes(const struct shaping *shaping, const struct stuffin
     TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
     TRY(NEW_ARRAY(&volumes.place, stuffing->node_count * stuffing->dim, error));
     memcpy(volumes.place, stuffing->x, (size_t)(stuffing->node_count * stuffing->dim) * sizeof(double));
+    for (int64_t n = 0; n < stuffing->node_count; n++) {
+        if (shaping->star.labels[n] >= 2) {
+            (void)node_project(shaping, n, volumes.place + n * stuffing->dim);
+        }
+    }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
         whole[l] = options->whole != NULL ? options->whole[l] : l;

@@ -5,6 +5,7 @@
 #include "unit.h"
 
 #include "approx/cells.h"
+#include "approx/quality.h"
 #include "approx/stuffing.h"
 
 #include "label_shapes.h"
@@ -62,6 +63,7 @@ static inline void check_cells(const struct stuffing *stuffing)
         }
         simplex_angles(dim, x, angles);
         assert_true(angles[0] >= 8 && angles[1] <= 165);
+        assert_true(cell_quality(&cells, c) >= POOR_QUALITY);
         volume += cell_volume(&cells, c);
     }
     GOOD(faces_build(&cells, true, &faces, &error));
