@@ -132,8 +132,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
     }
     TRY(group_put(body, kind, name, chosen, request->use->value, error));
 done:
-    free(chosen);
-    free(name);
+    FREE_ALL(chosen, name);
     return status;
 }
 

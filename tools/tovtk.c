@@ -88,9 +88,7 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }
-    free(paths);
-    free(names);
-    free(times);
+    FREE_ALL(paths, names, times);
 }
 
 /* Exits where the ending of the output's name is not one of ours. */

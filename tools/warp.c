@@ -60,7 +60,6 @@ static const char usage[] =
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double tolerance = 1e-4; /* of the places, in voxels */
@@ -292,8 +291,7 @@ int main(int argc, char *argv[])
     }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);
-    free(owner);
-    free(other);
+    FREE_ALL(owner, other);
     motion_free(&motion);
     image_free(&image);
     image_free(&like);

@@ -224,9 +224,7 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
     }
     qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
 done:
-    free(side);
-    free(piece);
-    free(part);
+    FREE_ALL(side, piece, part);
     return status;
 }
 
@@ -256,8 +254,6 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
         }
     }
 done:
-    free(row);
-    free(ptr);
-    free(at);
+    FREE_ALL(row, ptr, at);
     return status;
 }

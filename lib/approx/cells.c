@@ -218,8 +218,7 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
         }
     }
 done:
-    free(start);
-    free(filed);
+    FREE_ALL(start, filed);
     return status;
 }
 
@@ -287,9 +286,7 @@ done:
 
 void faces_free(struct faces *faces)
 {
-    free(faces->node);
-    free(faces->cell);
-    free(faces->row);
+    FREE_ALL(faces->node, faces->cell, faces->row);
     *faces = (struct faces){0};
 }
 

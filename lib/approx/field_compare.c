@@ -50,9 +50,7 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
     }
 done:
     point_grid_free(&grid);
-    free(list.index);
-    free(radius);
-    free(used);
+    FREE_ALL(list.index, radius, used);
     return status;
 }
 
@@ -211,10 +209,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     }
 done:
     field_table_free(&table);
-    free(spacing);
-    free(radius);
-    free(points);
-    free(values);
+    FREE_ALL(spacing, radius, points, values);
     return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */
 }
 
@@ -250,14 +245,12 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     }
     field_difference(count, cols, a->values, reference, comparison->difference);
 done:
-    free(match);
-    free(reference);
+    FREE_ALL(match, reference);
     return status;
 }
 
 void field_comparison_free(struct field_comparison *comparison)
 {
-    free(comparison->node);
-    free(comparison->difference);
+    FREE_ALL(comparison->node, comparison->difference);
     *comparison = (struct field_comparison){0};
 }

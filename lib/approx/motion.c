@@ -95,9 +95,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
         }
     }
 done:
-    free(radius);
-    free(phi);
-    free(dphi);
+    FREE_ALL(radius, phi, dphi);
     support_free(&lists);
     support_space_free(&space);
     return status;
@@ -137,10 +135,7 @@ done:
 
 void motion_free(struct motion *motion)
 {
-    free(motion->gradient);
-    free(motion->shape);
-    free(motion->across);
-    free(motion->moved);
+    FREE_ALL(motion->gradient, motion->shape, motion->across, motion->moved);
     *motion = (struct motion){0};
 }
 

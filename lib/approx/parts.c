@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct part {
     double size;
@@ -48,8 +47,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
         part[i] = place[set_first(parent, (int32_t)i)];
     }
 done:
-    free(parts);
-    free(place);
+    FREE_ALL(parts, place);
     return status;
 }
 
@@ -82,8 +80,7 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     TRY(number_parts(cells->count, parent, volume, part, count, error));
 done:
     faces_free(&faces);
-    free(parent);
-    free(volume);
+    FREE_ALL(parent, volume);
     return status;
 }
 
@@ -148,10 +145,7 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     }
     TRY(number_parts(boundary->count, parent, area, part, count, error));
 done:
-    free(parent);
-    free(area);
-    free(normal);
-    free(ridges);
+    FREE_ALL(parent, area, normal, ridges);
     return status;
 }
 

@@ -40,8 +40,7 @@ enum status pair_list_file(const struct pair_list *pairs, int64_t rows, int64_t 
 
 void pair_list_free(struct pair_list *pairs)
 {
-    free(pairs->row);
-    free(pairs->value);
+    FREE_ALL(pairs->row, pairs->value);
 }
 
 /* The dual of the edges from the first vertex, within the facet. */

@@ -253,16 +253,13 @@ enum status size_field_build(const struct cells *cells, const double *squared,
         field->nodes = request->most_nodes;
     }
 done:
-    free(spacing);
-    free(normal);
-    free(angle);
+    FREE_ALL(spacing, normal, angle);
     return status;
 }
 
 void size_field_free(struct size_field *field)
 {
-    free(field->size);
-    free(field->outer);
+    FREE_ALL(field->size, field->outer);
     faces_free(&field->boundary);
     *field = (struct size_field){0};
 }

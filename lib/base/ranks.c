@@ -188,9 +188,7 @@ enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
     TRY(NEW_ARRAY(receive, (*receive_first)[count], error));
     ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
 done:
-    free(each);
-    free(many);
-    free(in_turn);
+    FREE_ALL(each, many, in_turn);
     return status;
 }
 

@@ -2,7 +2,6 @@
 #include "io/image_private.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 void image_map(const double *m, const double x[3], double place[3])

@@ -139,8 +139,7 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     put_little_endian(tail + 4, (uint32_t)size);
     TRY(write_all(descriptor, tail, sizeof tail, error));
 done:
-    free(used);
-    free(packed);
+    FREE_ALL(used, packed);
     return status;
 }
 

@@ -96,7 +96,6 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
             (long long)touching));
     }
 done:
-    free(body);
-    free(order);
+    FREE_ALL(body, order);
     return status;
 }

@@ -219,10 +219,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     read_sections(&reader);
     msh_join_groups(&reader);
     msh_index_free(&reader.nodes);
-    free(reader.element_key);
-    free(reader.names);
-    free(reader.entities);
-    free(reader.physicals);
+    FREE_ALL(reader.element_key, reader.names, reader.entities, reader.physicals);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
@@ -306,17 +303,10 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, struct e
 
 void msh_free(struct msh *msh)
 {
-    free(msh->x);
-    free(msh->node_tag);
-    free(msh->element_tag);
-    free(msh->element_type);
-    free(msh->node_ptr);
-    free(msh->node_idx);
-    free(msh->member_ptr);
-    free(msh->member_idx);
+    FREE_ALL(msh->x, msh->node_tag, msh->element_tag, msh->element_type, msh->node_ptr, msh->node_idx,
+             msh->member_ptr, msh->member_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
-        free(msh->groups[i].name);
-        free(msh->groups[i].written);
+        FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }
     free(msh->groups);
     *msh = (struct msh){0};

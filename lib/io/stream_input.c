@@ -1,8 +1,6 @@
 /* Buffered input of a stream: a regular file is mapped, everything else is read in large blocks. */
 #include "io/stream_private.h"
 
-#include "base/memory.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>

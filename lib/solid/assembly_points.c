@@ -268,8 +268,7 @@ static enum status add_condition(struct point_condition *p, struct error *note, 
         TRY(check_rows(p, first, error));
     }
 done:
-    free(p->volume);
-    free(p->shear);
+    FREE_ALL(p->volume, p->shear);
     return status;
 }
 

@@ -3,7 +3,6 @@
 #include "solid/stress.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Each part of the blocks has sums of its own, so that there are few, whatever the number of threads; fewer

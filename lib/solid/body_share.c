@@ -79,8 +79,7 @@ enum status body_share_cut(const struct body_input *input, struct body *body, st
     share->begin_node = share->node_first[rank];
     share->end_node = share->node_first[rank + 1];
 done:
-    free(work);
-    free(node_work);
+    FREE_ALL(work, node_work);
     return status;
 }
 
@@ -280,8 +279,7 @@ static enum status order_sums(struct body *body, struct error *error)
     TRY(stretches_of(0, rows, is_sent, &share->sums, error));
     TRY(stretches_of(0, rows, is_inner, &share->inner_sums, error));
 done:
-    free(is_sent);
-    free(is_inner);
+    FREE_ALL(is_sent, is_inner);
     return status;
 }
 
@@ -309,8 +307,7 @@ static enum status share_corners(struct body *body, struct error *error)
     TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
                    owner_of_corner, body, &share->corners, error));
 done:
-    free(sums);
-    free(corners);
+    FREE_ALL(sums, corners);
     return status;
 }
 
@@ -356,11 +353,8 @@ bool body_share_has_node(const struct body *body, int64_t node)
 
 void body_share_free(struct body_share *share)
 {
-    free(share->block_first);
-    free(share->point_first);
-    free(share->node_first);
-    free(share->slice_first);
-    free(share->volume_first);
+    FREE_ALL(share->block_first, share->point_first, share->node_first, share->slice_first,
+             share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->placed);
     stretches_free(&share->sums);

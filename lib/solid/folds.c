@@ -270,9 +270,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
         folds->at_rest = at_rest;
     }
 done:
-    free(sides);
-    free(u);
-    free(stopped);
+    FREE_ALL(sides, u, stopped);
     if (status != STATUS_OK) {
         folds_free(folds);
     }
@@ -281,19 +279,8 @@ done:
 
 void folds_free(struct folds *folds)
 {
-    free(folds->rings);
-    free(folds->ring_ptr);
-    free(folds->ring_cell);
-    free(folds->ring_turn);
-    free(folds->rims);
-    free(folds->support);
-    free(folds->is_held);
-    free(folds->part);
-    free(folds->bodies);
-    free(folds->y);
-    free(folds->boxes);
-    free(folds->plane);
-    free(folds->found);
-    free(folds->in_turn);
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->ring_turn, folds->rims, folds->support,
+             folds->is_held, folds->part, folds->bodies, folds->y, folds->boxes, folds->plane, folds->found,
+             folds->in_turn);
     *folds = (struct folds){0};
 }

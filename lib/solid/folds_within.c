@@ -178,9 +178,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
     }
 done:
     point_grid_free(&grid);
-    free(near.index);
-    free(middle);
-    free(radius);
+    FREE_ALL(near.index, middle, radius);
     return status;
 }
 

@@ -3,7 +3,6 @@
 #include "base/eigen.h"
 
 #include <math.h>
-#include <string.h>
 
 void material_set_moduli(struct material *material, double youngs_modulus, double poisson_ratio)
 {

@@ -85,8 +85,7 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
         surface->facet[c] = number[same[c]] - 1;
     }
 done:
-    free(same);
-    free(number);
+    FREE_ALL(same, number);
     return status;
 }
 

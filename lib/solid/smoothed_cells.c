@@ -216,8 +216,7 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
         wanted[order[f]] = wanted[order[f]] || in_order[f];
     }
 done:
-    free(touched);
-    free(in_order);
+    FREE_ALL(touched, in_order);
     return status;
 }
 
@@ -281,8 +280,7 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     TRY(body_share_rows(body, used, error));
     memcpy(averages->given, tables->tables, sizeof averages->given);
 done:
-    free(needed);
-    free(used);
+    FREE_ALL(needed, used);
     return status;
 }
 

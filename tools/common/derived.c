@@ -13,9 +13,7 @@
 void derived_free(struct derived *derived)
 {
     for (int64_t i = 0; i < derived->count; i++) {
-        free(derived->items[i].name);
-        free(derived->items[i].attributes);
-        free(derived->items[i].data);
+        FREE_ALL(derived->items[i].name, derived->items[i].attributes, derived->items[i].data);
     }
     free(derived->items);
     *derived = (struct derived){0};

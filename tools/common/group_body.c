@@ -6,7 +6,6 @@
 #include "base/lists.h"
 #include "base/memory.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,8 +25,7 @@ int64_t group_find(const struct group_list *list, const char *name)
 
 void group_remove(struct group_list *list, int64_t index)
 {
-    free(list->group[index].name);
-    free(list->group[index].item);
+    FREE_ALL(list->group[index].name, list->group[index].item);
     list->count--;
     memmove(&list->group[index], &list->group[index + 1],
             (size_t)(list->count - index) * sizeof *list->group);

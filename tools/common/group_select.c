@@ -103,7 +103,6 @@ enum status group_select(const struct group_body *body, enum group_kind kind, co
     TRY(NEW_ARRAY(&term, body->items[kind].count, error));
     TRY(evaluate(body, kind, copy, unit, chosen, term, error));
 done:
-    free(term);
-    free(copy);
+    FREE_ALL(term, copy);
     return status;
 }

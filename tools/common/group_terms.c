@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -141,8 +140,7 @@ static enum status choose_part(const struct term *term)
     }
     TRY(choose_by(term, side ? GROUP_FACETS : GROUP_REGION, in));
 done:
-    free(part);
-    free(in);
+    FREE_ALL(part, in);
     return status;
 }
 

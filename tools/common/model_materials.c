@@ -3,7 +3,6 @@
 #include "io/table.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static void set_material(const struct scene_material *section, struct material *material)
 {

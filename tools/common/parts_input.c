@@ -185,8 +185,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
         free((char *)rejoin.part[k].file);
     }
     rejoin_free(&rejoin);
-    free(packed);
-    free(first);
+    FREE_ALL(packed, first);
 }
 
 void parts_free(struct parts_input *parts)

@@ -197,7 +197,5 @@ void plot_free(struct plot *plot)
     stream_free(&plot->stream);
     derived_free(&plot->derived);
     names_free(&plot->regions.names);
-    free(plot->fields);
-    free(plot->labels);
-    free(plot->frames);
+    FREE_ALL(plot->fields, plot->labels, plot->frames);
 }

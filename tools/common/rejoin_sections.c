@@ -40,8 +40,7 @@ static const char *member(const struct joined_lists *lists, const char *what, ch
 
 static void lists_free(struct joined_lists *lists)
 {
-    free(lists->of);
-    free(lists->ptr);
+    FREE_ALL(lists->of, lists->ptr);
 }
 
 bool rejoin_is_large(const char *name)

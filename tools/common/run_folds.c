@@ -92,11 +92,8 @@ void run_folds_begin(struct run *run)
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    free(run->folds.held);
-    free(run->folds.field);
-    free(run->folds.node_first);
-    free(run->folds.stopped);
-    free(run->folds.touched);
+    FREE_ALL(run->folds.held, run->folds.field, run->folds.node_first, run->folds.stopped,
+             run->folds.touched);
 }
 
 void run_folds_forget(struct run *run)

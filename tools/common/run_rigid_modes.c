@@ -116,11 +116,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
 
 static void bodies_free(struct bodies *bodies)
 {
-    free(bodies->of_node);
-    free(bodies->cell);
-    free(bodies->touches);
-    free(bodies->stays);
-    free(bodies->moves);
+    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->moves);
 }
 
 /* A direction in words, its largest component positive, round-off taken out. */
