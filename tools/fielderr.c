@@ -59,6 +59,7 @@ static const char usage[] =
 #include "comparison.h"
 
 #include "approx/field_error.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -110,12 +111,8 @@ static double row_difference(const struct section *fine, int64_t i, const struct
 {
     const double *f = (const double *)fine->data + i * fine->cols;
     const double *c = (const double *)coarse->data + k * coarse->cols;
-    double sum = 0.0;
     *length = field_largest(1, fine->cols, f);
-    for (int64_t a = 0; a < fine->cols; a++) {
-        sum += (f[a] - c[a]) * (f[a] - c[a]);
-    }
-    return sqrt(sum);
+    return vector_distance((int)fine->cols, f, c);
 }
 
 static const struct section *find_table(const struct side *side, const char *name, int64_t cols)

@@ -66,6 +66,7 @@ static const char usage[] =
 #include "base/box.h"
 #include "base/memory.h"
 #include "io/sections.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -288,7 +289,6 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     for (int64_t i = 0; i < group->count; i++) {
         int32_t item = group->item[i];
         double normal[3];
-        double square = 0;
         for (int k = 0; k < items->corners; k++) {
             box_add(&box, 1, items->x + (int64_t)items->item[item * items->corners + k] * dim);
         }
@@ -296,11 +296,8 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
             size += cell_volume(&body->cells, item);
         } else if (kind == GROUP_FACETS) {
             face_area_vector(dim, items->x, items->item + (int64_t)item * dim, normal);
-            for (int k = 0; k < dim; k++) {
-                sum[k] += normal[k];
-                square += normal[k] * normal[k];
-            }
-            size += sqrt(square);
+            add_scaled(dim, 1.0, normal, sum);
+            size += vector_length(dim, normal);
         }
     }
     text_append(text, sizeof text, "%lld", (long long)group->count);

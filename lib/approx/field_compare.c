@@ -2,6 +2,7 @@
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
@@ -77,12 +78,7 @@ enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t
 void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
 {
     for (int64_t i = 0; i < count; i++) {
-        double sum = 0.0;
-        for (int64_t c = 0; c < cols; c++) {
-            double d = a[i * cols + c] - b[i * cols + c];
-            sum += d * d;
-        }
-        difference[i] = sqrt(sum);
+        difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
     }
 }
 
@@ -90,10 +86,7 @@ double field_largest(int64_t count, int64_t cols, const double *field)
 {
     double largest2 = 0.0;
     for (int64_t i = 0; i < count; i++) {
-        double sum = 0.0;
-        for (int64_t c = 0; c < cols; c++) {
-            sum += field[i * cols + c] * field[i * cols + c];
-        }
+        double sum = vector_dot((int)cols, field + i * cols, field + i * cols);
         if (isnan(sum)) {
             return NAN;
         }

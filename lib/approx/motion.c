@@ -4,6 +4,7 @@
 #include "approx/shape.h"
 #include "approx/support_space.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -266,12 +267,8 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
             shapes(motion, dim, current, X, N);
         }
         place(motion, dim, current, X, N, at, F);
-        double square = 0;
-        for (int i = 0; i < dim; i++) {
-            at[i] = x[i] - at[i];
-            square += at[i] * at[i];
-        }
-        *residual = sqrt(square);
+        vector_subtract(dim, x, at, at);
+        *residual = vector_length(dim, at);
         first = step == 0 ? *residual : first;
         if (*residual <= tolerance) {
             return true;

@@ -80,9 +80,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         int32_t node = index[i];
         double *image = work->image + kept * dim, bend[3], length;
         if (!reach_is_hidden(work, node)) {
-            for (int a = 0; a < dim; a++) {
-                image[a] = reach->cells.x[(int64_t)node * dim + a] - work->x[a];
-            }
+            vector_subtract(dim, reach->cells.x + (int64_t)node * dim, work->x, image);
             index[kept++] = node;
             continue;
         }

@@ -25,7 +25,7 @@ static void name_facets(const struct folds *folds, int64_t facet, int64_t other,
     int dim = folds->input.dim;
     fold->facet[0] = facet;
     fold->facet[1] = other;
-    fold_middle(dim, folds->input.x, dim, folds->input.facet + facet * dim, fold->place);
+    vector_middle(dim, folds->input.x, dim, folds->input.facet + facet * dim, fold->place);
 }
 
 /* The share of this process of so many items: from the first to before the second. */
@@ -109,7 +109,7 @@ static void find_cells(const struct folds *folds, const bool *stopped, struct fo
         enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
         if (fold->kind == FOLD_NONE || (fold->kind == FOLD_FLAT && kind == FOLD_CELL)) {
             *fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
-            fold_middle(dim, input->x, corners, node, fold->place);
+            vector_middle(dim, input->x, corners, node, fold->place);
         }
         fold->count += kind == fold->kind;
     }

@@ -33,17 +33,6 @@ static inline double fold_volume(int dim, const double *a, const double *b, cons
     return determinant3(u, v, w);
 }
 
-/* The middle of a cell or facet with so many nodes. */
-static inline void fold_middle(int dim, const double *x, int count, const int32_t *node, double *middle)
-{
-    for (int i = 0; i < dim; i++) {
-        middle[i] = 0.0;
-        for (int k = 0; k < count; k++) {
-            middle[i] += x[(int64_t)node[k] * dim + i] / count;
-        }
-    }
-}
-
 /* Find the parts and bodies of the cells. */
 MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
 

@@ -31,7 +31,7 @@ enum status folds_find_bodies(struct folds *folds, struct error *error)
 static void find_middle(const struct folds *folds, const double *x, int64_t cell, double *middle)
 {
     int dim = folds->input.dim, corners = dim + 1;
-    fold_middle(dim, x, corners, folds->input.cell + cell * corners, middle);
+    vector_middle(dim, x, corners, folds->input.cell + cell * corners, middle);
 }
 
 /* Whether a cell contains a point, barycentric coordinates being larger than `least`. */
