@@ -179,9 +179,9 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
-/* Let `chosen` items and nodes take in each other's neighbours: rings times, beginning with the nodes of the
- * items or the items of the nodes; rings < 0: those that are not chosen. */
-static enum status grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+/* Chosen items and nodes take in each other's neighbours, beginning with the nodes of the items or the items
+ * of the nodes. */
+enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                         bool of_items, bool *chosen, struct error *error)
 {
     bool *other;
@@ -202,16 +202,4 @@ static enum status grow(int64_t count, int corners, const int32_t *item, int64_t
     }
     free(other);
     return STATUS_OK;
-}
-
-enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
-                       bool *chosen, struct error *error)
-{
-    return grow(count, corners, item, node_count, rings, true, chosen, error);
-}
-
-enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
-                       bool *chosen, struct error *error)
-{
-    return grow(count, corners, item, node_count, rings, false, chosen, error);
 }

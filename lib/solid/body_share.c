@@ -44,16 +44,14 @@ static void measure_nodes(const struct body_input *input, const struct body *bod
 /* The points of the blocks. */
 static enum status list_points(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     int count = ranks_count(share->ranks);
-    TRY(NEW_ARRAY(&share->point_first, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->point_first, count + 1, error));
     for (int r = 0; r <= count; r++) {
         int64_t b = share->block_first[r];
         share->point_first[r] = b < body->block_count ? body->blocks[b].first_point : body->point_count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
@@ -169,16 +167,15 @@ int body_share_owner(const void *body, int64_t node)
 
 enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
 {
-    enum status status;
     const struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
     int dim = body->dim;
-    TRY(NEW_ARRAY(wanted, row_count(body), error));
+    RETURN_IF_ERROR(NEW_ARRAY(wanted, row_count(body), error));
     if (!body->smoothed) {
         for (int64_t i = share->begin_point * dim; i < share->end_point * dim; i++) {
             (*wanted)[i] = true;
         }
-        goto done;
+        return STATUS_OK;
     }
     for (int half = 0; half < 2; half++) {
         int64_t per_point = (dim + 1) * (half == 0 ? FACE_ROWS(dim) : 1);
@@ -187,8 +184,7 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
             (*wanted)[at[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Without smoothed cells. */
@@ -313,21 +309,19 @@ done:
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     if (share->ranks == NULL) {
-        TRY(order_blocks(body, error));
+        RETURN_IF_ERROR(order_blocks(body, error));
         return stretches_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
-        TRY(share_corners(body, error));
+        RETURN_IF_ERROR(share_corners(body, error));
     }
-    TRY(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row, body,
-                   &share->rows, error));
-    TRY(order_blocks(body, error));
-    TRY(body->smoothed ? order_sums(body, error) : STATUS_OK);
-done:
-    return status;
+    RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
+                               body, &share->rows, error));
+    RETURN_IF_ERROR(order_blocks(body, error));
+    RETURN_IF_ERROR(body->smoothed ? order_sums(body, error) : STATUS_OK);
+    return STATUS_OK;
 }
 
 enum status body_share_nodes(struct body *body, struct error *error)
