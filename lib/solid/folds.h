@@ -28,9 +28,9 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
-    FOLD_WITHIN,   /* a body lies within another one; or a cell within one that it is no neighbour of */
-    FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
-    FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
+    FOLD_FLAT,   /* cells are inverted, but by less than that; slivers invert within the error of the field */
+    FOLD_SUPPORT /* a free facet at the rim of a plane support has gone through its plane */
 };
 
 struct fold {
