@@ -320,8 +320,7 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
     RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
                                body, &share->rows, error));
     RETURN_IF_ERROR(order_blocks(body, error));
-    RETURN_IF_ERROR(body->smoothed ? order_sums(body, error) : STATUS_OK);
-    return STATUS_OK;
+    return body->smoothed ? order_sums(body, error) : STATUS_OK;
 }
 
 enum status body_share_nodes(struct body *body, struct error *error)

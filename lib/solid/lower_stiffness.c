@@ -92,8 +92,7 @@ enum status lower_begin(const struct solid_system *system, struct lower *lower, 
     RETURN_IF_ERROR(NEW_ARRAY(&lower->begin, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lower->end, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lower->piece_of, nodes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&lower->diagonal, nodes, error));
-    return STATUS_OK;
+    return NEW_ARRAY(&lower->diagonal, nodes, error);
 }
 
 static void drop_pieces(struct lower *lower)
