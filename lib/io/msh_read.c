@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "io/descriptor.h"
 #include "io/msh_private.h"
 
 #include <errno.h>
@@ -245,19 +246,14 @@ static enum status read_all(struct bytes *bytes, int descriptor, struct error *e
 {
     int64_t capacity = 0;
     for (;;) {
+        size_t got;
         if ((int64_t)bytes->size == capacity) {
             capacity = capacity == 0 ? 65536 : 2 * capacity;
-            char *grown = array_grow(bytes->data, capacity, 1);
-            if (grown == NULL) {
-                return fail_memory(error, "the mesh");
-            }
-            bytes->data = grown;
+            RETURN_IF_ERROR(RESIZE_ARRAY(&bytes->data, capacity, error));
         }
-        ssize_t got = read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size);
-        if (got < 0 && errno != EINTR) {
-            return fail_read(error);
-        }
-        bytes->size += got > 0 ? (size_t)got : 0;
+        RETURN_IF_ERROR(descriptor_read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size,
+                                        &got, error));
+        bytes->size += got;
         if (got == 0 || (bytes->size >= MAGIC_SIZE && !is_mesh(bytes->data, bytes->size))) {
             return STATUS_OK;
         }
