@@ -103,10 +103,7 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     enum status status = STATUS_OK;
     bool good = true;
     TRY(NEW_ARRAY(&used, blocks, error));
-    packed = array_grow(NULL, blocks, room);
-    if (packed == NULL) {
-        TRY(fail_memory(error, "compressed image"));
-    }
+    TRY(RESIZE_ARRAY(&packed, blocks * (int64_t)room, error));
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int64_t b = 0; b < blocks; b++) {
         size_t begin = (size_t)b * BLOCK, length = size - begin < BLOCK ? size - begin : BLOCK;
@@ -140,10 +137,7 @@ enum status image_write(const struct image *image, int descriptor, bool gzip, st
     }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
-    bytes = array_grow(NULL, (int64_t)size, 1);
-    if (bytes == NULL) {
-        TRY(fail_memory(error, "bytes of the image"));
-    }
+    TRY(RESIZE_ARRAY(&bytes, (int64_t)size, error));
     memcpy(bytes, header, offset);
     store_values(image, type, bytes + offset);
     TRY(gzip ? write_gzip(bytes, size, descriptor, error) : descriptor_write(descriptor, bytes, size, error));

@@ -80,12 +80,11 @@ static void tell_at_rest(const struct run *run)
 
 void run_folds_begin(struct run *run)
 {
-    struct error error;
     const struct state *restored = run_checkpoint_state(run);
-    tool_check(run->tool, build(&run->model->assembly, &run->folds, &error), &error);
+    TOOL_TRY(run->tool, build(&run->model->assembly, &run->folds, &error));
     tell_at_rest(run);
     if (restored != NULL) {
-        tool_check(run->tool, run_folds_state(run, restored, &error), &error);
+        TOOL_TRY(run->tool, run_folds_state(run, restored, &error));
     }
 }
 
@@ -162,8 +161,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
-        struct error error;
-        tool_check(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error), &error);
+        TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error));
         fold = overlap.kind != FOLD_NONE ? overlap : fold;
     }
     struct fold none = {.kind = FOLD_NONE};
