@@ -8,26 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct part {
-    double size;
-    int32_t root;
-};
-
-static int compare_parts(const void *left, const void *right)
-{
-    const struct part *a = left;
-    const struct part *b = right;
-    return a->size != b->size ? (a->size < b->size) - (a->size > b->size)
-                              : (a->root > b->root) - (a->root < b->root);
-}
-
 /* Number the sets by falling size: part[item] from parent[item]. */
 static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
                                 int32_t *count, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct part *parts = NULL;
-    int32_t *place = NULL; /* of a root: its place among the parts, then its number */
+    struct placed *parts = NULL; /* by the negative of their size */
+    int32_t *place = NULL;       /* of a root: its place among the parts, then its number */
     *count = 0;
     TRY(NEW_ARRAY(&parts, items, error));
     TRY(NEW_ARRAY(&place, items, error));
@@ -35,13 +22,13 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
         int32_t root = set_first(parent, (int32_t)i);
         if (root == i) {
             place[i] = *count;
-            parts[(*count)++].root = root;
+            parts[(*count)++].item = root;
         }
-        parts[place[root]].size += size[i];
+        parts[place[root]].place -= size[i];
     }
-    qsort(parts, (size_t)*count, sizeof *parts, compare_parts);
+    qsort(parts, (size_t)*count, sizeof *parts, compare_placed);
     for (int32_t p = 0; p < *count; p++) {
-        place[parts[p].root] = p;
+        place[parts[p].item] = p;
     }
     for (int64_t i = 0; i < items; i++) {
         part[i] = place[set_first(parent, (int32_t)i)];
