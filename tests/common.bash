@@ -98,6 +98,18 @@ swinging_block() {
     printf '\n[solver]\nend_time = 0.05\n'
 }
 
+# pressed_cube HELD PUSHED WAY: a body in 3D, one group of facets held, the other moved by WAY along z; sections may be appended.
+pressed_cube() {
+    block quasi-static | sed 's/^dim = 2/dim = 3/'
+    printf '[displacement held]\nfacets = %s\ncomponents = 0, 0, 0\n' "$1"
+    printf '[displacement pushed]\nfacets = %s\ncomponents = 0, 0, %s\n' "$2" "$3"
+}
+
+# Images to test with, and what is in them: see helper/nifti.py.
+nifti() {
+    /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"
+}
+
 # with SED-SCRIPT: block.scene edited, as edited.scene.
 with() {
     sed "$1" block.scene > edited.scene

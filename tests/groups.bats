@@ -163,24 +163,7 @@ END
     groups -f tip=high:z,10% table.mts 2> said > stale.mts
     [ "$(cat said)" = "groups: facets have changed: the sections of support and shapefn are left out" ]
     run -1 grep -qE '^(shape|nbr|face|facepoint|boundary|node|support)\.' <(mts list stale.mts)
-    cat > push.scene << 'END'
-[scene]
-dim = 3
-analysis = quasi-static
-[material body]
-region = body
-E = 3000
-nu = 0.45
-rho = 1000
-[displacement held]
-facets = held
-components = 0, 0, 0
-[displacement pushed]
-facets = pushed
-components = 0, 0, -0.005
-[output]
-reactions = yes
-END
+    { pressed_cube held pushed -0.005; printf '[output]\nreactions = yes\n'; } > push.scene
     cloud -d 3 -k regular -n 4,4,7 --box 0,0.1,0,0.1,0,0.2 | groups -f held=low:long,12% -f pushed=high:long,12% 2> /dev/null |
         shapefn 2> /dev/null | mtled -q push.scene > u.dat
     mts print reactions u.dat | awk '{ sum += $3 } $3 < 0 { n++ } END { exit !(n == 1 && sum ^ 2 < 1e-6) }'

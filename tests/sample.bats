@@ -2,8 +2,6 @@
 
 load common.bash
 
-nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
-
 setup() {
     enter
     nifti smooth scan.nii.gz

@@ -2,8 +2,6 @@
 
 load common.bash
 
-nifti() { /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" "$@"; }
-
 # with_u FILE AWK: stream FILE with a section u, the components printed by AWK from each row of nodes.x.
 with_u() {
     mts print nodes.x "$1" | awk "{ $2 }" OFMT=%.17g > u.rows
@@ -275,22 +273,7 @@ setup_file() {
 }
 
 @test "the result of mtled: a cube pressed by a tenth leaves the upper tenth" {
-    cat > cube.scene << 'END'
-[scene]
-dim = 3
-analysis = quasi-static
-[material body]
-region = body
-E = 3000
-nu = 0.45
-rho = 1000
-[displacement bottom]
-facets = zmin
-components = 0, 0, 0
-[displacement top]
-facets = zmax
-components = 0, 0, -0.006
-END
+    pressed_cube zmin zmax -0.006 > cube.scene
     cloud -d 3 -k jittered -n 7 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 | shapefn 2> note | mtled -q cube.scene > pressed.dat
     warp -v --vacated -8 "$BATS_FILE_TMPDIR/scan.nii.gz" pressed.dat 2> said > moved.nii.gz
     [ "$(nifti value moved.nii.gz 38 38 65)" = -8 ] # at 57 mm

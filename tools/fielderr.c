@@ -9,8 +9,9 @@ static const char usage[] =
     "tells how far FINE is from the solution on ever finer clouds; - is standard input. The estimate is\n"
     "extrapolated (Richardson): at each node of FINE, the distance of the two fields by\n"
     "2^ORDER - 1. The order is 2 where a solution is smooth, and 1 or a little more where it is\n"
-    "singular, as where a held part of the boundary meets a free one: their middle, 1.5, is assumed.\n"
-    "With a third result, COARSER by as much again, it is observed, within 1 and 2.\n"
+    "singular, as where a held part of the boundary meets a free one: the value between, 1.5, is assumed.\n"
+    "With a third result, COARSER, of half as many nodes again, the order is computed from the three, and\n"
+    "limited to 1 .. 2.\n"
     "\n"
     "Prints what fieldcmp prints, of the estimated error: avg, max, rmse, p50, p95, p99 (m), n, clouds,\n"
     "max_at, the same of each region; and\n"
@@ -18,20 +19,20 @@ static const char usage[] =
     "                         cloud has most in few places\n"
     "  reference              largest norm of FINE's field; avg_relative and max_relative: relative to\n"
     "                         it\n"
-    "  iteration              how far the iterations of mtled, FINE's and COARSE's, may have moved the\n"
-    "                         estimate, m; where results tell\n"
+    "  iteration              how far the errors of mtled's iterations, of FINE and COARSE, may have\n"
+    "                         changed the estimate, m; if both results state them\n"
     "  dominant               discretisation where avg is larger than that; else iteration, with a note:\n"
     "                         a smaller tolerance in [solver] is needed before a finer cloud\n"
-    "  order, ratio           those that were used; cells_ratio: the one that the cells have\n"
+    "  order, ratio           the values used; cells_ratio: the ratio of the sizes of the cells\n"
     "  force.NAME             error of the force of each condition and contact that both results have\n"
     "                         (reactions = yes in [output]), N (2D: N/m); force_relative.NAME: relative\n"
     "                         to that force in FINE\n"
     "  energy, energy_relative  the same of the elastic energy (energy = yes), J (2D: J/m)\n"
     "\n"
-    "The estimate is blind to what both clouds have in common: the geometry (a polygon for a curve, a\n"
-    "segmentation), the material, conditions and contacts. It is no bound. Where a cloud is so coarse\n"
-    "that its order is not seen yet, it may be off by a factor of two or three; where a solution is\n"
-    "smooth it is too large, by as much and more; at single nodes it is less certain than on average.\n"
+    "The estimate does not contain errors that both results share: of the geometry (a polygon for a curve,\n"
+    "a segmentation), the material, conditions and contacts. It is no upper bound. On clouds too coarse\n"
+    "to converge with this order it may be wrong by a factor of two or three; where a solution is smooth\n"
+    "it is too large by such a factor or more; at single nodes it is less certain than on average.\n"
     "\n"
     "Options:\n"
     "  -p, --order ORDER      assumed order, above 0 and up to 4 (default 1.5)\n"
@@ -59,6 +60,7 @@ static const char usage[] =
 #include "comparison.h"
 
 #include "approx/field_error.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -110,12 +112,8 @@ static double row_difference(const struct section *fine, int64_t i, const struct
 {
     const double *f = (const double *)fine->data + i * fine->cols;
     const double *c = (const double *)coarse->data + k * coarse->cols;
-    double sum = 0.0;
     *length = field_largest(1, fine->cols, f);
-    for (int64_t a = 0; a < fine->cols; a++) {
-        sum += (f[a] - c[a]) * (f[a] - c[a]);
-    }
-    return sqrt(sum);
+    return vector_distance((int)fine->cols, f, c);
 }
 
 static const struct section *find_table(const struct side *side, const char *name, int64_t cols)

@@ -9,9 +9,9 @@ static const char usage[] =
     "materials. The boundary is found from the cells: the mesh needs no names. Options are carried out in\n"
     "their order: a later one may use the names that an earlier one has made.\n"
     "\n"
-    "An EXPRESSION is a row of terms with 'or', 'and', 'without' between them, taken from left to right;\n"
-    "behind a term, 'grown:N' or 'shrunk:N' grows or shrinks what is chosen so far by N rings. What would\n"
-    "need brackets gets a name of its own first, which -d deletes in the end.\n"
+    "An EXPRESSION is a list of terms with 'or', 'and', 'without' between them, evaluated from left to\n"
+    "right; after a term, 'grown:N' or 'shrunk:N' grows or shrinks what is chosen so far by N rings. There\n"
+    "are no brackets: make a group of the inner part first, and delete it at the end by -d.\n"
     "\n"
     "Terms, in 3D (in 2D points and directions are of two numbers):\n"
     "  all                     the whole boundary, all nodes, all cells\n"
@@ -36,9 +36,9 @@ static const char usage[] =
     "A facet or cell lies where its centre lies. Facets and nodes of a region or body are those of its\n"
     "cells; facets and cells of a set have all nodes in it.\n"
     "\n"
-    "A selection of nothing and a name that exists already are errors; a new group that overlaps another\n"
-    "that it was not made of is noted. A new region takes its cells from the others; one without cells\n"
-    "loses its name. When facets change, the sections of support and shapefn are left out.\n"
+    "An empty selection and a name that exists already are errors. If a new group overlaps another, and\n"
+    "neither was made of the other, a note says so. A new region takes its cells from the other regions; a\n"
+    "region without cells is removed. When facets change, the sections of support and shapefn are removed.\n"
     "\n"
     "Options:\n"
     "  -f, --facets NAME=EXPRESSION ...  a group of facets of the boundary\n"
@@ -66,6 +66,7 @@ static const char usage[] =
 #include "base/box.h"
 #include "base/memory.h"
 #include "io/sections.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -132,8 +133,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
     }
     TRY(group_put(body, kind, name, chosen, request->use->value, error));
 done:
-    free(chosen);
-    free(name);
+    FREE_ALL(chosen, name);
     return status;
 }
 
@@ -289,7 +289,6 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     for (int64_t i = 0; i < group->count; i++) {
         int32_t item = group->item[i];
         double normal[3];
-        double square = 0;
         for (int k = 0; k < items->corners; k++) {
             box_add(&box, 1, items->x + (int64_t)items->item[item * items->corners + k] * dim);
         }
@@ -297,11 +296,8 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
             size += cell_volume(&body->cells, item);
         } else if (kind == GROUP_FACETS) {
             face_area_vector(dim, items->x, items->item + (int64_t)item * dim, normal);
-            for (int k = 0; k < dim; k++) {
-                sum[k] += normal[k];
-                square += normal[k] * normal[k];
-            }
-            size += sqrt(square);
+            add_scaled(dim, 1.0, normal, sum);
+            size += vector_length(dim, normal);
         }
     }
     text_append(text, sizeof text, "%lld", (long long)group->count);

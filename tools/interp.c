@@ -189,8 +189,7 @@ static enum status make_table(const struct tool *tool, const struct solved *know
     TRY(field_table_build(support, shapes, &cells, radius, points->count, points->x,
                           file != NULL ? file : "points.x", &points->table, error));
 done:
-    free(spacing);
-    free(radius);
+    FREE_ALL(spacing, radius);
     return status;
 }
 

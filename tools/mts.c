@@ -87,23 +87,15 @@ static int print(struct tool *tool)
     return tool_end(tool);
 }
 
-static int convert(struct tool *tool, bool text)
+/* The commands text and binary. */
+static int convert(struct tool *tool)
 {
     struct stream stream;
+    bool text = strcmp(tool->operands[0], "text") == 0;
     tool_read(tool, tool->operands[1], &stream);
     tool_copy(tool, &stream, text);
     stream_free(&stream);
     return tool_end(tool);
-}
-
-static int to_text(struct tool *tool)
-{
-    return convert(tool, true);
-}
-
-static int to_binary(struct tool *tool)
-{
-    return convert(tool, false);
 }
 
 static void print_violation(void *context, const char *text)
@@ -182,9 +174,11 @@ static bool matches(const char *name, char *const patterns[], int count, bool us
     return any;
 }
 
-static int select_sections(struct tool *tool, bool keep)
+/* The commands keep and drop. */
+static int select_sections(struct tool *tool)
 {
     enum { MOST = 64 };
+    bool keep = strcmp(tool->operands[0], "keep") == 0;
     char *patterns[MOST];
     bool used[MOST] = {false};
     int count = 0;
@@ -214,20 +208,15 @@ static int select_sections(struct tool *tool, bool keep)
     return tool_end(tool);
 }
 
-static int keep(struct tool *tool)
-{
-    return select_sections(tool, true);
-}
-
-static int drop(struct tool *tool)
-{
-    return select_sections(tool, false);
-}
-
 static const struct command commands[] = {
-    {"list", 0, 1, "v", list},        {"print", 1, 2, "", print}, {"text", 0, 1, "o", to_text},
-    {"binary", 0, 1, "o", to_binary}, {"check", 0, 1, "", check}, {"recover", 0, 1, "to", recover},
-    {"keep", 1, 2, "to", keep},       {"drop", 1, 2, "to", drop},
+    {"list", 0, 1, "v", list},
+    {"print", 1, 2, "", print},
+    {"text", 0, 1, "o", convert},
+    {"binary", 0, 1, "o", convert},
+    {"check", 0, 1, "", check},
+    {"recover", 0, 1, "to", recover},
+    {"keep", 1, 2, "to", select_sections},
+    {"drop", 1, 2, "to", select_sections},
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -60,7 +60,6 @@ static const char usage[] =
 #include "base/box.h"
 
 #include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 static void read_mesh(const struct tool *tool, struct msh *msh)

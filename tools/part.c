@@ -43,17 +43,6 @@ static const char usage[] =
 #include <string.h>
 #include <zlib.h>
 
-/* "NAME with %d" with a number in its place; to be freed. */
-static char *numbered(const struct tool *tool, const char *name, int32_t number)
-{
-    const char *at = strstr(name, "%d");
-    int before = at != NULL ? (int)(at - name) : 0;
-    if (at == NULL || strstr(at + 1, "%d") != NULL) {
-        tool_fail(tool, STATUS_INPUT, "-o %s: has to have one %%d, where the number of the part goes", name);
-    }
-    return tool_text(tool, "%.*s%d%s", before, name, number, name + before + 2);
-}
-
 /* What -v tells. */
 struct report {
     double own, nodes, needed, others, work;
@@ -98,7 +87,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
         add(body.work, &report->work, &report->most_work);
         if (wanted) {
             cut_body_make_part(whole, k, &body);
-            char *file = numbered(whole->tool, name, k);
+            char *file = tool_numbered(whole->tool, "-o ", name, k);
             whole->tool->output = file;
             if (k == 0) {
                 tool_write(whole->tool, whole->stream, text); /* and how it was made, for all */
@@ -163,7 +152,7 @@ int main(int argc, char *argv[])
     whole.partition.widen = tool_number(&tool, "widen", 1.0, 8.0, 1.5);
     radius_parse(&tool, &support);
     if (tool.output != NULL) {
-        free(numbered(&tool, tool.output, 0));
+        free(tool_numbered(&tool, "-o ", tool.output, 0));
     } else if (!tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -o NAME or -v (see -h)");
     }

@@ -287,8 +287,7 @@ int main(int argc, char *argv[])
         print_rows(target.file, &request, &rows);
         target_end(&tool, &target);
     }
-    free(rows.x);
-    free(rows.value);
+    FREE_ALL(rows.x, rows.value);
     tissue_free(&request.tissue);
     stream_free(&stream);
     return tool_end(&tool);

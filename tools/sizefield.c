@@ -102,9 +102,7 @@ struct layered {
 
 static void layered_free(struct layered *layered)
 {
-    free(layered->x);
-    free(layered->node);
-    free(layered->size);
+    FREE_ALL(layered->x, layered->node, layered->size);
 }
 
 static enum status layered_make(const struct cells *cells, const struct size_field *field,

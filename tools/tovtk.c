@@ -47,12 +47,6 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_named(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    return length >= tail && strcmp(path + length - tail, ending) == 0;
-}
-
 /* One frame as a vtu file. */
 static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
 {
@@ -88,9 +82,7 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }
-    free(paths);
-    free(names);
-    free(times);
+    FREE_ALL(paths, names, times);
 }
 
 /* Exits where the ending of the output's name is not one of ours. */
@@ -111,7 +103,7 @@ int main(int argc, char *argv[])
     struct target target;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     check_ending(&tool);
-    bool is_series = tool.output != NULL && is_named(tool.output, ".pvd");
+    bool is_series = tool.output != NULL && text_ends(tool.output, ".pvd");
     tool_read(&tool, tool.operands[0], &plot.stream);
     tool_check(&tool, plot_find(&plot, &error), &error);
     if (is_series) {

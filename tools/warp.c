@@ -10,15 +10,15 @@ static const char usage[] =
     "the place X that moves to x, X + u(X) = x. The world axes of the image are those of the nodes: x to\n"
     "the right, y to the front, z up. A body in 2D moves an image of one slice: its x and y are the two\n"
     "world axes in the slice, in their order.\n"
-    "Scans, colours (RGB) and labels are taken, of any type, size of voxels, order and direction of axes;\n"
-    "values keep their type and scaling.\n"
+    "Images may be scans, colours (RGB) or labels, of any type, size of voxels, order and direction of\n"
+    "axes; values keep their type and scaling.\n"
     "\n"
     "Between the nodes the displacement is quadratic in each cell, continuous, with the gradients of the\n"
     "field that mtled solved for (its section parameters) at the nodes, or of a fit where the stream\n"
     "does not tell that field. Places are found by Newton's method to 1e-4 of a voxel, from\n"
-    "the moved cell that the voxel lies in. Voxels outside of the moved body stay as they are: so does\n"
-    "what the body uncovers, which is told, unless --vacated or --fill gives it a value. Where X lies\n"
-    "outside of IMAGE the value is that of --fill, or 0, and the voxels are counted.\n"
+    "the moved cell that the voxel lies in. Voxels outside of the moved body keep their value. So do\n"
+    "voxels that the body has left, with a note, unless --vacated or --fill gives them a value. Where X\n"
+    "lies outside of IMAGE the value is that of --fill, or 0, and a note counts these voxels.\n"
     "\n"
     "With --field the displacement field is written on the grid of an image instead: a vector image of\n"
     "5 dimensions (intent 1007, float32) as programs based on ITK take it (3D Slicer, ANTs, plastimatch).\n"
@@ -26,7 +26,7 @@ static const char usage[] =
     "left, to the back, up (LPS). It is 0 outside of the moved body.\n"
     "\n"
     "The image written is compressed unless FILE ends in .nii. A body of which no voxel is inside, or that\n"
-    "is a hundred times larger than the image, is refused; folded cells are told and left out.\n"
+    "is a hundred times larger than the image, is refused; folded cells are left out, with a note.\n"
     "\n"
     "Options:\n"
     "  -i, --interpolation METHOD\n"
@@ -60,7 +60,6 @@ static const char usage[] =
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double tolerance = 1e-4; /* of the places, in voxels */
@@ -292,8 +291,7 @@ int main(int argc, char *argv[])
     }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);
-    free(owner);
-    free(other);
+    FREE_ALL(owner, other);
     motion_free(&motion);
     image_free(&image);
     image_free(&like);

@@ -173,8 +173,7 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
     TRY(place_points(&refinement, &leaves, points, error));
 done:
     support_space_free(&refinement.space);
-    free(refinement.norm);
-    free(leaves.leaf);
+    FREE_ALL(refinement.norm, leaves.leaf);
     if (status != STATUS_OK) {
         adaptive_points_free(points);
     }
@@ -183,9 +182,6 @@ done:
 
 void adaptive_points_free(struct adaptive_points *points)
 {
-    free(points->x);
-    free(points->weight);
-    free(points->cell);
-    free(points->level);
+    FREE_ALL(points->x, points->weight, points->cell, points->level);
     *points = (struct adaptive_points){0};
 }

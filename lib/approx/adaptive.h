@@ -6,8 +6,6 @@
 #include "approx/cells.h"
 #include "approx/support.h"
 
-#include <stdbool.h>
-
 #define ADAPTIVE_MOST_LEVELS 10
 
 struct adaptive_options {

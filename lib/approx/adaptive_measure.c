@@ -56,8 +56,7 @@ static void sample_free(struct sample *sample)
 {
     free(sample->x);
     support_free(&sample->lists);
-    free(sample->phi);
-    free(sample->dphi);
+    FREE_ALL(sample->phi, sample->dphi);
 }
 
 static enum status sample_leaves(const struct refinement *refinement, struct leaf *const *leaf, int64_t count,
@@ -163,9 +162,7 @@ static enum status measure(const struct refinement *refinement, const struct sam
     }
     *change = norm_of(matrix, n);
 done:
-    free(united);
-    free(place);
-    free(matrix);
+    FREE_ALL(united, place, matrix);
     return status;
 }
 

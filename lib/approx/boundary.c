@@ -199,11 +199,7 @@ static enum status build(const struct face_table *table, const struct facet_set 
         TRY(row_finish(&row, whole, part, &capacity, averages, error));
     }
 done:
-    free(corners);
-    free(face_of);
-    free(row.value);
-    free(row.touched);
-    free(row.is_touched);
+    FREE_ALL(corners, face_of, row.value, row.touched, row.is_touched);
     if (status != STATUS_OK) {
         boundary_averages_free(averages);
     }
@@ -236,8 +232,7 @@ enum status boundary_sides_build(const struct face_table *table, const struct fa
 
 void boundary_sides_free(struct boundary_sides *sides)
 {
-    free(sides->group);
-    free(sides->flat);
+    FREE_ALL(sides->group, sides->flat);
     *sides = (struct boundary_sides){0};
 }
 
@@ -323,16 +318,8 @@ done:
 
 void boundary_averages_free(struct boundary_averages *averages)
 {
-    free(averages->node);
-    free(averages->area);
-    free(averages->normal);
-    free(averages->position);
-    free(averages->ptr);
-    free(averages->idx);
-    free(averages->phi);
-    free(averages->sample_ptr);
-    free(averages->sample_x);
-    free(averages->sample_share);
-    free(averages->sample_point);
+    FREE_ALL(averages->node, averages->area, averages->normal, averages->position, averages->ptr,
+             averages->idx, averages->phi, averages->sample_ptr, averages->sample_x, averages->sample_share,
+             averages->sample_point);
     *averages = (struct boundary_averages){0};
 }

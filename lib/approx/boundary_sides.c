@@ -12,57 +12,22 @@
  * that round-off does not decide on chamfers. */
 static const double side_cosine = 0.7072;
 
-/* A face by its sorted nodes, for look-up. */
-struct keyed_face {
-    int32_t key[3];
-    int64_t face;
-};
-
-static int compare_faces(const void *left, const void *right)
-{
-    const struct keyed_face *a = left, *b = right;
-    for (int i = 0; i < 3; i++) {
-        if (a->key[i] != b->key[i]) {
-            return a->key[i] < b->key[i] ? -1 : 1;
-        }
-    }
-    return 0;
-}
-
 enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set, int64_t *face_of,
                                 struct error *error)
 {
-    enum status status;
-    struct keyed_face *keyed = NULL;
-    int dim = table->dim;
-    int64_t count = 0;
-    for (int64_t i = 0; i < set->count * dim; i++) {
+    for (int64_t i = 0; i < set->count * table->dim; i++) {
         if (set->facet[i] < 0 || set->facet[i] >= table->node_count) {
             return fail(error, STATUS_INPUT, "facets: no node %d", set->facet[i]);
         }
     }
-    TRY(NEW_ARRAY(&keyed, table->faces->count, error));
-    for (int64_t f = 0; f < table->faces->count; f++) {
-        if (table->faces->cell[2 * f + 1] < 0) {
-            face_key(dim, table->faces->node + f * dim, keyed[count].key);
-            keyed[count++].face = f;
-        }
-    }
-    qsort(keyed, (size_t)count, sizeof *keyed, compare_faces);
+    RETURN_IF_ERROR(faces_find(table->faces, set->count, set->facet, face_of, error));
     for (int64_t i = 0; i < set->count; i++) {
-        struct keyed_face wanted;
-        face_key(dim, set->facet + i * dim, wanted.key);
-        const struct keyed_face *found = bsearch(&wanted, keyed, (size_t)count, sizeof *keyed, compare_faces);
-        if (found == NULL) {
-            status = fail(error, STATUS_INPUT, "facets: row %lld of the set is no boundary face of the cells",
-                          (long long)i);
-            goto done;
+        if (face_of[i] < 0) {
+            return fail(error, STATUS_INPUT, "facets: row %lld of the set is no boundary face of the cells",
+                        (long long)i);
         }
-        face_of[i] = found->face;
     }
-done:
-    free(keyed);
-    return status;
+    return STATUS_OK;
 }
 
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size)
@@ -109,7 +74,7 @@ static bool of_one_side(const struct face_table *table, const int32_t *a, const 
     }
     boundary_unit_normal(table, a, na, &size);
     boundary_unit_normal(table, b, nb, &size);
-    return na[0] * nb[0] + na[1] * nb[1] + na[2] * nb[2] >= side_cosine;
+    return vector_dot(3, na, nb) >= side_cosine;
 }
 
 static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
@@ -224,9 +189,7 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
     }
     qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
 done:
-    free(side);
-    free(piece);
-    free(part);
+    FREE_ALL(side, piece, part);
     return status;
 }
 
@@ -256,8 +219,6 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
         }
     }
 done:
-    free(row);
-    free(ptr);
-    free(at);
+    FREE_ALL(row, ptr, at);
     return status;
 }

@@ -1,6 +1,7 @@
 #include "approx/cells.h"
 
 #include "approx/face_rows.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -218,8 +219,7 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
         }
     }
 done:
-    free(start);
-    free(filed);
+    FREE_ALL(start, filed);
     return status;
 }
 
@@ -269,6 +269,41 @@ done:
     return status;
 }
 
+/* A face by its nodes in ascending order. */
+struct keyed_face {
+    int32_t key[3];
+    int64_t face;
+};
+
+static int compare_keys(const void *left, const void *right)
+{
+    return compare_numbers(3, ((const struct keyed_face *)left)->key,
+                           ((const struct keyed_face *)right)->key);
+}
+
+enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,
+                       struct error *error)
+{
+    struct keyed_face *keyed, wanted;
+    int dim = faces->dim;
+    int64_t known = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&keyed, faces->count, error));
+    for (int64_t f = 0; f < faces->count; f++) {
+        if (faces->cell[2 * f + 1] < 0) {
+            face_key(dim, faces->node + f * dim, keyed[known].key);
+            keyed[known++].face = f;
+        }
+    }
+    qsort(keyed, (size_t)known, sizeof *keyed, compare_keys);
+    for (int64_t i = 0; i < count; i++) {
+        face_key(dim, facet + i * dim, wanted.key);
+        const struct keyed_face *same = bsearch(&wanted, keyed, (size_t)known, sizeof *keyed, compare_keys);
+        found[i] = same != NULL ? same->face : -1;
+    }
+    free(keyed);
+    return STATUS_OK;
+}
+
 enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
 {
     enum status status;
@@ -287,9 +322,7 @@ done:
 
 void faces_free(struct faces *faces)
 {
-    free(faces->node);
-    free(faces->cell);
-    free(faces->row);
+    FREE_ALL(faces->node, faces->cell, faces->row);
     *faces = (struct faces){0};
 }
 

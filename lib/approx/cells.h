@@ -61,6 +61,12 @@ MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only
                                    struct error *error);
 void faces_free(struct faces *faces);
 
+/* found[count]: the face on the boundary that each facet[count * dim] is, whichever way it is turned; -1:
+ * none.
+ */
+MUST_CHECK enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet,
+                                  int64_t *found, struct error *error);
+
 /* across[count * (dim + 1)]: the cell beyond the face opposite each vertex, -1 on the boundary. Errors as
  * faces_build. */
 MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, struct error *error);

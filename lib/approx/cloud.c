@@ -298,10 +298,7 @@ done:
 
 void cloud_free(struct cloud *cloud)
 {
-    free(cloud->x);
-    free(cloud->cells);
-    free(cloud->facets);
-    free(cloud->facet_set);
+    FREE_ALL(cloud->x, cloud->cells, cloud->facets, cloud->facet_set);
     *cloud = (struct cloud){0};
 }
 

@@ -32,9 +32,7 @@ static enum status number_edges(int64_t node_count, const struct faces *faces, i
         edge[i] = e;
     }
 done:
-    free(last);
-    free(before);
-    free(higher);
+    FREE_ALL(last, before, higher);
     return status;
 }
 
@@ -89,9 +87,7 @@ enum status face_rows_number(int64_t node_count, const int32_t *side, struct fac
         }
     }
 done:
-    free(edge);
-    free(outer);
-    free(row_of);
+    FREE_ALL(edge, outer, row_of);
     return status;
 }
 
@@ -115,8 +111,7 @@ static enum status rows_of_edges(int64_t node_count, const struct faces *faces, 
         row[i] = row_of[edge[i]] - 1;
     }
 done:
-    free(edge);
-    free(row_of);
+    FREE_ALL(edge, row_of);
     return status;
 }
 

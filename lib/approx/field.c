@@ -79,10 +79,7 @@ static enum status outside_of_cells(const struct cells *cells, const double *spa
     }
 done:
     point_grid_free(&grid);
-    free(near.index);
-    free(centre);
-    free(radius);
-    free(size);
+    FREE_ALL(near.index, centre, radius, size);
     return status;
 }
 

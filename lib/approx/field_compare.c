@@ -2,6 +2,7 @@
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
@@ -50,9 +51,7 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
     }
 done:
     point_grid_free(&grid);
-    free(list.index);
-    free(radius);
-    free(used);
+    FREE_ALL(list.index, radius, used);
     return status;
 }
 
@@ -79,12 +78,7 @@ enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t
 void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
 {
     for (int64_t i = 0; i < count; i++) {
-        double sum = 0.0;
-        for (int64_t c = 0; c < cols; c++) {
-            double d = a[i * cols + c] - b[i * cols + c];
-            sum += d * d;
-        }
-        difference[i] = sqrt(sum);
+        difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
     }
 }
 
@@ -92,10 +86,7 @@ double field_largest(int64_t count, int64_t cols, const double *field)
 {
     double largest2 = 0.0;
     for (int64_t i = 0; i < count; i++) {
-        double sum = 0.0;
-        for (int64_t c = 0; c < cols; c++) {
-            sum += field[i * cols + c] * field[i * cols + c];
-        }
+        double sum = vector_dot((int)cols, field + i * cols, field + i * cols);
         if (isnan(sum)) {
             return NAN;
         }
@@ -211,10 +202,7 @@ static enum status interpolate(const struct nodal_field *a, const struct nodal_f
     }
 done:
     field_table_free(&table);
-    free(spacing);
-    free(radius);
-    free(points);
-    free(values);
+    FREE_ALL(spacing, radius, points, values);
     return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */
 }
 
@@ -250,14 +238,12 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     }
     field_difference(count, cols, a->values, reference, comparison->difference);
 done:
-    free(match);
-    free(reference);
+    FREE_ALL(match, reference);
     return status;
 }
 
 void field_comparison_free(struct field_comparison *comparison)
 {
-    free(comparison->node);
-    free(comparison->difference);
+    FREE_ALL(comparison->node, comparison->difference);
     *comparison = (struct field_comparison){0};
 }

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 double field_error_share(double ratio, double order)
@@ -156,8 +155,6 @@ enum status field_error_recovered(const struct cells *cells, const int32_t *regi
         recover_region(cells, region, r, size, gradient, recovered, volume, squared);
     }
 done:
-    free(gradient);
-    free(recovered);
-    free(volume);
+    FREE_ALL(gradient, recovered, volume);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "approx/shape.h"
 #include "approx/support_space.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -95,9 +96,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
         }
     }
 done:
-    free(radius);
-    free(phi);
-    free(dphi);
+    FREE_ALL(radius, phi, dphi);
     support_free(&lists);
     support_space_free(&space);
     return status;
@@ -137,10 +136,7 @@ done:
 
 void motion_free(struct motion *motion)
 {
-    free(motion->gradient);
-    free(motion->shape);
-    free(motion->across);
-    free(motion->moved);
+    FREE_ALL(motion->gradient, motion->shape, motion->across, motion->moved);
     *motion = (struct motion){0};
 }
 
@@ -271,12 +267,8 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
             shapes(motion, dim, current, X, N);
         }
         place(motion, dim, current, X, N, at, F);
-        double square = 0;
-        for (int i = 0; i < dim; i++) {
-            at[i] = x[i] - at[i];
-            square += at[i] * at[i];
-        }
-        *residual = sqrt(square);
+        vector_subtract(dim, x, at, at);
+        *residual = vector_length(dim, at);
         first = step == 0 ? *residual : first;
         if (*residual <= tolerance) {
             return true;

@@ -20,8 +20,7 @@ enum status cell_stars_build(const struct cells *cells, struct cell_stars *stars
 
 void cell_stars_free(struct cell_stars *stars)
 {
-    free(stars->ptr);
-    free(stars->cell);
+    FREE_ALL(stars->ptr, stars->cell);
     *stars = (struct cell_stars){0};
 }
 
@@ -59,8 +58,7 @@ enum status partition_own_cells(const struct partition *partition, int64_t **own
 done:
     free(part);
     if (status != STATUS_OK) {
-        free(*own_ptr);
-        free(*own_cell);
+        FREE_ALL(*own_ptr, *own_cell);
         *own_ptr = NULL;
         *own_cell = NULL;
     }
@@ -104,10 +102,7 @@ enum status partition_work(const struct cells *cells, const struct point_grid *g
 
 void body_part_work_free(struct body_part_work *work)
 {
-    free(work->mark);
-    free(work->cell_mark);
-    free(work->part_mark);
-    free(work->near.index);
+    FREE_ALL(work->mark, work->cell_mark, work->part_mark, work->near.index);
     *work = (struct body_part_work){0};
 }
 
@@ -254,14 +249,12 @@ enum status body_part_build(const struct partition *partition, int32_t part, con
         found.index = NULL;
     }
 done:
-    free(nodes.index);
-    free(found.index);
+    FREE_ALL(nodes.index, found.index);
     return status;
 }
 
 void body_part_free(struct body_part *body)
 {
-    free(body->node);
-    free(body->cell);
+    FREE_ALL(body->node, body->cell);
     *body = (struct body_part){0};
 }

@@ -13,9 +13,7 @@ struct graph {
 
 static void graph_free(struct graph *graph)
 {
-    free(graph->ptr);
-    free(graph->other);
-    free(graph->weight);
+    FREE_ALL(graph->ptr, graph->other, graph->weight);
 }
 
 /* List, unless `other` is NULL, and count the nodes that share cells with node n. */
@@ -117,7 +115,6 @@ enum status partition_nodes(const struct cells *cells, const struct cell_stars *
     }
 done:
     graph_free(&graph);
-    free(own);
-    free(part);
+    FREE_ALL(own, part);
     return status;
 }

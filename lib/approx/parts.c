@@ -7,28 +7,14 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-struct part {
-    double size;
-    int32_t root;
-};
-
-static int compare_parts(const void *left, const void *right)
-{
-    const struct part *a = left;
-    const struct part *b = right;
-    return a->size != b->size ? (a->size < b->size) - (a->size > b->size)
-                              : (a->root > b->root) - (a->root < b->root);
-}
 
 /* Number the sets by falling size: part[item] from parent[item]. */
 static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
                                 int32_t *count, struct error *error)
 {
     enum status status = STATUS_OK;
-    struct part *parts = NULL;
-    int32_t *place = NULL; /* of a root: its place among the parts, then its number */
+    struct placed *parts = NULL; /* by the negative of their size */
+    int32_t *place = NULL;       /* of a root: its place among the parts, then its number */
     *count = 0;
     TRY(NEW_ARRAY(&parts, items, error));
     TRY(NEW_ARRAY(&place, items, error));
@@ -36,20 +22,19 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
         int32_t root = set_first(parent, (int32_t)i);
         if (root == i) {
             place[i] = *count;
-            parts[(*count)++].root = root;
+            parts[(*count)++].item = root;
         }
-        parts[place[root]].size += size[i];
+        parts[place[root]].place -= size[i];
     }
-    qsort(parts, (size_t)*count, sizeof *parts, compare_parts);
+    qsort(parts, (size_t)*count, sizeof *parts, compare_placed);
     for (int32_t p = 0; p < *count; p++) {
-        place[parts[p].root] = p;
+        place[parts[p].item] = p;
     }
     for (int64_t i = 0; i < items; i++) {
         part[i] = place[set_first(parent, (int32_t)i)];
     }
 done:
-    free(parts);
-    free(place);
+    FREE_ALL(parts, place);
     return status;
 }
 
@@ -82,8 +67,7 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     TRY(number_parts(cells->count, parent, volume, part, count, error));
 done:
     faces_free(&faces);
-    free(parent);
-    free(volume);
+    FREE_ALL(parent, volume);
     return status;
 }
 
@@ -148,10 +132,7 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     }
     TRY(number_parts(boundary->count, parent, area, part, count, error));
 done:
-    free(parent);
-    free(area);
-    free(normal);
-    free(ridges);
+    FREE_ALL(parent, area, normal, ridges);
     return status;
 }
 
@@ -185,9 +166,9 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
-/* Let `chosen` items and nodes take in each other's neighbours: rings times, beginning with the nodes of the
- * items or the items of the nodes; rings < 0: those that are not chosen. */
-static enum status grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
+/* Chosen items and nodes take in each other's neighbours, beginning with the nodes of the items or the items
+ * of the nodes. */
+enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
                         bool of_items, bool *chosen, struct error *error)
 {
     bool *other;
@@ -208,16 +189,4 @@ static enum status grow(int64_t count, int corners, const int32_t *item, int64_t
     }
     free(other);
     return STATUS_OK;
-}
-
-enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
-                       bool *chosen, struct error *error)
-{
-    return grow(count, corners, item, node_count, rings, true, chosen, error);
-}
-
-enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
-                       bool *chosen, struct error *error)
-{
-    return grow(count, corners, item, node_count, rings, false, chosen, error);
 }

@@ -28,14 +28,10 @@ MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int
 MUST_CHECK enum status boundary_sides(const double *x, const struct faces *boundary, double degrees,
                                       int32_t *part, int32_t *count, struct error *error);
 
-/* Grow a choice of items of `corners` nodes each by the items that share a node with a chosen one, `rings`
- * times; or, with `rings` negative, shrink it by the items that share a node with one that is not chosen.
+/* Grow a choice by `rings` rings of neighbours; with `rings` negative shrink it, by those of what is not
+ * chosen. Of items, chosen[count]: neighbours have a node in common; of nodes, chosen[node_count]: an item.
  * item[count * corners] indexes node_count nodes. */
-MUST_CHECK enum status items_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
-                                  int rings, bool *chosen, struct error *error);
-
-/* The same for a choice of nodes, chosen[node_count]: nodes that share an item. */
-MUST_CHECK enum status nodes_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
-                                  int rings, bool *chosen, struct error *error);
+MUST_CHECK enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
+                                   int rings, bool of_items, bool *chosen, struct error *error);
 
 #endif

@@ -141,9 +141,7 @@ done:
 void point_grid_free(struct point_grid *grid)
 {
     for (int l = 0; l < grid->level_count; l++) {
-        free(grid->level[l].start);
-        free(grid->level[l].node);
-        free(grid->level[l].place);
+        FREE_ALL(grid->level[l].start, grid->level[l].node, grid->level[l].place);
     }
     *grid = (struct point_grid){0};
 }

@@ -27,11 +27,11 @@ static double tetrahedron_quality(double volume, const double *const x[4])
         const double *u = x[(i + 1) % 4];
         const double *v = x[(i + 2) % 4];
         const double *w = x[(i + 3) % 4];
-        double s[3], t[3];
+        double s[3], t[3], normal[3];
         vector_subtract(3, v, u, s);
         vector_subtract(3, w, u, t);
-        surface +=
-            hypot(hypot(s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2]), s[0] * t[1] - s[1] * t[0]) / 2;
+        vector_cross(s, t, normal);
+        surface += hypot(hypot(normal[0], normal[1]), normal[2]) / 2;
     }
     double product = p * (p - a) * (p - b) * (p - c);
     return 54 * volume * fabs(volume) / (surface * sqrt(fmax(product, 0)));

@@ -4,7 +4,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *const reach_names[REACH_RULE_COUNT] = {"cells", "distance"};
@@ -81,9 +80,7 @@ static enum status keep(const struct reach *reach, double widen, int32_t *index,
         int32_t node = index[i];
         double *image = work->image + kept * dim, bend[3], length;
         if (!reach_is_hidden(work, node)) {
-            for (int a = 0; a < dim; a++) {
-                image[a] = reach->cells.x[(int64_t)node * dim + a] - work->x[a];
-            }
+            vector_subtract(dim, reach->cells.x + (int64_t)node * dim, work->x, image);
             index[kept++] = node;
             continue;
         }
@@ -119,19 +116,8 @@ enum status reach_filter(const struct reach *reach, const struct reach_shadows *
 
 void reach_free(struct reach *reach)
 {
-    free(reach->across);
-    free(reach->star_ptr);
-    free(reach->star);
-    free(reach->facet);
-    free(reach->shadow);
-    free(reach->shadowed);
-    free(reach->corner);
-    free(reach->edge_ptr);
-    free(reach->edge);
-    free(reach->seen_ptr);
-    free(reach->seen);
-    free(reach->seen_length);
-    free(reach->hidden_ptr);
-    free(reach->hidden);
+    FREE_ALL(reach->across, reach->star_ptr, reach->star, reach->facet, reach->shadow, reach->shadowed,
+             reach->corner, reach->edge_ptr, reach->edge, reach->seen_ptr, reach->seen, reach->seen_length,
+             reach->hidden_ptr, reach->hidden);
     *reach = (struct reach){0};
 }

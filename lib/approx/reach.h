@@ -3,16 +3,18 @@
  * A node is in sight of a point when the straight segment between them stays within the cells, from face to
  * face (visibility: Belytschko, Lu and Gu 1994). Around a re-entrant corner the distance is the length of the
  * shortest path through the body (diffraction: Organ, Fleming, Terry and Belytschko 1996), which grows
- * continuously from the straight one, so that the weights do. What no path shorter than the support radius
- * leads to is no neighbour. Paths bend at re-entrant nodes, in 3D also within re-entrant edges; a node where
- * cells hang together by no face joins nothing but itself: it sees what each of its cells sees. */
+ * continuously from the straight one, so that the weights do. A node to
+ * which every path is longer than its support radius is no neighbour. Paths bend at re-entrant nodes, in 3D
+ * also within re-entrant edges. Cells that have only a node in common are not connected by it; the node
+ * itself sees what each of these cells sees. */
 #ifndef APPROX_REACH_H
 #define APPROX_REACH_H
 
 #include "approx/cells.h"
 #include "approx/point_grid.h"
 
-/* What neighbours are: nodes within reach through the cells, where there are cells; or all that are near. */
+/* Which nodes are neighbours: those within reach through the cells, where there are cells; or all that are
+ * near. */
 enum reach_rule { REACH_CELLS, REACH_DISTANCE, REACH_RULE_COUNT };
 
 /* Names for command lines and headers: "cells", "distance". */
@@ -62,8 +64,8 @@ MUST_CHECK enum status reach_build(const struct cells *cells, const struct point
 MUST_CHECK enum status reach_build_cells(const struct cells *cells, struct reach *reach, struct error *error);
 void reach_free(struct reach *reach);
 
-/* The cells that points lie in. Zeros: unknown, to be found. A point outside of all cells sees what the
- * nearest place in a cell sees; far from all cells, all that is near enough. */
+/* The cells that points lie in; all members zero: not known, they are searched for. A point outside of all
+ * cells sees what the nearest place in a cell sees; a point far from all cells sees all nodes near it. */
 struct reach_places {
     bool nodes;             /* point p is node p, */
     const int32_t *node;    /* or, unless NULL, that node */

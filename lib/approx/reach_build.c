@@ -40,36 +40,27 @@ enum status pair_list_file(const struct pair_list *pairs, int64_t rows, int64_t 
 
 void pair_list_free(struct pair_list *pairs)
 {
-    free(pairs->row);
-    free(pairs->value);
+    FREE_ALL(pairs->row, pairs->value);
 }
 
 /* The dual of the edges from the first vertex, within the facet. */
 static void set_dual(const struct reach *reach, struct reach_facet *facet)
 {
     int dim = reach->cells.dim;
-    double edge[2][3] = {{0.0}}, product[2][2] = {{0.0}};
+    double edge[2][3] = {{0.0}};
     const double *first = reach->cells.x + (int64_t)facet->node[0] * dim;
     for (int k = 0; k < dim - 1; k++) {
-        for (int a = 0; a < dim; a++) {
-            edge[k][a] = reach->cells.x[(int64_t)facet->node[k + 1] * dim + a] - first[a];
-        }
+        vector_subtract(dim, reach->cells.x + (int64_t)facet->node[k + 1] * dim, first, edge[k]);
     }
+    double first2 = vector_dot(dim, edge[0], edge[0]), product = vector_dot(dim, edge[0], edge[1]);
+    double second2 = dim == 2 ? 1.0 : vector_dot(dim, edge[1], edge[1]);
+    double determinant = first2 * second2 - product * product;
     for (int a = 0; a < dim; a++) {
-        product[0][0] += edge[0][a] * edge[0][a];
-        product[0][1] += edge[0][a] * edge[1][a];
-        product[1][1] += edge[1][a] * edge[1][a];
+        facet->dual[0][a] = (second2 * edge[0][a] - product * edge[1][a]) / determinant;
+        facet->dual[1][a] = (first2 * edge[1][a] - product * edge[0][a]) / determinant;
     }
-    if (dim == 2) {
-        product[1][1] = 1.0;
-    }
-    double determinant = product[0][0] * product[1][1] - product[0][1] * product[0][1];
-    for (int a = 0; a < dim; a++) {
-        facet->dual[0][a] = (product[1][1] * edge[0][a] - product[0][1] * edge[1][a]) / determinant;
-        facet->dual[1][a] = (product[0][0] * edge[1][a] - product[0][1] * edge[0][a]) / determinant;
-        facet->from[0] += facet->dual[0][a] * first[a];
-        facet->from[1] += facet->dual[1][a] * first[a];
-    }
+    facet->from[0] = vector_dot(dim, facet->dual[0], first);
+    facet->from[1] = vector_dot(dim, facet->dual[1], first);
 }
 
 static enum status set_facets(const struct faces *faces, struct reach *reach, struct error *error)
@@ -86,11 +77,9 @@ static enum status set_facets(const struct faces *faces, struct reach *reach, st
         double size = vector_length(3, area);
         for (int a = 0; a < dim; a++) {
             facet->normal[a] = area[a] / size;
-            facet->offset += facet->normal[a] * reach->cells.x[(int64_t)facet->node[0] * dim + a];
-            for (int k = 0; k < dim; k++) {
-                facet->middle[a] += reach->cells.x[(int64_t)facet->node[k] * dim + a] / dim;
-            }
         }
+        facet->offset = vector_dot(dim, facet->normal, reach->cells.x + (int64_t)facet->node[0] * dim);
+        vector_middle(dim, reach->cells.x, dim, facet->node, facet->middle);
         for (int k = 0; k < dim; k++) {
             const double *vertex = reach->cells.x + (int64_t)facet->node[k] * dim;
             facet->radius = fmax(facet->radius, vector_distance(dim, facet->middle, vertex) * (1.0 + 1e-6));

@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Bends of one path that are moved along their re-entrant edges, and sweeps over them. */
@@ -28,15 +27,8 @@ enum status reach_work_reserve(const struct reach *reach, struct reach_work *wor
 
 void reach_work_free(struct reach_work *work)
 {
-    free(work->own.index);
-    free(work->mark);
-    free(work->length);
-    free(work->before);
-    free(work->hidden.index);
-    free(work->reached.index);
-    free(work->stack.index);
-    free(work->visited.index);
-    free(work->image);
+    FREE_ALL(work->own.index, work->mark, work->length, work->before, work->hidden.index, work->reached.index,
+             work->stack.index, work->visited.index, work->image);
     *work = (struct reach_work){0};
 }
 

@@ -187,8 +187,7 @@ done:
 
 void reach_shadows_free(struct reach_shadows *shadows)
 {
-    free(shadows->ptr);
-    free(shadows->shadow);
+    FREE_ALL(shadows->ptr, shadows->shadow);
     *shadows = (struct reach_shadows){0};
 }
 

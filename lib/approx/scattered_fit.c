@@ -52,8 +52,7 @@ done:
 
 void scattered_fit_free(struct scattered_fit *fit)
 {
-    free(fit->x);
-    free(fit->radius);
+    FREE_ALL(fit->x, fit->radius);
     point_grid_free(&fit->grid);
     fit->x = fit->radius = NULL;
 }

@@ -21,7 +21,7 @@ struct scattered_fit {
     int64_t row_size;   /* doubles per row, >= dim + value_count */
     const double *row;  /* count * row_size; coordinates in units of `unit` */
     double unit;        /* m; scales coordinates and values */
-    struct ways *ways;  /* NULL; or which rows are within reach of a node, see scattered_fit_evaluate() */
+    struct ways *ways;  /* unless NULL, only rows within reach of a node count (scattered_fit_evaluate) */
     double *x, *radius; /* what scattered_fit_build() makes: the points, count * dim, in a grid */
     struct point_grid grid;
 };
@@ -31,8 +31,8 @@ struct scattered_fit {
 MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct error *error);
 void scattered_fit_free(struct scattered_fit *fit);
 
-/* values[value_count] at x[dim] (m), which is beside node `from`: where there are ways, only of rows within
- * reach of it (STATUS_INPUT: there are none). *distance receives the distance to the nearest point and
+/* values[value_count] at x[dim] (m), a place beside node `from`. With `ways` only rows within reach of that
+ * node are used; STATUS_INPUT if there are none. *distance receives the distance to the nearest point and
  * *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller can
  * refuse to extrapolate far. */
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,

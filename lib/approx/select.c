@@ -6,7 +6,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static bool contains(int dim, const struct shape *shape, const double *point)
 {
@@ -123,8 +122,6 @@ enum status items_near(const struct items *items, const struct pieces *pieces, d
     }
 done:
     point_grid_free(&grid);
-    free(candidates.index);
-    free(centre);
-    free(radius);
+    FREE_ALL(candidates.index, centre, radius);
     return status;
 }

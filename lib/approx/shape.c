@@ -260,9 +260,6 @@ done:
 
 void face_averages_free(struct face_averages *averages)
 {
-    free(averages->ptr);
-    free(averages->idx);
-    free(averages->phi);
-    free(averages->boundary_phi);
+    FREE_ALL(averages->ptr, averages->idx, averages->phi, averages->boundary_phi);
     *averages = (struct face_averages){0};
 }

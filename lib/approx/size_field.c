@@ -140,18 +140,16 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
     int dim = cells->dim;
     for (int64_t f = 0; f < faces->boundary_count; f++) {
         const int32_t *node = faces->node + f * dim;
-        double least_angle = 0.0; /* at the nodes of the facet; small next to a corner of flat sides */
+        double middle[3],
+            least_angle = 0.0; /* at the nodes of the facet; small next to a corner of flat sides */
         for (int k = 0; k < dim; k++) {
             least_angle = k == 0 ? angle[node[k]] : fmin(least_angle, angle[node[k]]);
         }
+        vector_middle(dim, cells->x, dim, node, middle);
         for (int k = 0; k < dim; k++) {
             double distance = 0.0;
             for (int a = 0; a < dim; a++) {
-                double middle = 0.0;
-                for (int i = 0; i < dim; i++) {
-                    middle += cells->x[node[i] * dim + a] / dim;
-                }
-                distance = hypot(distance, middle - cells->x[node[k] * dim + a]);
+                distance = hypot(distance, middle[a] - cells->x[node[k] * dim + a]);
             }
             if (angle[node[k]] > 0.0 && angle[node[k]] < corner_angle &&
                 least_angle > corner_share * angle[node[k]]) {
@@ -253,16 +251,13 @@ enum status size_field_build(const struct cells *cells, const double *squared,
         field->nodes = request->most_nodes;
     }
 done:
-    free(spacing);
-    free(normal);
-    free(angle);
+    FREE_ALL(spacing, normal, angle);
     return status;
 }
 
 void size_field_free(struct size_field *field)
 {
-    free(field->size);
-    free(field->outer);
+    FREE_ALL(field->size, field->outer);
     faces_free(&field->boundary);
     *field = (struct size_field){0};
 }

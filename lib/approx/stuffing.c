@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
  * normals. */
@@ -87,9 +86,7 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
     TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
 done:
     lattice_free(&lattice);
-    free(apart);
-    free(between);
-    free(dropped);
+    FREE_ALL(apart, between, dropped);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }
@@ -113,10 +110,6 @@ enum status stuffing_make(const struct labels *labels, const struct stuffing_opt
 
 void stuffing_free(struct stuffing *stuffing)
 {
-    free(stuffing->x);
-    free(stuffing->cell);
-    free(stuffing->label);
-    free(stuffing->facet);
-    free(stuffing->side);
+    FREE_ALL(stuffing->x, stuffing->cell, stuffing->label, stuffing->facet, stuffing->side);
     *stuffing = (struct stuffing){0};
 }

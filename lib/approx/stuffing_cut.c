@@ -213,10 +213,7 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
     cutting.x = NULL;
     TRY(stuffing_compact(stuffing, NULL, error));
 done:
-    free(cutting.x);
-    free(cutting.cut_node);
-    free(cutting.cut_edge);
-    free(cutting.second);
+    FREE_ALL(cutting.x, cutting.cut_node, cutting.cut_edge, cutting.second);
     *between = cutting.between;
     if (status != STATUS_OK) {
         stuffing_free(stuffing);

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* A cut within so much of an edge's length moves the point. Edges along the axes and diagonals of cubes:
  * Labelle and Shewchuk 2007, section 3, for the best bound of the angles; diagonals of sides, where leaves of

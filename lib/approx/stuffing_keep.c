@@ -3,7 +3,6 @@
 #include "base/lists.h"
 #include "base/memory.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,10 +49,7 @@ done:
 
 void star_free(struct stuffing_star *star)
 {
-    free(star->ptr);
-    free(star->cell);
-    free(star->label);
-    free(star->labels);
+    FREE_ALL(star->ptr, star->cell, star->label, star->labels);
     *star = (struct stuffing_star){0};
 }
 
@@ -228,11 +224,6 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     keeping.apart = NULL;
 done:
     star_free(&star);
-    free(keeping.across);
-    free(keeping.wanted);
-    free(keeping.group);
-    free(keeping.stack);
-    free(keeping.from);
-    free(keeping.apart);
+    FREE_ALL(keeping.across, keeping.wanted, keeping.group, keeping.stack, keeping.from, keeping.apart);
     return status;
 }

@@ -2,8 +2,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const int64_t most_points = (int64_t)1 << 26;
 
@@ -219,8 +217,7 @@ static enum status add_tetrahedra(struct points *points, const struct stuffing_o
     TRY(octree_cells(&octree, add_tetrahedron, points));
 done:
     octree_free(&octree);
-    free(marked);
-    free(wish);
+    FREE_ALL(marked, wish);
     return status;
 }
 
@@ -294,8 +291,7 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
     TRY(labels->dim == 3 ? add_tetrahedra(&points, options) : add_triangles(&points));
     TRY(make_nodes(&points, error));
 done:
-    free(points.label);
-    free(points.node);
+    FREE_ALL(points.label, points.node);
     if (status != STATUS_OK) {
         lattice_free(lattice);
     }
@@ -304,14 +300,7 @@ done:
 
 void lattice_free(struct lattice *lattice)
 {
-    free(lattice->x);
-    free(lattice->label);
-    free(lattice->place);
-    free(lattice->cell);
-    free(lattice->end);
-    free(lattice->cut);
-    free(lattice->edge_ptr);
-    free(lattice->edge_idx);
-    free(lattice->on);
+    FREE_ALL(lattice->x, lattice->label, lattice->place, lattice->cell, lattice->end, lattice->cut,
+             lattice->edge_ptr, lattice->edge_idx, lattice->on);
     *lattice = (struct lattice){0};
 }

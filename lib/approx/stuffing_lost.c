@@ -4,9 +4,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 /* The grid of the labels without the axis across a slice. */
 struct grid {
     int64_t size[3];
@@ -99,7 +96,6 @@ enum status stuffing_lost(const struct labels *labels, const bool *keep, const s
         }
     }
 done:
-    free(x);
-    free(owner);
+    FREE_ALL(x, owner);
     return status;
 }

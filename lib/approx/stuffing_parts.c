@@ -6,7 +6,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A facet that is alone at a node turns the rim there; beyond this angle, degrees, once the nodes are on
@@ -130,8 +129,7 @@ enum status stuffing_rims(const struct labels *labels, const struct stuffing_opt
         find_rim(options, stuffing, &at, n, (*rim)[n]);
     }
 done:
-    free(at.ptr);
-    free(at.facet);
+    FREE_ALL(at.ptr, at.facet);
     return status;
 }
 

@@ -1,5 +1,4 @@
 #include "approx/stuffing_private.h"
-#include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>

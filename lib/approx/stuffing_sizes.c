@@ -4,7 +4,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Mean length of the edges of the lattice's tetrahedra, two along axes and four half diagonals, by that of a
  * cube's edge: what cells_node_spacing finds. */
@@ -71,7 +70,6 @@ enum status sizes_wish(const struct stuffing_options *options, int levels, const
     }
     *unsized = within > 0 ? (double)beyond / (double)within : 0;
 done:
-    free(x);
-    free(owner);
+    FREE_ALL(x, owner);
     return status;
 }

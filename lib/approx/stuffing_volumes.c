@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Interfaces are moved off their place by at most so much of a voxel for the sake of the labels' volumes. */
@@ -193,11 +192,6 @@ enum status stuffing_volumes(const struct shaping *shaping, const struct stuffin
         correct_volumes(&volumes);
     }
 done:
-    free(whole);
-    free(voxels);
-    free(volumes.wanted);
-    free(volumes.pressure);
-    free(volumes.matrix);
-    free(volumes.place);
+    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.place);
     return status;
 }

@@ -88,15 +88,13 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
             continue;
         }
         int32_t node[3];
-        double area[3], middle[3] = {0.0, 0.0, 0.0}, inward[3];
+        double area[3], middle[3], inward[3];
         cell_face(cells, cell, face, node);
         face_area_vector(dim, cells->x, node, area);
         double size = vector_length(dim, area);
+        vector_middle(dim, cells->x, dim, node, middle);
         for (int a = 0; a < dim; a++) {
             inward[a] = -area[a] / size;
-            for (int k = 0; k < dim; k++) {
-                middle[a] += cells->x[(int64_t)node[k] * dim + a] / dim;
-            }
         }
         double width = facet_width(dim, cells->x, node);
         double ratio = thickness(cells, across, cell, face, middle, inward, bound * width) / width;

@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A way may be so many times as long as the straight one. */
@@ -57,10 +56,7 @@ void ways_free(struct ways *ways)
 {
     reach_free(&ways->reach);
     reach_work_free(&ways->work);
-    free(ways->node);
-    free(ways->verdict);
-    free(ways->length);
-    free(ways->queue);
+    FREE_ALL(ways->node, ways->verdict, ways->length, ways->queue);
     *ways = (struct ways){0};
 }
 

@@ -15,7 +15,7 @@ struct box box_of(int dim, int64_t count, const double *x);
 /* The box of the nodes node[count] of x. */
 struct box box_of_nodes(int dim, const double *x, const int32_t *node, int64_t count);
 
-/* Let it hold these points, too. */
+/* Extend the box to contain these points. */
 void box_add(struct box *box, int64_t count, const double *x);
 
 /* Its longest side, and its diagonal, in the units of x. */

@@ -353,7 +353,6 @@ enum status envelope_share(const struct envelope *factor, const struct ranks *ra
         (*first)[r] = begin[(*first)[r]];
     }
 done:
-    free(begin);
-    free(work);
+    FREE_ALL(begin, work);
     return status;
 }

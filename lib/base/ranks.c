@@ -56,19 +56,10 @@ enum status ranks_agree(const struct ranks *ranks, enum status status, struct er
 
 enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each, struct error *error)
 {
-    enum status status;
-    int count = ranks_count(ranks);
-    int64_t *first = NULL;
-    TRY(NEW_ARRAY(each, count, error));
-    TRY(NEW_ARRAY(&first, count + 1, error));
-    for (int r = 0; r < count; r++) {
-        first[r + 1] = r + 1;
-    }
+    RETURN_IF_ERROR(NEW_ARRAY(each, ranks_count(ranks), error));
     (*each)[ranks_rank(ranks)] = value;
-    ranks_gather(ranks, *each, sizeof **each, first);
-done:
-    free(first);
-    return status;
+    ranks_gather(ranks, *each, sizeof **each, NULL);
+    return STATUS_OK;
 }
 
 enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work, int64_t **first,
@@ -188,9 +179,7 @@ enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
     TRY(NEW_ARRAY(receive, (*receive_first)[count], error));
     ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
 done:
-    free(each);
-    free(many);
-    free(in_turn);
+    FREE_ALL(each, many, in_turn);
     return status;
 }
 

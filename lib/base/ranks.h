@@ -16,7 +16,7 @@
 struct ranks {
     int count, rank; /* this process is rank 0 .. count - 1 */
     /* items[first[count]], of `size` bytes each: those from first[r] to before first[r + 1] are what process
-     * r has; afterwards all have all. */
+     * r has; afterwards all have all. NULL: each has one. */
     void (*gather)(const struct ranks *ranks, void *items, size_t size, const int64_t *first);
     /* send[send_first[r]] to before send[send_first[r + 1]] goes to process r, and what comes from it to
      * receive[receive_first[r]] and behind. Processes that have nothing for each other do not wait. */
@@ -45,7 +45,7 @@ int64_t ranks_most(const struct ranks *ranks, int64_t value);
  * together, and go on or fail alike; of one process it is its own status. */
 MUST_CHECK enum status ranks_agree(const struct ranks *ranks, enum status status, struct error *error);
 
-/* each[count]: the values that the processes have, in turn; to be freed. */
+/* each[count]: the values that the processes have, in their order; to be freed. */
 MUST_CHECK enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each,
                                   struct error *error);
 

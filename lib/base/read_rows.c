@@ -13,8 +13,7 @@ struct row_lists {
 
 static void free_lists(struct row_lists *lists)
 {
-    free(lists->first);
-    free(lists->row);
+    FREE_ALL(lists->first, lists->row);
 }
 
 /* Of the rows read here those that have a column of each process. */
@@ -50,8 +49,7 @@ static enum status list_rows(const struct read_rows *rows, int (*owner)(const vo
         }
     }
 done:
-    free(seen);
-    free(next);
+    FREE_ALL(seen, next);
     return status;
 }
 

@@ -22,4 +22,16 @@ static inline void set_join(int32_t first[], int32_t a, int32_t b)
     first[a > b ? a : b] = a > b ? b : a;
 }
 
+/* first[node_count]: the nodes that cells connect, node[cells * corners], are joined. */
+static inline void set_join_cells(int64_t node_count, int64_t cells, int corners, const int32_t *node,
+                                  int32_t first[])
+{
+    for (int64_t n = 0; n < node_count; n++) {
+        first[n] = (int32_t)n;
+    }
+    for (int64_t i = 0; i < cells * corners; i++) {
+        set_join(first, node[i / corners * corners], node[i]);
+    }
+}
+
 #endif

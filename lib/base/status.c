@@ -51,6 +51,12 @@ void text_append(char *text, size_t size, const char *format, ...)
     va_end(arguments);
 }
 
+bool text_ends(const char *text, const char *ending)
+{
+    size_t length = strlen(text), tail = strlen(ending);
+    return length >= tail && strcmp(text + length - tail, ending) == 0;
+}
+
 enum status fail_memory(struct error *error, const char *what)
 {
     return fail(error, STATUS_SYSTEM, "%s: out of memory", what);

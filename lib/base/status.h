@@ -7,6 +7,7 @@
 #ifndef BASE_STATUS_H
 #define BASE_STATUS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* The values are the exit statuses of the tools. */
@@ -46,6 +47,9 @@ enum status fail_in(struct error *error, enum status status, const char *context
 
 /* Print behind the text that text[size] holds, as far as there is room. */
 void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Whether a text, such as the name of a file, ends in `ending`. */
+bool text_ends(const char *text, const char *ending);
 
 /* fail() with the out-of-memory message for `what`. */
 enum status fail_memory(struct error *error, const char *what);

@@ -3,6 +3,7 @@
 #define BASE_VECTOR_H
 
 #include <math.h>
+#include <stdint.h>
 
 static inline double vector_dot(int dim, const double *a, const double *b)
 {
@@ -47,6 +48,25 @@ static inline void vector_between(int dim, const double *a, const double *b, dou
 {
     for (int i = 0; i < dim; i++) {
         x[i] = a[i] + share * (b[i] - a[i]);
+    }
+}
+
+/* The middle of the corners corner[count], which are indices of x. */
+static inline void vector_middle(int dim, const double *x, int count, const int32_t *corner, double *middle)
+{
+    for (int i = 0; i < dim; i++) {
+        middle[i] = 0.0;
+        for (int k = 0; k < count; k++) {
+            middle[i] += x[(int64_t)corner[k] * dim + i] / count;
+        }
+    }
+}
+
+/* sum = sum + factor x */
+static inline void add_scaled(int dim, double factor, const double *x, double *sum)
+{
+    for (int i = 0; i < dim; i++) {
+        sum[i] += factor * x[i];
     }
 }
 

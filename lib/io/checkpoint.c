@@ -199,8 +199,7 @@ done:
     if (status != STATUS_OK && new != NULL) {
         unlink(new);
     }
-    free(new);
-    free(old);
+    FREE_ALL(new, old);
     return status;
 }
 

@@ -97,4 +97,7 @@ void image_map(const double *m, const double x[3], double place[3]);
 /* The place of a voxel index, which need not be whole, m. */
 void image_world(const struct image *image, const double voxel[3], double world[3]);
 
+/* The length of a voxel along its axis, m. */
+double image_step(const struct image *image, int axis);
+
 #endif

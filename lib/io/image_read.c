@@ -237,11 +237,7 @@ static enum status read_values(struct image_source *source, const struct nifti *
         if (done_count + wanted > capacity) {
             capacity = 2 * capacity < count ? 2 * capacity + 4 * block_values : count;
             capacity = capacity < count ? capacity : count;
-            double *grown = array_grow(image->values, (int64_t)capacity, sizeof *grown);
-            if (grown == NULL) {
-                TRY(fail_memory(error, "values of the image"));
-            }
-            image->values = grown;
+            TRY(RESIZE_ARRAY(&image->values, (int64_t)capacity, error));
         }
         if (header->swapped && size > 1) {
             reverse_bytes(block, wanted, size);
@@ -276,10 +272,8 @@ static enum status check_exact(const struct nifti_type *type, size_t count, cons
 static enum status interleave(struct image *image, struct error *error)
 {
     size_t voxels = image_voxels(image), components = image->components;
-    double *values = array_grow(NULL, (int64_t)(voxels * components), sizeof *values);
-    if (values == NULL) {
-        return fail_memory(error, "values of the image");
-    }
+    double *values = NULL;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&values, (int64_t)(voxels * components), error));
     for (size_t c = 0; c < components; c++) {
         for (size_t v = 0; v < voxels; v++) {
             values[v * components + c] = image->values[c * voxels + v];

@@ -1,28 +1,21 @@
 #include "io/image_private.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Read more, if nothing is left. */
 static enum status fill(struct image_source *source, struct error *error)
 {
-    ssize_t count;
+    size_t got;
     if (source->stream.avail_in > 0 || source->ended) {
         return STATUS_OK;
     }
-    do {
-        count = read(source->descriptor, source->buffer, sizeof source->buffer);
-    } while (count < 0 && errno == EINTR);
-    if (count < 0) {
-        return fail(error, errno == EISDIR ? STATUS_INPUT : STATUS_SYSTEM, "cannot read: %s",
-                    strerror(errno));
-    }
+    RETURN_IF_ERROR(descriptor_read(source->descriptor, source->buffer, sizeof source->buffer, &got, error));
     source->stream.next_in = source->buffer;
-    source->stream.avail_in = (unsigned)count;
-    source->ended = count == 0;
+    source->stream.avail_in = (unsigned)got;
+    source->ended = got == 0;
     return STATUS_OK;
 }
 

@@ -2,7 +2,6 @@
 #include "io/image_private.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 void image_map(const double *m, const double x[3], double place[3])
@@ -26,6 +25,11 @@ static double determinant(double m[3][4])
 static double column_length(double m[3][4], int c)
 {
     return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
+}
+
+double image_step(const struct image *image, int axis)
+{
+    return hypot(hypot(image->to_world[0][axis], image->to_world[1][axis]), image->to_world[2][axis]);
 }
 
 void image_world(const struct image *image, const double voxel[3], double world[3])

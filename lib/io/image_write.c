@@ -3,29 +3,15 @@
 #include "io/image_private.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
 enum { BLOCK = 1 << 20, DICTIONARY = 1 << 15, LEVEL = 6 };
-
-static enum status write_all(int descriptor, const unsigned char *bytes, size_t size, struct error *error)
-{
-    while (size > 0) {
-        ssize_t written = write(descriptor, bytes, size);
-        if (written < 0 && errno != EINTR) {
-            return fail(error, STATUS_SYSTEM, "%s", strerror(errno));
-        }
-        size -= written > 0 ? (size_t)written : 0;
-        bytes += written > 0 ? written : 0;
-    }
-    return STATUS_OK;
-}
 
 /* A value as its type stores it: rounded, within range. */
 static void store(const struct nifti_type *type, double value, unsigned char *bytes)
@@ -117,10 +103,7 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     enum status status = STATUS_OK;
     bool good = true;
     TRY(NEW_ARRAY(&used, blocks, error));
-    packed = array_grow(NULL, blocks, room);
-    if (packed == NULL) {
-        TRY(fail_memory(error, "compressed image"));
-    }
+    TRY(RESIZE_ARRAY(&packed, blocks * (int64_t)room, error));
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int64_t b = 0; b < blocks; b++) {
         size_t begin = (size_t)b * BLOCK, length = size - begin < BLOCK ? size - begin : BLOCK;
@@ -131,16 +114,15 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     if (!good) {
         TRY(fail_memory(error, "compressed image"));
     }
-    TRY(write_all(descriptor, head, sizeof head, error));
+    TRY(descriptor_write(descriptor, head, sizeof head, error));
     for (int64_t b = 0; b < blocks; b++) {
-        TRY(write_all(descriptor, packed + (size_t)b * room, used[b], error));
+        TRY(descriptor_write(descriptor, packed + (size_t)b * room, used[b], error));
     }
     put_little_endian(tail, (uint32_t)crc32_z(0, bytes, size));
     put_little_endian(tail + 4, (uint32_t)size);
-    TRY(write_all(descriptor, tail, sizeof tail, error));
+    TRY(descriptor_write(descriptor, tail, sizeof tail, error));
 done:
-    free(used);
-    free(packed);
+    FREE_ALL(used, packed);
     return status;
 }
 
@@ -155,13 +137,10 @@ enum status image_write(const struct image *image, int descriptor, bool gzip, st
     }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
-    bytes = array_grow(NULL, (int64_t)size, 1);
-    if (bytes == NULL) {
-        TRY(fail_memory(error, "bytes of the image"));
-    }
+    TRY(RESIZE_ARRAY(&bytes, (int64_t)size, error));
     memcpy(bytes, header, offset);
     store_values(image, type, bytes + offset);
-    TRY(gzip ? write_gzip(bytes, size, descriptor, error) : write_all(descriptor, bytes, size, error));
+    TRY(gzip ? write_gzip(bytes, size, descriptor, error) : descriptor_write(descriptor, bytes, size, error));
 done:
     free(bytes);
     return status;

@@ -61,10 +61,7 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
-    free(draft.role);
-    free(draft.region_of);
-    free(draft.node_of);
-    free(draft.origin);
+    FREE_ALL(draft.role, draft.region_of, draft.node_of, draft.origin);
     if (status != STATUS_OK) {
         mesh_free(mesh);
     }
@@ -73,13 +70,8 @@ done:
 
 void mesh_free(struct mesh *mesh)
 {
-    free(mesh->x);
-    free(mesh->cells);
-    free(mesh->cell_region);
-    free(mesh->facets);
-    free(mesh->facet_set);
-    free(mesh->set_ptr);
-    free(mesh->set_idx);
+    FREE_ALL(mesh->x, mesh->cells, mesh->cell_region, mesh->facets, mesh->facet_set, mesh->set_ptr,
+             mesh->set_idx);
     mesh_names_free(&mesh->regions);
     mesh_names_free(&mesh->facet_sets);
     mesh_names_free(&mesh->node_sets);

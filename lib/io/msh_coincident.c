@@ -1,4 +1,5 @@
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/sets.h"
 #include "io/msh_build.h"
@@ -8,18 +9,6 @@
 
 /* Nodes closer than this part of the mesh's extent are taken for one. */
 #define COINCIDENT 1e-12
-
-struct projection {
-    double at;
-    int32_t node;
-};
-
-static int compare_projections(const void *left, const void *right)
-{
-    const struct projection *a = left;
-    const struct projection *b = right;
-    return a->at != b->at ? (a->at > b->at) - (a->at < b->at) : (a->node > b->node) - (a->node < b->node);
-}
 
 static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
 {
@@ -34,23 +23,6 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
                 (long long)tags[0], (long long)tags[1]);
 }
 
-/* body[node_count]: the same for nodes that cells connect. */
-static void find_bodies(const struct mesh *mesh, int32_t body[])
-{
-    for (int64_t n = 0; n < mesh->node_count; n++) {
-        body[n] = (int32_t)n;
-    }
-    for (int64_t c = 0; c < mesh->cell_count; c++) {
-        const int32_t *cell = &mesh->cells[c * (mesh->dim + 1)];
-        for (int k = 1; k <= mesh->dim; k++) {
-            set_join(body, cell[0], cell[k]);
-        }
-    }
-    for (int64_t n = 0; n < mesh->node_count; n++) {
-        body[n] = set_first(body, (int32_t)n);
-    }
-}
-
 /* Nodes at one place fall together in any projection: sort them along a direction that no lattice is aligned
  * with, and compare those that are near in it. */
 enum status mesh_check_coincident(struct mesh_draft *draft)
@@ -60,31 +32,31 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
     const struct mesh *mesh = draft->mesh;
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = COINCIDENT * box_side(&box);
-    struct projection *order = NULL;
+    struct placed *order = NULL;
     int32_t *body = NULL;
     int64_t touching = 0;
     TRY(NEW_ARRAY(&body, mesh->node_count, draft->error));
-    find_bodies(mesh, body);
+    set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
     TRY(NEW_ARRAY(&order, mesh->node_count, draft->error));
     for (int64_t n = 0; n < mesh->node_count; n++) {
-        order[n].node = (int32_t)n;
+        order[n].item = n;
         for (int k = 0; k < mesh->dim; k++) {
-            order[n].at += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
+            order[n].place += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
         }
     }
-    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_projections);
+    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_placed);
     for (int64_t i = 0; i < mesh->node_count; i++) {
-        for (int64_t j = i + 1; j < mesh->node_count && order[j].at - order[i].at <= 2 * tolerance; j++) {
+        for (int64_t j = i + 1; j < mesh->node_count && order[j].place - order[i].place <= 2 * tolerance;
+             j++) {
+            int32_t a = (int32_t)order[i].item, b = (int32_t)order[j].item;
             double farthest = 0;
             for (int k = 0; k < mesh->dim; k++) {
-                farthest = fmax(farthest, fabs(mesh->x[order[i].node * mesh->dim + k] -
-                                               mesh->x[order[j].node * mesh->dim + k]));
+                farthest = fmax(farthest, fabs(mesh->x[a * mesh->dim + k] - mesh->x[b * mesh->dim + k]));
             }
-            if (farthest <= tolerance && body[order[i].node] != body[order[j].node]) {
+            if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
                 touching++;
             } else if (farthest <= tolerance) {
-                status = fail_coincident(draft, order[i].node, order[j].node);
-                goto done;
+                TRY(fail_coincident(draft, a, b));
             }
         }
     }
@@ -96,7 +68,6 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
             (long long)touching));
     }
 done:
-    free(body);
-    free(order);
+    FREE_ALL(body, order);
     return status;
 }

@@ -1,4 +1,3 @@
-#include "base/memory.h"
 #include "io/msh_private.h"
 
 /* Of an element of MSH 2: its group, its entity, and its partitions. */

@@ -106,8 +106,7 @@ done:
 
 void msh_faces_free(struct msh_faces *faces)
 {
-    free(faces->ptr);
-    free(faces->face);
+    FREE_ALL(faces->ptr, faces->face);
     *faces = (struct msh_faces){0};
 }
 

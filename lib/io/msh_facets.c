@@ -256,9 +256,6 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     TRY(check_set_names(draft));
 done:
     msh_faces_free(&g.faces);
-    free(g.group_ptr);
-    free(g.group_idx);
-    free(g.face_stamp);
-    free(g.node_stamp);
+    FREE_ALL(g.group_ptr, g.group_idx, g.face_stamp, g.node_stamp);
     return status;
 }

@@ -1,4 +1,3 @@
-#include "base/memory.h"
 #include "io/msh_private.h"
 
 #include <stdio.h>

@@ -75,8 +75,7 @@ int64_t msh_index_find(const struct msh_index *index, int64_t tag)
 
 void msh_index_free(struct msh_index *index)
 {
-    free(index->place);
-    free(index->sorted);
+    FREE_ALL(index->place, index->sorted);
     *index = (struct msh_index){0};
 }
 

@@ -1,4 +1,3 @@
-#include "base/memory.h"
 #include "io/msh_private.h"
 #include "io/stream_private.h"
 

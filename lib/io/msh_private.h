@@ -12,6 +12,7 @@
 #ifndef IO_MSH_PRIVATE_H
 #define IO_MSH_PRIVATE_H
 
+#include "base/memory.h"
 #include "base/status.h"
 #include "io/msh.h"
 

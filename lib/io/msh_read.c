@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "io/descriptor.h"
 #include "io/msh_private.h"
 
 #include <errno.h>
@@ -219,10 +220,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     read_sections(&reader);
     msh_join_groups(&reader);
     msh_index_free(&reader.nodes);
-    free(reader.element_key);
-    free(reader.names);
-    free(reader.entities);
-    free(reader.physicals);
+    FREE_ALL(reader.element_key, reader.names, reader.entities, reader.physicals);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
@@ -248,19 +246,14 @@ static enum status read_all(struct bytes *bytes, int descriptor, struct error *e
 {
     int64_t capacity = 0;
     for (;;) {
+        size_t got;
         if ((int64_t)bytes->size == capacity) {
             capacity = capacity == 0 ? 65536 : 2 * capacity;
-            char *grown = array_grow(bytes->data, capacity, 1);
-            if (grown == NULL) {
-                return fail_memory(error, "the mesh");
-            }
-            bytes->data = grown;
+            RETURN_IF_ERROR(RESIZE_ARRAY(&bytes->data, capacity, error));
         }
-        ssize_t got = read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size);
-        if (got < 0 && errno != EINTR) {
-            return fail_read(error);
-        }
-        bytes->size += got > 0 ? (size_t)got : 0;
+        RETURN_IF_ERROR(descriptor_read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size,
+                                        &got, error));
+        bytes->size += got;
         if (got == 0 || (bytes->size >= MAGIC_SIZE && !is_mesh(bytes->data, bytes->size))) {
             return STATUS_OK;
         }
@@ -306,17 +299,10 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, struct e
 
 void msh_free(struct msh *msh)
 {
-    free(msh->x);
-    free(msh->node_tag);
-    free(msh->element_tag);
-    free(msh->element_type);
-    free(msh->node_ptr);
-    free(msh->node_idx);
-    free(msh->member_ptr);
-    free(msh->member_idx);
+    FREE_ALL(msh->x, msh->node_tag, msh->element_tag, msh->element_type, msh->node_ptr, msh->node_idx,
+             msh->member_ptr, msh->member_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
-        free(msh->groups[i].name);
-        free(msh->groups[i].written);
+        FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }
     free(msh->groups);
     *msh = (struct msh){0};

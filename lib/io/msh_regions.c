@@ -3,7 +3,6 @@
 #include "io/msh_build.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -240,8 +239,6 @@ enum status mesh_pick_regions(struct mesh_draft *draft)
         draft->region_of[e] = is_cell[e] ? region_of_group[cell_group(msh, e)] : -1;
     }
 done:
-    free(region_of_group);
-    free(cells_of);
-    free(is_cell);
+    FREE_ALL(region_of_group, cells_of, is_cell);
     return status;
 }

@@ -4,8 +4,6 @@
 #include "io/scene_ini.h"
 #include "io/scene_kinds.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Append *added, zeroed but for its label. */
@@ -136,12 +134,7 @@ done:
 void scene_free(struct scene *scene)
 {
     owned_free(&scene->owned);
-    free(scene->files.names);
-    free(scene->materials);
-    free(scene->displacements);
-    free(scene->contacts);
-    free(scene->pressures);
-    free(scene->tractions);
-    free(scene->forces);
+    FREE_ALL(scene->files.names, scene->materials, scene->displacements, scene->contacts, scene->pressures,
+             scene->tractions, scene->forces);
     *scene = (struct scene){0};
 }

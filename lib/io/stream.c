@@ -29,8 +29,7 @@ void stream_init(struct stream *stream)
 
 static void section_free(struct section *section)
 {
-    free(section->name);
-    free(section->attributes);
+    FREE_ALL(section->name, section->attributes);
     if (section->owned) {
         free(section->data);
     }

@@ -65,8 +65,7 @@ static enum status header_attributes(char *at, struct header *header, struct err
 
 void header_free(struct header *header)
 {
-    free(header->copy);
-    free(header->attributes);
+    FREE_ALL(header->copy, header->attributes);
 }
 
 enum status header_parse(const char *line, size_t length, struct header *header, struct error *error)

@@ -1,9 +1,7 @@
 /* Buffered input of a stream: a regular file is mapped, everything else is read in large blocks. */
 #include "io/stream_private.h"
+#include "io/descriptor.h"
 
-#include "base/memory.h"
-
-#include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,20 +60,11 @@ int64_t input_offset(const struct input *input)
     return input->start_offset + (input->at - input->start);
 }
 
-/* read() that goes on after signals; 0 at the end. */
 static enum status read_some(struct input *input, void *destination, size_t size, size_t *got,
                              struct error *error)
 {
-    ssize_t count;
-    do {
-        count = read(input->descriptor, destination, size);
-    } while (count < 0 && errno == EINTR);
-    if (count < 0) {
-        return fail(error, errno == EISDIR ? STATUS_INPUT : STATUS_SYSTEM, "cannot read: %s",
-                    strerror(errno));
-    }
-    *got = (size_t)count;
-    input->ended = count == 0;
+    RETURN_IF_ERROR(descriptor_read(input->descriptor, destination, size, got, error));
+    input->ended = *got == 0;
     return STATUS_OK;
 }
 

@@ -2,14 +2,13 @@
 #include "io/stream_private.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
 struct writer {
@@ -21,29 +20,16 @@ struct writer {
     locale_t c_locale, previous;
 };
 
-/* write() that goes on after signals and short writes. */
-static enum status write_all(int descriptor, const char *bytes, size_t size, struct error *error)
+static enum status write_all(const struct writer *writer, const char *bytes, size_t size, struct error *error)
 {
-    while (size > 0) {
-        ssize_t count = write(descriptor, bytes, size);
-        if (count < 0 && errno == EINTR) {
-            continue;
-        }
-        if (count <= 0) {
-            return fail(error, STATUS_SYSTEM, "cannot write: %s",
-                        count < 0 ? strerror(errno) : "no progress");
-        }
-        bytes += count;
-        size -= (size_t)count;
-    }
-    return STATUS_OK;
+    return fail_in(error, descriptor_write(writer->descriptor, bytes, size, error), "cannot write");
 }
 
 static enum status flush(struct writer *writer, struct error *error)
 {
     size_t held = writer->held;
     writer->held = 0;
-    return write_all(writer->descriptor, writer->block, held, error);
+    return write_all(writer, writer->block, held, error);
 }
 
 static enum status put_bytes(struct writer *writer, const void *bytes, size_t size, struct error *error)
@@ -53,7 +39,7 @@ static enum status put_bytes(struct writer *writer, const void *bytes, size_t si
         RETURN_IF_ERROR(flush(writer, error));
     }
     if (size >= BLOCK_SIZE) {
-        return write_all(writer->descriptor, bytes, size, error);
+        return write_all(writer, bytes, size, error);
     }
     if (size > 0) {
         memcpy(writer->block + writer->held, bytes, size);

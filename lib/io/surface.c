@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/options.h"
 #include "io/textfile.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -196,13 +197,11 @@ static enum status check_triangles(const char *path, const struct table *table, 
 {
     for (int64_t r = 0; r < table->rows; r++) {
         const double *a = table->values + 9 * r;
-        double u[3], v[3];
-        for (int i = 0; i < 3; i++) {
-            u[i] = a[3 + i] - a[i];
-            v[i] = a[6 + i] - a[i];
-        }
-        double area =
-            hypot(hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]), u[0] * v[1] - u[1] * v[0]);
+        double u[3], v[3], normal[3];
+        vector_subtract(3, a + 3, a, u);
+        vector_subtract(3, a + 6, a, v);
+        vector_cross(u, v, normal);
+        double area = hypot(hypot(normal[0], normal[1]), normal[2]);
         if (!(area > 0 && isfinite(area))) {
             return fail(error, STATUS_INPUT, "%s:%lld: triangle without area: remove it", path,
                         (long long)table->line[r]);

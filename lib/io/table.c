@@ -7,7 +7,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -156,8 +155,6 @@ enum status table_read_open(const char *path, int least, int most, int open, int
 
 void table_free(struct table *table)
 {
-    free(table->values);
-    free(table->line);
-    free(table->block_ptr);
+    FREE_ALL(table->values, table->line, table->block_ptr);
     *table = (struct table){0};
 }

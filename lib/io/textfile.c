@@ -1,6 +1,7 @@
 #include "io/textfile.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -31,26 +32,20 @@ static enum status read_all(const char *path, int descriptor, size_t most, struc
 {
     size_t capacity = 0;
     for (;;) {
+        size_t got;
         if (file->size + 1 >= capacity) {
             capacity = capacity == 0 ? 65536 : 2 * capacity;
-            char *grown = array_grow(file->text, (int64_t)capacity, 1);
-            if (grown == NULL) {
-                return fail_memory(error, path);
-            }
-            file->text = grown;
+            RETURN_IF_ERROR(RESIZE_ARRAY(&file->text, (int64_t)capacity, error));
         }
-        ssize_t got = read(descriptor, file->text + file->size, capacity - file->size - 1);
-        if (got < 0 && errno == EINTR) {
-            continue;
-        }
-        if (got < 0) {
-            return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
-        }
+        RETURN_IF_ERROR(fail_in(
+            error,
+            descriptor_read(descriptor, file->text + file->size, capacity - file->size - 1, &got, error),
+            "%s", path));
         if (got == 0) {
             file->text[file->size] = '\0';
             return STATUS_OK;
         }
-        file->size += (size_t)got;
+        file->size += got;
         if (file->size > most) {
             return fail(error, STATUS_INPUT, "%s: larger than %zu bytes", path, most);
         }

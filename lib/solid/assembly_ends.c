@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* Where a held part of the boundary ends, the stress is singular, which cells of finite size do not resolve:
@@ -31,8 +30,7 @@ static enum status find_ends(const struct assembly *input, enum boundary_end kin
     TRY(NEW_ARRAY(end, input->cells.node_count, error));
     TRY(boundary_find_ends(&input->face_table, kind, held, touched, *end, error));
 done:
-    free(held);
-    free(touched);
+    FREE_ALL(held, touched);
     return status;
 }
 
@@ -53,8 +51,7 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
         }
     }
 done:
-    free(held);
-    free(end);
+    FREE_ALL(held, end);
     return status;
 }
 
@@ -92,8 +89,7 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
         list->of_point[q] = (int32_t)softened[m];
     }
 done:
-    free(softer);
-    free(softened);
+    FREE_ALL(softer, softened);
     return status;
 }
 

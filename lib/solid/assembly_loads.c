@@ -95,8 +95,7 @@ enum status assembly_complete_gravity(const struct assembly *input, struct solid
         force[i] = by_place[body->node_place[i / dim] * dim + i % dim];
     }
 done:
-    free(mass);
-    free(by_place);
+    FREE_ALL(mass, by_place);
     return status;
 }
 

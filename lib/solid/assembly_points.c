@@ -2,12 +2,14 @@
  * springs. */
 #include "solid/assembly.h"
 
+#include "approx/point_grid.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* One condition of measured points. */
 struct point_condition {
@@ -226,31 +228,71 @@ static double off_row(const struct point_condition *p, int64_t i, int64_t row)
     return isnan(along) ? 0.0 : fabs(along - rows->target[row]);
 }
 
-/* Exact points beside places that other sections hold, along which the displacement differs by more than they
- * are apart. */
-static enum status compare_held(const struct point_condition *p, struct error *error)
+/* A grid of the places that rows hold, each with a radius that `off_row` of a point beyond cannot reach: the
+ * target and the largest exact displacement. x, radius: to be freed, as is the grid, also on failure. */
+static enum status grid_of_rows(const struct point_condition *p, struct point_grid *grid, double **x,
+                                double **radius, struct error *error)
+{
+    const struct constraint_rows *rows = &p->system->rows;
+    const struct cells *cells = &p->input->cells;
+    int dim = cells->dim;
+    double most = 0.0;
+    RETURN_IF_ERROR(NEW_ARRAY(x, rows->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(radius, rows->count, error));
+    for (int64_t i = 0; i < p->measured->count * dim; i++) {
+        most = fmax(most, dim * fabs(p->measured->u[i])); /* of a component that is not known: nothing */
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        memcpy(*x + r * dim, cells->x + (int64_t)rows->node[r] * dim, (size_t)dim * sizeof **x);
+        (*radius)[r] = fabs(rows->target[r]) + most + 1e-9 * p->input->extent;
+    }
+    return point_grid_build(grid, dim, rows->count, *x, *radius, error);
+}
+
+/* Exact point i beside places that other sections hold, along which the displacement differs by more than
+ * they are apart; near: rows. */
+static enum status compare_near(const struct point_condition *p, int64_t i, const struct index_list *near,
+                                struct error *error)
 {
     const struct constraint_rows *rows = &p->system->rows;
     int dim = p->measured->dim;
     char what[256];
-    for (int64_t i = 0; i < p->measured->count; i++) {
-        for (int64_t r = 0; r < rows->count && !(p->measured->deviation[i] > 0.0); r++) {
-            const struct condition *other = &p->input->conditions[rows->section[r]];
-            double off = off_row(p, i, r),
-                   distance = vector_distance(dim, p->measured->x + i * dim,
-                                              p->input->cells.x + (int64_t)rows->node[r] * dim);
-            if (other->kind == CONDITION_POINTS || !(off > distance + 1e-9 * p->input->extent)) {
-                continue;
-            }
-            snprintf(
-                what, sizeof what,
-                "contradicts [displacement %s], which holds a node %.3g m away: their displacements differ "
-                "by %.3g m, which turns over what is between: give a standard deviation, or leave it out",
-                other->name, distance, off);
-            return fail_at(p, i, error, what);
+    for (int64_t k = 0; k < near->count; k++) {
+        int32_t r = near->index[k];
+        const struct condition *other = &p->input->conditions[rows->section[r]];
+        double off = off_row(p, i, r),
+               distance = vector_distance(dim, p->measured->x + i * dim,
+                                          p->input->cells.x + (int64_t)rows->node[r] * dim);
+        if (other->kind == CONDITION_POINTS || !(off > distance + 1e-9 * p->input->extent)) {
+            continue;
         }
+        snprintf(what, sizeof what,
+                 "contradicts [displacement %s], which holds a node %.3g m away: their displacements differ "
+                 "by %.3g m, which turns over what is between: give a standard deviation, or leave it out",
+                 other->name, distance, off);
+        return fail_at(p, i, error, what);
     }
     return STATUS_OK;
+}
+
+static enum status compare_held(const struct point_condition *p, struct error *error)
+{
+    enum status status;
+    struct point_grid grid = {0};
+    struct index_list near = {0};
+    double *x = NULL, *radius = NULL;
+    TRY(grid_of_rows(p, &grid, &x, &radius, error));
+    for (int64_t i = 0; i < p->measured->count; i++) {
+        near.count = 0;
+        if (!(p->measured->deviation[i] > 0.0)) {
+            TRY(point_grid_query(&grid, p->measured->x + i * p->measured->dim, 1.0, &near, error));
+            TRY(compare_near(p, i, &near, error));
+        }
+    }
+done:
+    point_grid_free(&grid);
+    FREE_ALL(near.index, x, radius);
+    return status;
 }
 
 static enum status add_condition(struct point_condition *p, struct error *note, struct error *error)
@@ -268,8 +310,7 @@ static enum status add_condition(struct point_condition *p, struct error *note, 
         TRY(check_rows(p, first, error));
     }
 done:
-    free(p->volume);
-    free(p->shear);
+    FREE_ALL(p->volume, p->shear);
     return status;
 }
 

@@ -6,7 +6,6 @@
 #include "solid/merged_cells.h"
 #include "solid/nodal_volume.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,8 +51,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
         body->node_place[body->node_order[n]] = (int32_t)n;
     }
 done:
-    free(model);
-    free(root);
+    FREE_ALL(model, root);
     return status;
 }
 

@@ -1,9 +1,9 @@
 /* The bound of the diagonal of the stiffness: body_diagonal. */
 #include "base/memory.h"
 #include "solid/stress.h"
+#include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Each part of the blocks has sums of its own, so that there are few, whatever the number of threads; fewer
@@ -55,7 +55,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
 {
     const struct material *material = &body->materials[body->material[q]];
     struct bound bound = {.smoothing = 0.0};
-    double C[9], I1 = 0.0;
+    double C[9];
     double J = determinant(F);
     if (!(J > 0.0 &&
           isfinite(J))) { /* inverted: use F = I, so that the bounds stay positive until the run stops */
@@ -63,9 +63,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
         F = at_rest;
     }
     cofactor(F, C);
-    for (int k = 0; k < 9; k++) {
-        I1 += F[k] * F[k];
-    }
+    double I1 = vector_dot(9, F, F);
     double shear = body->weight[q] * material->shear_modulus / cbrt(J * J);
     double bulk = material->bulk_modulus;
     if (body->averaged) {

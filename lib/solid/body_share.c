@@ -44,16 +44,14 @@ static void measure_nodes(const struct body_input *input, const struct body *bod
 /* The points of the blocks. */
 static enum status list_points(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     int count = ranks_count(share->ranks);
-    TRY(NEW_ARRAY(&share->point_first, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->point_first, count + 1, error));
     for (int r = 0; r <= count; r++) {
         int64_t b = share->block_first[r];
         share->point_first[r] = b < body->block_count ? body->blocks[b].first_point : body->point_count;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
@@ -79,8 +77,7 @@ enum status body_share_cut(const struct body_input *input, struct body *body, st
     share->begin_node = share->node_first[rank];
     share->end_node = share->node_first[rank + 1];
 done:
-    free(work);
-    free(node_work);
+    FREE_ALL(work, node_work);
     return status;
 }
 
@@ -170,16 +167,15 @@ int body_share_owner(const void *body, int64_t node)
 
 enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
 {
-    enum status status;
     const struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
     int dim = body->dim;
-    TRY(NEW_ARRAY(wanted, row_count(body), error));
+    RETURN_IF_ERROR(NEW_ARRAY(wanted, row_count(body), error));
     if (!body->smoothed) {
         for (int64_t i = share->begin_point * dim; i < share->end_point * dim; i++) {
             (*wanted)[i] = true;
         }
-        goto done;
+        return STATUS_OK;
     }
     for (int half = 0; half < 2; half++) {
         int64_t per_point = (dim + 1) * (half == 0 ? FACE_ROWS(dim) : 1);
@@ -188,8 +184,7 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
             (*wanted)[at[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Without smoothed cells. */
@@ -280,8 +275,7 @@ static enum status order_sums(struct body *body, struct error *error)
     TRY(stretches_of(0, rows, is_sent, &share->sums, error));
     TRY(stretches_of(0, rows, is_inner, &share->inner_sums, error));
 done:
-    free(is_sent);
-    free(is_inner);
+    FREE_ALL(is_sent, is_inner);
     return status;
 }
 
@@ -309,28 +303,24 @@ static enum status share_corners(struct body *body, struct error *error)
     TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
                    owner_of_corner, body, &share->corners, error));
 done:
-    free(sums);
-    free(corners);
+    FREE_ALL(sums, corners);
     return status;
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     if (share->ranks == NULL) {
-        TRY(order_blocks(body, error));
+        RETURN_IF_ERROR(order_blocks(body, error));
         return stretches_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
-        TRY(share_corners(body, error));
+        RETURN_IF_ERROR(share_corners(body, error));
     }
-    TRY(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row, body,
-                   &share->rows, error));
-    TRY(order_blocks(body, error));
-    TRY(body->smoothed ? order_sums(body, error) : STATUS_OK);
-done:
-    return status;
+    RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
+                               body, &share->rows, error));
+    RETURN_IF_ERROR(order_blocks(body, error));
+    return body->smoothed ? order_sums(body, error) : STATUS_OK;
 }
 
 enum status body_share_nodes(struct body *body, struct error *error)
@@ -356,11 +346,8 @@ bool body_share_has_node(const struct body *body, int64_t node)
 
 void body_share_free(struct body_share *share)
 {
-    free(share->block_first);
-    free(share->point_first);
-    free(share->node_first);
-    free(share->slice_first);
-    free(share->volume_first);
+    FREE_ALL(share->block_first, share->point_first, share->node_first, share->slice_first,
+             share->volume_first);
     stretches_free(&share->values);
     stretches_free(&share->placed);
     stretches_free(&share->sums);

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "solid/body.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,

@@ -6,7 +6,6 @@
 #include "solid/inverse_factor.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
@@ -241,8 +240,7 @@ static enum status share(struct constraint *constraint, struct error *error)
     TRY(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
     constraint->ranks = ranks;
 done:
-    free(work);
-    free(wanted);
+    FREE_ALL(work, wanted);
     return status;
 }
 

@@ -2,8 +2,6 @@
 #include "base/memory.h"
 #include "solid/constraint.h"
 
-#include <stdlib.h>
-
 enum status constraint_rows_keep(const struct constraint_rows *rows, const bool *wanted,
                                  struct constraint_rows *kept, struct error *error)
 {

@@ -3,8 +3,6 @@
 #include "base/memory.h"
 #include "solid/constraint.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* null[count * dropped]: for each row that was dropped, the combination of rows that is zero. */

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct load_curve curve_of_kind(enum curve_kind kind)
 {
@@ -123,7 +122,6 @@ void curve_free(struct load_curve *curve)
     if (curve->spline != NULL) {
         gsl_interp_free(curve->spline);
     }
-    free(curve->time);
-    free(curve->factor);
+    FREE_ALL(curve->time, curve->factor);
     *curve = (struct load_curve){0};
 }

@@ -21,8 +21,7 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_before, system->curve_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_now, system->curve_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_after, system->curve_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&d->factor_change, system->curve_count, error));
-    return STATUS_OK;
+    return NEW_ARRAY(&d->factor_change, system->curve_count, error);
 }
 
 void dynamics_release(struct dynamics *d)
@@ -75,6 +74,5 @@ enum status dynamics_visit(void *run, const struct state *state, struct error *e
     if (d->log != NULL) {
         RETURN_IF_ERROR(energy_log_state(d->log, state, error));
     }
-    RETURN_IF_ERROR(system_state(d->system, state, error));
-    return STATUS_OK;
+    return system_state(d->system, state, error);
 }

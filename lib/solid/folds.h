@@ -14,6 +14,8 @@
 #ifndef SOLID_FOLDS_H
 #define SOLID_FOLDS_H
 
+#include "base/box.h"
+#include "base/lists.h"
 #include "base/ranks.h"
 #include "base/status.h"
 
@@ -26,9 +28,9 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
-    FOLD_WITHIN,   /* a body lies within another one; or a cell within one that it is no neighbour of */
-    FOLD_FLAT,     /* cells are inverted between their nodes, but by less: of a sliver, that is soon said */
-    FOLD_SUPPORT   /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
+    FOLD_FLAT,   /* cells are inverted, but by less than that; slivers invert within the error of the field */
+    FOLD_SUPPORT /* a free facet at the rim of a plane support has gone through its plane */
 };
 
 struct fold {
@@ -53,10 +55,10 @@ struct fold_input {
     const struct ranks *ranks; /* processes that look together, each at a share; NULL: one */
 };
 
-/* Where facets meet: a node (2D) or an edge (3D) of the boundary. */
+/* A node (2D) or an edge (3D) of the boundary, where facets meet. */
 struct fold_ring {
     int32_t node[2]; /* ascending; in 2D the second is -1 */
-    int64_t facet;   /* one of those that meet */
+    int64_t facet;   /* one of those that meet there */
 };
 
 /* A free facet that shares a node or an edge with a plane support and is turned back from its plane by more
@@ -66,16 +68,16 @@ struct fold_rim {
     int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
-/* A cell of a connected body (see cells_parts). */
+/* A cell of a connected body (see cells_parts), by the first coordinate of its middle. */
 struct fold_body {
-    int64_t cell;
-    double middle[3]; /* scratch */
+    struct placed cell;
+    double middle[3];
 };
 
-/* The extent of a facet along each axis. */
+/* The box around a facet, by its low end along the first axis. */
 struct fold_box {
-    double low[3], high[3];
-    int64_t facet;
+    struct placed facet;
+    struct box box;
 };
 
 struct folds {
@@ -85,12 +87,11 @@ struct folds {
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
-    int8_t *ring_turn;     /* 1 where these nodes are in a positive order, else -1 */
-    int32_t *ring_cell;    /* by their dim + 1 nodes, those of the ring first */
+    int32_t *ring_cell;    /* by their dim + 1 nodes, in a positive order, those of the ring first */
     struct fold_rim *rims; /* rim_count */
     int64_t rim_count;
     bool *is_held;            /* node_count: of a held facet */
-    int64_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
+    int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
     double extent;            /* diagonal of the box around the nodes, m */
     int32_t *part;            /* cell_count: the connected body of each cell */
     struct fold_body *bodies; /* body_count */
@@ -100,11 +101,10 @@ struct folds {
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
-    struct fold_box *boxes; /* facet_count, by low[0] */
+    struct fold_box *boxes; /* facet_count, ascending */
     double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
-                         * vectors,  of its corners, their number */
-    struct fold *found; /* of several processes: what each has found in its share, */
-    int64_t *in_turn;   /* 0, 1, 2 and so on */
+                         * vectors, of its corners, their number */
+    struct fold *found; /* of several processes: what each has found in its share */
 };
 
 /* STATUS_SYSTEM for memory. */
@@ -112,8 +112,7 @@ MUST_CHECK enum status folds_build(const struct fold_input *input, struct folds 
 void folds_free(struct folds *folds);
 
 /* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
- * Of
- * several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
+ * Of several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
  * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
  * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);

@@ -25,11 +25,7 @@ static void name_facets(const struct folds *folds, int64_t facet, int64_t other,
     int dim = folds->input.dim;
     fold->facet[0] = facet;
     fold->facet[1] = other;
-    for (int k = 0; k < dim; k++) {
-        for (int i = 0; i < dim; i++) {
-            fold->place[i] += folds->input.x[(int64_t)folds->input.facet[facet * dim + k] * dim + i] / dim;
-        }
-    }
+    vector_middle(dim, folds->input.x, dim, folds->input.facet + facet * dim, fold->place);
 }
 
 /* The share of this process of so many items: from the first to before the second. */
@@ -45,7 +41,7 @@ static void put_together(const struct folds *folds, struct fold *fold)
 {
     const struct ranks *ranks = folds->input.ranks;
     folds->found[ranks_rank(ranks)] = *fold;
-    ranks_gather(ranks, folds->found, sizeof *fold, folds->in_turn);
+    ranks_gather(ranks, folds->found, sizeof *fold, NULL);
     *fold = folds->found[0];
     for (int r = 1; r < ranks_count(ranks); r++) {
         const struct fold *found = &folds->found[r];
@@ -84,15 +80,14 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node, doubl
     double longest2 = 0.0, largest2 = 0.0;
     for (int k = 0; k <= dim; k++) {
         int32_t side[3] = {0, 0, 0};
-        double area[3], edge[3];
+        double area[3];
         for (int i = 0; i < dim; i++) {
             side[i] = node[(k + 1 + i) % (dim + 1)];
         }
         fold_area_vector(dim, folds->y, side, area);
-        largest2 = fmax(largest2, fold_dot(dim, area, area));
+        largest2 = fmax(largest2, vector_dot(dim, area, area));
         for (int m = k + 1; m <= dim; m++) {
-            fold_way(dim, at(folds, node[k]), at(folds, node[m]), edge);
-            longest2 = fmax(longest2, fold_dot(dim, edge, edge));
+            longest2 = fmax(longest2, vector_distance2(dim, at(folds, node[k]), at(folds, node[m])));
         }
     }
     return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
@@ -114,11 +109,7 @@ static void find_cells(const struct folds *folds, const bool *stopped, struct fo
         enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
         if (fold->kind == FOLD_NONE || (fold->kind == FOLD_FLAT && kind == FOLD_CELL)) {
             *fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
-            for (int k = 0; k < corners; k++) {
-                for (int i = 0; i < dim; i++) {
-                    fold->place[i] += input->x[(int64_t)node[k] * dim + i] / corners;
-                }
-            }
+            vector_middle(dim, input->x, corners, node, fold->place);
         }
         fold->count += kind == fold->kind;
     }
@@ -126,25 +117,26 @@ static void find_cells(const struct folds *folds, const bool *stopped, struct fo
 }
 
 /* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
-static double angle_around(const struct folds *folds, const int32_t *node, int8_t turn)
+static double angle_around(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
     double a[3], b[3], axis[3], cosine, sine2;
-    const double *first = at(folds, node[dim - 1]), *second = at(folds, node[dim]);
-    fold_way(dim, at(folds, node[0]), first, a);
-    fold_way(dim, at(folds, node[0]), second, b);
+    const double *origin = at(folds, node[0]);
+    vector_subtract(dim, at(folds, node[dim - 1]), origin, a);
+    vector_subtract(dim, at(folds, node[dim]), origin, b);
     if (dim == 3) { /* across the edge */
-        fold_way(dim, at(folds, node[0]), at(folds, node[1]), axis);
-        double length2 = fold_dot(3, axis, axis), on_a = fold_dot(3, a, axis), on_b = fold_dot(3, b, axis);
+        vector_subtract(dim, at(folds, node[1]), origin, axis);
+        double length2 = vector_dot(3, axis, axis), on_a = vector_dot(3, a, axis),
+               on_b = vector_dot(3, b, axis);
         for (int i = 0; i < 3; i++) {
             a[i] -= on_a / length2 * axis[i];
             b[i] -= on_b / length2 * axis[i];
         }
     }
-    cosine = fold_dot(dim, a, b);
-    sine2 = fold_dot(dim, a, a) * fold_dot(dim, b, b) - cosine * cosine;
+    cosine = vector_dot(dim, a, b);
+    sine2 = vector_dot(dim, a, a) * vector_dot(dim, b, b) - cosine * cosine;
     double angle = atan2(sqrt(fmax(0.0, sine2)), cosine);
-    return cell_size(folds, node) * turn > 0.0 ? angle : -angle;
+    return cell_size(folds, node) > 0.0 ? angle : -angle;
 }
 
 /* The angle above which what meets at a ring has passed through itself. Where parts of the body press on each
@@ -164,7 +156,7 @@ static bool find_creases(const struct folds *folds, struct fold *fold)
     for (int64_t r = share[0]; r < share[1]; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
-            sum += angle_around(folds, folds->ring_cell + i * corners, folds->ring_turn[i]);
+            sum += angle_around(folds, folds->ring_cell + i * corners);
         }
         if (sum > most_angle(folds, &folds->rings[r]) && fold->count++ == 0) {
             name_facets(folds, folds->rings[r].facet, -1, fold);
@@ -184,13 +176,8 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
     const double *c = dim == 3 ? at(folds, node[2]) : NULL;
     double before = dim == 2 ? fold_volume(2, a, b, x, NULL) : fold_volume(3, a, b, c, x);
     double after = dim == 2 ? fold_volume(2, a, b, y, NULL) : fold_volume(3, a, b, c, y);
-    double size = 0.0, side[3] = {0.0, 0.0, 0.0}, way[3];
-    fold_way(dim, x, y, way);
-    size = sqrt(fold_dot(dim, way, way));
-    fold_way(dim, x, a, way);
-    size += sqrt(fold_dot(dim, way, way));
-    fold_way(dim, a, b, way);
-    size += sqrt(fold_dot(dim, way, way));
+    double side[3];
+    double size = vector_distance(dim, x, y) + vector_distance(dim, x, a) + vector_distance(dim, a, b);
     double least = round_off * folds->largest * (dim == 2 ? size : size * size);
     if (!(fmin(before, after) < -least && fmax(before, after) > least)) {
         return false;
@@ -234,10 +221,10 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
     double area[3], way[3], deepest = 0.0;
     const int32_t *node = folds->input.facet + f * dim;
     fold_area_vector(dim, folds->y, node, area);
-    double size = sqrt(fold_dot(dim, area, area));
+    double size = vector_length(dim, area);
     for (int k = 0; k < dim; k++) {
-        fold_way(dim, at(folds, node[0]), at(folds, folds->input.facet[g * dim + k]), way);
-        deepest = fmax(deepest, -fold_dot(dim, area, way) / size);
+        vector_subtract(dim, at(folds, folds->input.facet[g * dim + k]), at(folds, node[0]), way);
+        deepest = fmax(deepest, -vector_dot(dim, area, way) / size);
     }
     *width = dim == 2 ? size : sqrt(size);
     return deepest;
@@ -247,21 +234,19 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
 static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g)
 {
     const int32_t *one = folds->input.facet + f * 3, *other = folds->input.facet + g * 3;
-    double least = INFINITY, side[3], other_side[3];
+    double least = INFINITY, side[3], other_side[3], axis[3];
     for (int k = 0; k < 9; k++) {
-        fold_way(3, at(folds, one[k / 3]), at(folds, one[(k / 3 + 1) % 3]), side);
-        fold_way(3, at(folds, other[k % 3]), at(folds, other[(k % 3 + 1) % 3]), other_side);
-        double axis[3] = {side[1] * other_side[2] - side[2] * other_side[1],
-                          side[2] * other_side[0] - side[0] * other_side[2],
-                          side[0] * other_side[1] - side[1] * other_side[0]};
+        vector_subtract(3, at(folds, one[(k / 3 + 1) % 3]), at(folds, one[k / 3]), side);
+        vector_subtract(3, at(folds, other[(k % 3 + 1) % 3]), at(folds, other[k % 3]), other_side);
+        vector_cross(side, other_side, axis);
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        double size2 = fold_dot(3, axis, axis);
+        double size2 = vector_dot(3, axis, axis);
         for (int i = 0; i < 6; i++) {
-            double place = fold_dot(3, axis, at(folds, i < 3 ? one[i] : other[i - 3]));
+            double place = vector_dot(3, axis, at(folds, i < 3 ? one[i] : other[i - 3]));
             low[i / 3] = fmin(low[i / 3], place);
             high[i / 3] = fmax(high[i / 3], place);
         }
-        if (size2 > round_off * fold_dot(3, side, side) * fold_dot(3, other_side, other_side)) {
+        if (size2 > round_off * vector_dot(3, side, side) * vector_dot(3, other_side, other_side)) {
             least = fmin(least, fmin(high[0] - low[1], high[1] - low[0]) / sqrt(size2));
         }
     }
@@ -296,41 +281,23 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 }
 
 /* Whether two boxes meet along the other axes than the first. */
-static bool boxes_meet(int dim, const struct fold_box *one, const struct fold_box *other)
+static bool boxes_meet(const struct box *one, const struct box *other)
 {
     bool meet = true;
-    for (int i = 1; i < dim; i++) {
+    for (int i = 1; i < one->dim; i++) {
         meet = meet && one->low[i] <= other->high[i] && other->low[i] <= one->high[i];
     }
     return meet;
-}
-
-static int compare_boxes(const void *left, const void *right)
-{
-    const struct fold_box *a = left, *b = right;
-    if (a->low[0] != b->low[0]) {
-        return a->low[0] < b->low[0] ? -1 : 1;
-    }
-    return (a->facet > b->facet) - (a->facet < b->facet);
 }
 
 static void sort_boxes(struct folds *folds)
 {
     int dim = folds->input.dim;
     for (int64_t f = 0; f < folds->input.facet_count; f++) {
-        struct fold_box *box = &folds->boxes[f];
-        box->facet = f;
-        for (int i = 0; i < dim; i++) {
-            box->low[i] = INFINITY;
-            box->high[i] = -INFINITY;
-            for (int k = 0; k < dim; k++) {
-                double place = at(folds, folds->input.facet[f * dim + k])[i];
-                box->low[i] = fmin(box->low[i], place);
-                box->high[i] = fmax(box->high[i], place);
-            }
-        }
+        struct box box = box_of_nodes(dim, folds->y, folds->input.facet + f * dim, dim);
+        folds->boxes[f] = (struct fold_box){{box.low[0], f}, box};
     }
-    qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_boxes);
+    qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_placed);
 }
 
 static void find_crossings(struct folds *folds, struct fold *fold)
@@ -340,10 +307,10 @@ static void find_crossings(struct folds *folds, struct fold *fold)
     share_of(folds, count, share);
     for (int64_t i = share[0]; i < share[1]; i++) {
         const struct fold_box *boxes = folds->boxes;
-        int64_t f = boxes[i].facet;
-        for (int64_t k = i + 1; k < count && boxes[k].low[0] <= boxes[i].high[0]; k++) {
-            int64_t g = boxes[k].facet;
-            if (!boxes_meet(folds->input.dim, &boxes[i], &boxes[k]) ||
+        int64_t f = boxes[i].facet.item;
+        for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
+            int64_t g = boxes[k].facet.item;
+            if (!boxes_meet(&boxes[i].box, &boxes[k].box) ||
                 !(goes_through(folds, f, g) || goes_through(folds, g, f)) || !are_deep(folds, f, g)) {
                 continue;
             }
@@ -381,13 +348,12 @@ double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, c
     int dim = folds->input.dim;
     const double *plane = folds->plane + folds->support[rim->support_facet] * 7;
     const double *node = y + (int64_t)rim->node * dim;
-    double depth = 0.0, way[3];
+    double depth = 0.0;
     for (int i = 0; i < dim; i++) {
         depth += plane[i] * (node[i] - plane[3 + i] / plane[6]);
     }
-    fold_way(dim, y + (int64_t)rim->on_rim * dim, node, way);
-    *reach = sqrt(fold_dot(dim, way, way));
-    return depth / sqrt(fold_dot(dim, plane, plane));
+    *reach = vector_distance(dim, y + (int64_t)rim->on_rim * dim, node);
+    return depth / vector_length(dim, plane);
 }
 
 void folds_take_positions(struct folds *folds, const double *u)

@@ -2,54 +2,35 @@
 #ifndef SOLID_FOLDS_PRIVATE_H
 #define SOLID_FOLDS_PRIVATE_H
 
+#include "base/vector.h"
 #include "solid/folds.h"
-
-#include <math.h>
-
-static inline void fold_way(int dim, const double *from, const double *to, double way[3])
-{
-    for (int i = 0; i < dim; i++) {
-        way[i] = to[i] - from[i];
-    }
-}
-
-static inline double fold_dot(int dim, const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
 
 /* Outward normal times length or twice the area of a facet. */
 static inline void fold_area_vector(int dim, const double *y, const int32_t *facet, double area[3])
 {
     double a[3], b[3];
-    fold_way(dim, y + (int64_t)facet[0] * dim, y + (int64_t)facet[1] * dim, a);
+    const double *origin = y + (int64_t)facet[0] * dim;
+    vector_subtract(dim, y + (int64_t)facet[1] * dim, origin, a);
     if (dim == 2) {
         area[0] = a[1];
         area[1] = -a[0];
         return;
     }
-    fold_way(dim, y + (int64_t)facet[0] * dim, y + (int64_t)facet[2] * dim, b);
-    for (int i = 0; i < 3; i++) {
-        area[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
+    vector_subtract(dim, y + (int64_t)facet[2] * dim, origin, b);
+    vector_cross(a, b, area);
 }
 
 /* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
 static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
 {
     double u[3], v[3], w[3];
-    fold_way(dim, a, b, u);
-    fold_way(dim, a, c, v);
+    vector_subtract(dim, b, a, u);
+    vector_subtract(dim, c, a, v);
     if (dim == 2) {
-        return u[0] * v[1] - u[1] * v[0];
+        return determinant2(u, v);
     }
-    fold_way(dim, a, d, w);
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
+    vector_subtract(dim, d, a, w);
+    return determinant3(u, v, w);
 }
 
 /* Find the parts and bodies of the cells. */

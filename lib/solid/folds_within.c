@@ -15,39 +15,23 @@ static const double round_off = 1e-12;
 
 enum status folds_find_bodies(struct folds *folds, struct error *error)
 {
-    enum status status;
     const struct fold_input *input = &folds->input;
     struct cells cells = {input->dim, input->node_count, input->x, input->cell_count, input->cell};
     int32_t count;
-    TRY(NEW_ARRAY(&folds->part, input->cell_count, error));
-    TRY(cells_parts(&cells, folds->part, &count, error));
-    TRY(NEW_ARRAY(&folds->bodies, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->part, input->cell_count, error));
+    RETURN_IF_ERROR(cells_parts(&cells, folds->part, &count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->bodies, count, error));
     folds->body_count = count;
     for (int64_t c = input->cell_count; c-- > 0;) {
-        folds->bodies[folds->part[c]].cell = c;
+        folds->bodies[folds->part[c]].cell.item = c;
     }
-done:
-    return status;
-}
-
-static int compare_bodies(const void *left, const void *right)
-{
-    const struct fold_body *a = left, *b = right;
-    if (a->middle[0] != b->middle[0]) {
-        return a->middle[0] < b->middle[0] ? -1 : 1;
-    }
-    return (a->cell > b->cell) - (a->cell < b->cell);
+    return STATUS_OK;
 }
 
 static void find_middle(const struct folds *folds, const double *x, int64_t cell, double *middle)
 {
     int dim = folds->input.dim, corners = dim + 1;
-    for (int i = 0; i < dim; i++) {
-        middle[i] = 0.0;
-        for (int k = 0; k < corners; k++) {
-            middle[i] += x[(int64_t)folds->input.cell[cell * corners + k] * dim + i] / corners;
-        }
-    }
+    vector_middle(dim, x, corners, folds->input.cell + cell * corners, middle);
 }
 
 /* Whether a cell contains a point, barycentric coordinates being larger than `least`. */
@@ -72,18 +56,10 @@ static bool contains(const struct folds *folds, int64_t cell, const double *poin
 }
 
 /* The box around a cell. */
-static void bound(const struct folds *folds, int64_t cell, double *low, double *high)
+static struct box box_around(const struct folds *folds, int64_t cell)
 {
     int dim = folds->input.dim;
-    for (int i = 0; i < dim; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
-        for (int k = 0; k <= dim; k++) {
-            double place = folds->y[(int64_t)folds->input.cell[cell * (dim + 1) + k] * dim + i];
-            low[i] = fmin(low[i], place);
-            high[i] = fmax(high[i], place);
-        }
-    }
+    return box_of_nodes(dim, folds->y, folds->input.cell + cell * (dim + 1), dim + 1);
 }
 
 void folds_find_within(struct folds *folds, struct fold *fold)
@@ -93,30 +69,32 @@ void folds_find_within(struct folds *folds, struct fold *fold)
         return;
     }
     for (int64_t b = 0; b < count; b++) {
-        find_middle(folds, folds->y, folds->bodies[b].cell, folds->bodies[b].middle);
+        struct fold_body *body = &folds->bodies[b];
+        find_middle(folds, folds->y, body->cell.item, body->middle);
+        body->cell.place = body->middle[0];
     }
-    qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_bodies);
+    qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_placed);
     for (int64_t c = 0; c < folds->input.cell_count; c++) {
-        double low[3], high[3];
+        struct box box = box_around(folds, c);
         int64_t first = 0;
-        bound(folds, c, low, high);
-        for (int64_t last = count; first < last;) { /* the first body from low[0] on */
+        for (int64_t last = count; first < last;) { /* the first body from the low end of the box on */
             int64_t middle = first + (last - first) / 2;
-            if (folds->bodies[middle].middle[0] < low[0]) {
+            if (folds->bodies[middle].cell.place < box.low[0]) {
                 first = middle + 1;
             } else {
                 last = middle;
             }
         }
-        for (int64_t b = first; b < count && folds->bodies[b].middle[0] <= high[0]; b++) {
+        for (int64_t b = first; b < count && folds->bodies[b].cell.place <= box.high[0]; b++) {
             const struct fold_body *body = &folds->bodies[b];
-            if (folds->part[c] == folds->part[body->cell] || !contains(folds, c, body->middle, on_face)) {
+            if (folds->part[c] == folds->part[body->cell.item] ||
+                !contains(folds, c, body->middle, on_face)) {
                 continue;
             }
             if (fold->count++ == 0) {
                 fold->kind = FOLD_WITHIN;
-                fold->cell = body->cell;
-                find_middle(folds, folds->input.x, body->cell, fold->place);
+                fold->cell = body->cell.item;
+                find_middle(folds, folds->input.x, fold->cell, fold->place);
             }
         }
     }
@@ -160,10 +138,9 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
     }
     TRY(point_grid_build(&grid, dim, count, middle, radius, error));
     for (int64_t c = 0; c < count; c++) {
-        double low[3], high[3];
-        bound(folds, c, low, high);
+        struct box box = box_around(folds, c);
         near.count = 0;
-        TRY(point_grid_query_box(&grid, low, high, 1.0, &near, error));
+        TRY(point_grid_query_box(&grid, box.low, box.high, 1.0, &near, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t other = near.index[i];
             bool apart =
@@ -178,9 +155,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
     }
 done:
     point_grid_free(&grid);
-    free(near.index);
-    free(middle);
-    free(radius);
+    FREE_ALL(near.index, middle, radius);
     return status;
 }
 

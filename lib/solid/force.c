@@ -1,14 +1,10 @@
 /* The force loop: deformation gradients from parameters (apply the operator), stresses, and forces on
  * the parameters (apply its transpose); equation (12) of lib/README.md. */
-#include "base/memory.h"
 #include "solid/merged_cells.h"
 #include "solid/nodal_volume.h"
 #include "solid/stress.h"
 
 #include <math.h>
-#include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A law of ln J knows no volume ratio below zero: where it is the cell's own, such a cell counts as inverted.
  */

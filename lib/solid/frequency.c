@@ -293,8 +293,7 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
         }
     }
 done:
-    free(diagonal);
-    free(off_diagonal);
+    FREE_ALL(diagonal, off_diagonal);
     return status;
 }
 

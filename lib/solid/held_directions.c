@@ -3,8 +3,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status held_build(int dim, int64_t node_count, struct held_directions *held, struct error *error)
@@ -22,8 +20,7 @@ done:
 
 void held_free(struct held_directions *held)
 {
-    free(held->count);
-    free(held->axis);
+    FREE_ALL(held->count, held->axis);
     *held = (struct held_directions){0};
 }
 

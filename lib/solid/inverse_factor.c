@@ -219,8 +219,7 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     TRY(inverse_factor_wanted(factor, &wanted, error));
     TRY(halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error));
 done:
-    free(wanted);
-    free(length);
+    FREE_ALL(wanted, length);
     sparse_free(&by_place);
     lower_free(&lower);
     if (status != STATUS_OK) {

@@ -92,15 +92,13 @@ enum status lower_begin(const struct solid_system *system, struct lower *lower, 
     RETURN_IF_ERROR(NEW_ARRAY(&lower->begin, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lower->end, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lower->piece_of, nodes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&lower->diagonal, nodes, error));
-    return STATUS_OK;
+    return NEW_ARRAY(&lower->diagonal, nodes, error);
 }
 
 static void drop_pieces(struct lower *lower)
 {
     for (size_t k = 0; k < sizeof lower->piece / sizeof *lower->piece; k++) {
-        free(lower->piece[k].idx);
-        free(lower->piece[k].value);
+        FREE_ALL(lower->piece[k].idx, lower->piece[k].value);
         lower->piece[k] = (struct lower_piece){0};
     }
     lower->piece_count = 0;

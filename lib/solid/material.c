@@ -1,9 +1,9 @@
 #include "solid/material.h"
 
 #include "base/eigen.h"
+#include "base/vector.h"
 
 #include <math.h>
-#include <string.h>
 
 void material_set_moduli(struct material *material, double youngs_modulus, double poisson_ratio)
 {
@@ -23,30 +23,19 @@ double material_wave_modulus(const struct material *material)
 
 double determinant(const double F[9])
 {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-           F[2] * (F[3] * F[7] - F[4] * F[6]);
+    return determinant3(F, F + 3, F + 6);
 }
 
 void cofactor(const double F[9], double C[9])
 {
-    C[0] = F[4] * F[8] - F[5] * F[7];
-    C[1] = F[5] * F[6] - F[3] * F[8];
-    C[2] = F[3] * F[7] - F[4] * F[6];
-    C[3] = F[2] * F[7] - F[1] * F[8];
-    C[4] = F[0] * F[8] - F[2] * F[6];
-    C[5] = F[1] * F[6] - F[0] * F[7];
-    C[6] = F[1] * F[5] - F[2] * F[4];
-    C[7] = F[2] * F[3] - F[0] * F[5];
-    C[8] = F[0] * F[4] - F[1] * F[3];
+    vector_cross(F + 3, F + 6, C);
+    vector_cross(F + 6, F, C + 3);
+    vector_cross(F, F + 3, C + 6);
 }
 
 static double norm2(const double F[9])
 {
-    double sum = 0.0;
-    for (int i = 0; i < 9; i++) {
-        sum += F[i] * F[i];
-    }
-    return sum;
+    return vector_dot(9, F, F);
 }
 
 /* C = F^T F, symmetric. */

@@ -152,7 +152,6 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
     }
 done:
     envelope_free(&factor);
-    free(dropped);
-    free(mass);
+    FREE_ALL(dropped, mass);
     return status;
 }

@@ -1,20 +1,20 @@
 /* Displacements measured at any points of a body: springs that hold what is known to a standard deviation,
  * points that contradict each other, and conditions that leave each other too little to decide.
  *
- * A spring is a term of weighted least squares beside the elastic energy: e (u_h - u)^2 / (2 sigma^2) for a
- * component known to the standard deviation sigma. Then the equilibrium is the most probable displacement,
- * where what the scene does not know moves the body by random fields whose covariance is e times its
- * compliance A. The scale e, an energy, is that of maximum likelihood: d . A^-1 d / N for N measured
- * components by which the scene without the points is off, d, which is twice the least elastic energy of
- * that. It is estimated as the energy that moves the ball of radius l of the points by s, the root mean
- * square of d, in an incompressible medium (Stokes 1851; in 2D a circle, to leading order, in a body of size
- * L):
+ * A spring adds a term of weighted least squares to the elastic energy: e (u_h - u)^2 / (2 sigma^2) for a
+ * component u that was measured with the standard deviation sigma. The equilibrium is then the most probable
+ * displacement, if the error of the scene without the points is a random field whose covariance is e times
+ * the compliance A of the body. The scale e is an energy. Its maximum-likelihood value is d . A^-1 d / N; d
+ * holds the N differences between the measured components and the solution without the points, and d . A^-1 d
+ * is twice the least elastic energy of a displacement d of the points. It is estimated as the energy that
+ * moves a ball of radius l, around the points, by s, the root mean square of d, in an incompressible medium
+ * (Stokes 1851; in 2D a circle, to leading order, in a body of size L):
  *
  *   e = k s^2 / N,   k = 6 pi mu l,   in 2D 4 pi mu / ln (L / l). (32)
  *
- * A point alone thus goes s^2 / (s^2 + sigma^2) of the way to what was measured (Wiener 1949); and where N
- * points hold a region, their springs together are that much stiffer than it. More points than nodes can
- * follow count as so many as these. */
+ * A single point thus moves by s^2 / (s^2 + sigma^2) of the measured displacement (Wiener 1949). The springs
+ * of N points in a region together are stiffer than the region by the same ratio, s^2 / sigma^2. N is at most
+ * the number of nodes that the field at the points is made of. */
 #ifndef SOLID_MEASURED_H
 #define SOLID_MEASURED_H
 

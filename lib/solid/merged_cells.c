@@ -5,7 +5,6 @@
 #include "solid/stress.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Whether two cells are of a region and a law. */
@@ -124,8 +123,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
         }
     }
 done:
-    free(first);
-    free(next);
+    FREE_ALL(first, next);
     return status;
 }
 

@@ -92,8 +92,7 @@ static enum status lay_out(const struct body *body, struct nodal_pressures *pres
         pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error));
-    return STATUS_OK;
+    return NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error);
 }
 
 /* The iterations for eigenvalues from rho to 1. */

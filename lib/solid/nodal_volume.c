@@ -108,8 +108,7 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     TRY(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
     TRY(NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
 done:
-    free(keys);
-    free(at_edge);
+    FREE_ALL(keys, at_edge);
     return status;
 }
 

@@ -41,10 +41,7 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
     struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
     TRY(NEW_ARRAY(&placed, count, error));
     for (int64_t c = 0; c < count; c++) {
-        placed[c].item = c;
-        for (int a = 0; a < dim; a++) {
-            placed[c].place += direction[a] * corners[c * dim + a];
-        }
+        placed[c] = (struct placed){vector_dot(dim, direction, corners + c * dim), c};
     }
     qsort(placed, (size_t)count, sizeof *placed, compare_placed);
     for (int64_t i = 0; i < count; i++) {
@@ -85,8 +82,7 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
         surface->facet[c] = number[same[c]] - 1;
     }
 done:
-    free(same);
-    free(number);
+    FREE_ALL(same, number);
     return status;
 }
 

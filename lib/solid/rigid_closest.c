@@ -2,7 +2,6 @@
 #include "solid/rigid_private.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where on a facet the closest point lies; edge k goes from corner k to corner k + 1. */

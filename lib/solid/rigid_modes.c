@@ -3,6 +3,7 @@
 #include "base/box.h"
 #include "base/eigen.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -91,14 +92,12 @@ static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MODE
 static void put_turn(const struct box *box, const double *move, struct rigid_modes *moves)
 {
     int dim = box->dim;
-    double w[3] = {0.0, 0.0, 0.0}, length2 = 0.0, t[3] = {move[0], move[1], dim == 3 ? move[2] : 0.0};
+    double w[3] = {0.0, 0.0, 0.0}, t[3] = {move[0], move[1], dim == 3 ? move[2] : 0.0};
     double *axis = moves->axis[moves->turns], *through = moves->through[moves->turns];
     for (int k = dim; k < move_count(dim); k++) {
         w[(k - dim + 2) % 3] = move[k] / box_side(box);
     }
-    for (int a = 0; a < 3; a++) {
-        length2 += w[a] * w[a];
-    }
+    double length2 = vector_dot(3, w, w);
     for (int a = 0; a < 3; a++) { /* where t + w x (p - centre) = 0 */
         int b = (a + 1) % 3, c = (a + 2) % 3;
         axis[a] = w[a] / sqrt(length2);

@@ -38,11 +38,4 @@ static inline void normalise(int dim, double *v)
     }
 }
 
-static inline void add_scaled(int dim, double factor, const double *v, double *sum)
-{
-    for (int a = 0; a < dim; a++) {
-        sum[a] += factor * v[a];
-    }
-}
-
 #endif

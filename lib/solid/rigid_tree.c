@@ -4,7 +4,6 @@
 #include "solid/rigid_private.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { LEAF_FACETS = 4 };
 

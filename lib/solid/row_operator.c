@@ -3,7 +3,6 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* The table that is transposed. */
 static const struct sparse *transposed_table(const struct row_operator *rows)
@@ -105,8 +104,7 @@ enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_
         TRY(make_stripe(table, range, &rows->stripes[s], error));
     }
 done:
-    free(count);
-    free(range);
+    FREE_ALL(count, range);
     return status;
 }
 

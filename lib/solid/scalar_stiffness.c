@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The points of a contact with a rigid surface. Where facets of the body will touch others is not known; the
  * time step follows what they add. */
@@ -124,8 +123,7 @@ done:
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
-    free(stiffness->bond_stiffness);
-    free(stiffness->range);
+    FREE_ALL(stiffness->bond_stiffness, stiffness->range);
     *stiffness = (struct scalar_stiffness){0};
 }
 

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/read_rows.h"
 #include "solid/body.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,16 +47,11 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
 /* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
 static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
 {
-    for (int k = 0; k < dim; k++) {
-        bool on_face = false;
-        for (int i = 0; i < dim; i++) {
-            on_face = on_face || face[i] == vertex[k];
-        }
-        if (!on_face) {
-            return k;
-        }
+    int k = 0;
+    while (k < dim && (face[0] == vertex[k] || face[1] == vertex[k] || (dim == 3 && face[2] == vertex[k]))) {
+        k++;
     }
-    return dim;
+    return k;
 }
 
 /* The rows of the face opposite each corner. */
@@ -111,17 +107,15 @@ static enum status place_rows(const struct faces *faces, const double *nodes, do
         }
     }
     for (int64_t f = 0; f < faces->count; f++) {
-        double off = 0.0, size = 0.0;
+        double off = 0.0, size = 0.0, middle[3];
+        vector_middle(dim, nodes, dim, faces->node + f * dim, middle);
         for (int a = 0; a < dim; a++) {
-            double mean = 0.0, middle = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
-            for (int i = 0; i < dim; i++) {
-                middle += nodes[(int64_t)faces->node[f * dim + i] * dim + a] / dim;
-            }
+            double mean = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
             for (int k = 0; k < rows; k++) {
                 mean += x[face_row(faces, f, k) * dim + a] / rows;
             }
-            off = fmax(off, fabs(mean - middle));
-            size = fmax(size, fabs(middle - first));
+            off = fmax(off, fabs(mean - middle[a]));
+            size = fmax(size, fabs(middle[a] - first));
         }
         if (!(off <= 1e-6 * size)) {
             status = fail(error, STATUS_INPUT,
@@ -216,8 +210,7 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
         wanted[order[f]] = wanted[order[f]] || in_order[f];
     }
 done:
-    free(touched);
-    free(in_order);
+    FREE_ALL(touched, in_order);
     return status;
 }
 
@@ -281,8 +274,7 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     TRY(body_share_rows(body, used, error));
     memcpy(averages->given, tables->tables, sizeof averages->given);
 done:
-    free(needed);
-    free(used);
+    FREE_ALL(needed, used);
     return status;
 }
 
@@ -400,9 +392,6 @@ int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
 double smoothed_cells_share(const struct body *body, int64_t q)
 {
     double sum = 0.0;
-    if (body->cells.group == NULL) {
-        return 1.0;
-    }
     for (int64_t i = smoothed_cells_group(body, q); i < smoothed_cells_group_end(body, q); i++) {
         sum += body->weight[i];
     }

@@ -1,6 +1,7 @@
 #include "solid/stress.h"
 
 #include "solid/nodal_volume.h"
+#include "base/vector.h"
 
 #include <string.h>
 
@@ -56,13 +57,10 @@ void stress_points(const struct body *body, const struct block *block, block_row
 
 double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9])
 {
-    double H[9], squares = 0.0;
+    double H[9];
     stress_matrix(body->dim, body->cells.interpolant + point, body->point_count, H);
-    for (int k = 0; k < 9; k++) {
-        squares += (H[k] - F[k]) * (H[k] - F[k]);
-    }
     double shear = body->materials[body->material[point]].shear_modulus;
-    return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * squares;
+    return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * vector_distance2(9, H, F);
 }
 
 /* d cof H along D, by which cof H : D changes with H: along : dH. */
@@ -86,9 +84,7 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
     double F[9], H[9], C[9], D[9], along[9];
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
-    for (int k = 0; k < 9; k++) {
-        D[k] = H[k] - F[k];
-    }
+    vector_subtract(9, H, F, D);
     double stiffness = SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     double pressure = point_pressure(body, q, body->J[q]);
     material_shape_stress(material, F, P);

@@ -31,8 +31,7 @@ void system_free(struct solid_system *system)
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->penalties);
     constraint_rows_free_kept(&system->penalties_here);
-    free(system->penalty_stiffness);
-    free(system->penalty_force);
+    FREE_ALL(system->penalty_stiffness, system->penalty_force);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -129,8 +128,7 @@ static enum status check_dropped(const struct solid_system *system, struct const
         status = fail_at_row(system, worst_row, worst, error);
     }
 done:
-    free(u);
-    free(factor);
+    FREE_ALL(u, factor);
     return status;
 }
 

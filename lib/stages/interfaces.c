@@ -5,7 +5,6 @@
 #include "base/options.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
@@ -38,8 +37,7 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
         (*side)[c] = place > 0 ? place - 1 : named;
     }
 done:
-    free(list);
-    free(of_region);
+    FREE_ALL(list, of_region);
     names_free(&regions.names);
     return status;
 }

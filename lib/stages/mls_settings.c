@@ -1,10 +1,8 @@
 #include "stages/mls_settings.h"
 
-#include "base/memory.h"
 #include "base/options.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static enum status apply_mu(const char *text, struct mls *mls, struct error *error)
 {

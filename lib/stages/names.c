@@ -3,7 +3,6 @@
 #include "base/memory.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status names_read(const struct section *section, struct names *names, struct error *error)
@@ -30,8 +29,7 @@ enum status names_of(const struct section *section, const char *key, struct name
 
 void names_free(struct names *names)
 {
-    free(names->list);
-    free(names->name);
+    FREE_ALL(names->list, names->name);
     *names = (struct names){0};
 }
 

@@ -2,7 +2,6 @@
 #include "stages/mls_settings.h"
 #include "stages/stages.h"
 
-#include "base/memory.h"
 #include "base/options.h"
 
 #include <stdio.h>

@@ -5,7 +5,6 @@
 #include "io/sections.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
@@ -77,8 +76,7 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
                        vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true, error));
     }
 done:
-    free(phi);
-    free(dphi);
+    FREE_ALL(phi, dphi);
     return status;
 }
 
@@ -126,8 +124,7 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     }
 done:
     face_averages_free(&averages);
-    free(ptr);
-    free(idx);
+    FREE_ALL(ptr, idx);
     return status;
 }
 

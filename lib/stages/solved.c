@@ -1,7 +1,5 @@
 #include "stages/solved.h"
 
-#include "base/memory.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -6,7 +6,6 @@
 #include "io/sections.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
@@ -160,8 +159,7 @@ static enum status renew_rows(struct stream *stream, const struct cells *cells, 
     TRY(stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
                    array_take(&x), true, error));
 done:
-    free(row);
-    free(x);
+    FREE_ALL(row, x);
     return status;
 }
 
@@ -218,8 +216,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
                              .called = "nodes"};
     TRY(put_lists(stream, &actual, &space, &listed, report, error));
 done:
-    free(face_ptr);
-    free(face_cell);
+    FREE_ALL(face_ptr, face_cell);
     support_space_free(&space);
     return status;
 }

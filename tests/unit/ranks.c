@@ -51,10 +51,10 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     team->items[ranks->rank] = items;
     wait_for_all(ranks);
     for (int r = 0; r < ranks->count; r++) {
-        size_t at = (size_t)first[r] * size;
+        size_t at = (size_t)(first != NULL ? first[r] : r) * size;
+        size_t count = (size_t)(first != NULL ? first[r + 1] - first[r] : 1);
         if (r != ranks->rank) {
-            memcpy((char *)items + at, (const char *)team->items[r] + at,
-                   (size_t)(first[r + 1] - first[r]) * size);
+            memcpy((char *)items + at, (const char *)team->items[r] + at, count * size);
         }
     }
     wait_for_all(ranks);

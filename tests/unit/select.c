@@ -102,13 +102,13 @@ TEST(rings_grow_and_shrink)
     bool items[5] = {false, false, true, false, false};
     bool nodes[6] = {true};
     struct error error;
-    GOOD(items_grow(5, 2, chain, 6, 1, items, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 1, true, items, &error));
     assert_true(!items[0] && items[1] && items[2] && items[3] && !items[4]);
-    GOOD(items_grow(5, 2, chain, 6, -1, items, &error));
+    GOOD(choice_grow(5, 2, chain, 6, -1, true, items, &error));
     assert_true(!items[0] && !items[1] && items[2] && !items[3] && !items[4]);
-    GOOD(nodes_grow(5, 2, chain, 6, 2, nodes, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 2, false, nodes, &error));
     assert_true(nodes[0] && nodes[1] && nodes[2] && !nodes[3]);
-    GOOD(nodes_grow(5, 2, chain, 6, -1, nodes, &error));
+    GOOD(choice_grow(5, 2, chain, 6, -1, false, nodes, &error));
     assert_true(nodes[0] && nodes[1] && !nodes[2]);
 }
 

@@ -35,8 +35,7 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
     report->poor = cells_poorest(cells, bound, CELL_REPORT_MOST, report->poorest);
     report->listed = report->poor < CELL_REPORT_MOST ? (int)report->poor : CELL_REPORT_MOST;
 done:
-    free(part);
-    free(quality);
+    FREE_ALL(part, quality);
     return status;
 }
 

@@ -221,22 +221,16 @@ void cut_body_make_part(const struct cut_body *whole, int32_t number, const stru
     put_numbers(whole, "part.cell", "", body->cell, body->cell_count);
     put_facets(whole, place, has_cell);
     put_sets(whole, place);
-    free(place);
-    free(has_cell);
+    FREE_ALL(place, has_cell);
 }
 
 void cut_body_free(struct cut_body *whole)
 {
-    free(whole->radius);
-    free(whole->owner);
-    free(whole->work);
-    free(whole->own_ptr);
-    free(whole->own_cell);
+    FREE_ALL(whole->radius, whole->owner, whole->work, whole->own_ptr, whole->own_cell);
     cell_stars_free(&whole->stars);
     point_grid_free(&whole->grid);
     for (int64_t i = 0; i < whole->section_count; i++) {
-        free(whole->sections[i].name);
-        free(whole->sections[i].attributes);
+        FREE_ALL(whole->sections[i].name, whole->sections[i].attributes);
         if (whole->sections[i].owned) {
             free(whole->sections[i].data);
         }

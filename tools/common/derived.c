@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/sections.h"
 #include "io/vtk.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,9 +14,7 @@
 void derived_free(struct derived *derived)
 {
     for (int64_t i = 0; i < derived->count; i++) {
-        free(derived->items[i].name);
-        free(derived->items[i].attributes);
-        free(derived->items[i].data);
+        FREE_ALL(derived->items[i].name, derived->items[i].attributes, derived->items[i].data);
     }
     free(derived->items);
     *derived = (struct derived){0};
@@ -27,11 +26,7 @@ static enum status append(struct derived *derived, const char *base, const char 
                           enum element_type type, int64_t rows, int64_t cols, const char *attributes,
                           struct error *error)
 {
-    struct section *items = array_grow(derived->items, derived->count + 1, sizeof *items);
-    if (items == NULL) {
-        return fail_memory(error, what);
-    }
-    derived->items = items;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&derived->items, derived->count + 1, error));
     struct section section = {.type = type, .rows = rows, .cols = cols};
     section.attributes = strdup(attributes);
     section.data = array_new(rows * cols, element_size(type));
@@ -104,8 +99,7 @@ static void volume_ratio(const double A[9], double *row)
     for (int k = 0; k < 9; k++) {
         C[k] = 2.0 * A[k] + (k % 4 == 0 ? 1.0 : 0.0);
     }
-    *row = sqrt(C[0] * (C[4] * C[8] - C[5] * C[7]) - C[1] * (C[3] * C[8] - C[5] * C[6]) +
-                C[2] * (C[3] * C[7] - C[4] * C[6]));
+    *row = sqrt(determinant3(C, C + 3, C + 6));
 }
 
 static const struct invariant {

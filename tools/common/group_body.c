@@ -3,10 +3,8 @@
 #include "stages/views.h"
 
 #include "base/box.h"
-#include "base/lists.h"
 #include "base/memory.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,8 +24,7 @@ int64_t group_find(const struct group_list *list, const char *name)
 
 void group_remove(struct group_list *list, int64_t index)
 {
-    free(list->group[index].name);
-    free(list->group[index].item);
+    FREE_ALL(list->group[index].name, list->group[index].item);
     list->count--;
     memmove(&list->group[index], &list->group[index + 1],
             (size_t)(list->count - index) * sizeof *list->group);
@@ -37,13 +34,9 @@ void group_remove(struct group_list *list, int64_t index)
 /* Append an empty group. */
 static enum status add_group(struct group_list *list, const char *name, struct error *error)
 {
-    struct group *grown = array_grow(list->group, list->count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "groups");
-    }
-    list->group = grown;
-    grown[list->count] = (struct group){.name = strdup(name)};
-    if (grown[list->count].name == NULL) {
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->group, list->count + 1, error));
+    list->group[list->count] = (struct group){.name = strdup(name)};
+    if (list->group[list->count].name == NULL) {
         return fail_memory(error, "groups");
     }
     list->count++;
@@ -79,46 +72,27 @@ static enum status sort_items(struct group_list *list, int64_t count, const int3
 
 /* ---- reading ---- */
 
-struct keyed {
-    int32_t key[3];
-    int32_t facet;
-};
-
-static int compare_keys(const void *left, const void *right)
-{
-    return compare_numbers(3, ((const struct keyed *)left)->key, ((const struct keyed *)right)->key);
-}
-
 /* facet[rows]: the boundary's facet that each row of `facets` is; the boundary takes over its order of nodes,
  * so that unchanged groups are written as they were. */
 static enum status find_facets(struct group_body *body, const struct named_facets *named, int32_t *facet,
                                struct error *error)
 {
     enum status status;
-    struct faces *boundary = &body->boundary;
-    int dim = boundary->dim;
-    struct keyed *keyed = NULL;
-    TRY(NEW_ARRAY(&keyed, boundary->count, error));
-    for (int64_t f = 0; f < boundary->count; f++) {
-        face_key(dim, &boundary->node[f * dim], keyed[f].key);
-        keyed[f].facet = (int32_t)f;
-    }
-    qsort(keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
+    int dim = body->cells.dim;
+    int64_t *found = NULL;
+    TRY(NEW_ARRAY(&found, named->count, error));
+    TRY(faces_find(&body->boundary, named->count, named->facet, found, error));
     for (int64_t i = 0; i < named->count; i++) {
-        struct keyed wanted = {0};
-        face_key(dim, &named->facet[i * dim], wanted.key);
-        const struct keyed *found =
-            bsearch(&wanted, keyed, (size_t)boundary->count, sizeof *keyed, compare_keys);
-        if (found == NULL) {
+        if (found[i] < 0) {
             TRY(fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
                      (long long)i));
         }
-        facet[i] = found->facet;
-        memcpy(&boundary->node[(int64_t)found->facet * dim], &named->facet[i * dim],
+        facet[i] = (int32_t)found[i];
+        memcpy(&body->boundary.node[found[i] * dim], &named->facet[i * dim],
                (size_t)dim * sizeof *named->facet);
     }
 done:
-    free(keyed);
+    free(found);
     return status;
 }
 

@@ -6,6 +6,7 @@
 #include "base/options.h"
 #include "io/surface.h"
 #include "io/table.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -40,10 +41,7 @@ void term_scale(int count, double values[], double unit)
 
 enum status term_check_direction(const struct term *term, const double *direction)
 {
-    double square = 0;
-    for (int k = 0; k < term->body->cells.dim; k++) {
-        square += direction[k] * direction[k];
-    }
+    double square = vector_dot(term->body->cells.dim, direction, direction);
     if (!(square > 0) || !isfinite(square)) {
         return fail(term->error, STATUS_INPUT, "%.100s: the direction has no length", term->text);
     }

@@ -40,17 +40,11 @@ static enum joint joint_of(const char *word)
 static enum status grow(const struct group_body *body, enum group_kind kind, const char *word, bool *chosen,
                         struct error *error)
 {
-    const struct items *items = &body->items[kind];
-    bool shrunk = word[0] == 's';
+    const struct items *items = &body->items[kind == GROUP_NODES ? GROUP_REGION : kind];
     int64_t rings = 0;
     RETURN_IF_ERROR(parse_integer(strchr(word, ':') + 1, word, 1, 1000, &rings, error));
-    int signed_rings = shrunk ? -(int)rings : (int)rings;
-    if (kind != GROUP_NODES) {
-        return items_grow(items->count, items->corners, items->item, body->cells.node_count, signed_rings,
-                          chosen, error);
-    }
-    return nodes_grow(body->cells.count, body->cells.dim + 1, body->cells.node, body->cells.node_count,
-                      signed_rings, chosen, error);
+    return choice_grow(items->count, items->corners, items->item, body->cells.node_count,
+                       word[0] == 's' ? -(int)rings : (int)rings, kind != GROUP_NODES, chosen, error);
 }
 
 /* Terms and words alternate; chosen[] is what they give from left to right. */
@@ -103,7 +97,6 @@ enum status group_select(const struct group_body *body, enum group_kind kind, co
     TRY(NEW_ARRAY(&term, body->items[kind].count, error));
     TRY(evaluate(body, kind, copy, unit, chosen, term, error));
 done:
-    free(term);
-    free(copy);
+    FREE_ALL(term, copy);
     return status;
 }

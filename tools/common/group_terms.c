@@ -2,9 +2,9 @@
 
 #include "approx/parts.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,11 +92,8 @@ static int64_t nearest(const struct items *items, const double *point)
     double least = INFINITY;
     for (int64_t i = 0; i < items->count; i++) {
         double centre[3];
-        double square = 0;
         item_centre(items, i, centre);
-        for (int k = 0; k < items->dim; k++) {
-            square += (centre[k] - point[k]) * (centre[k] - point[k]);
-        }
+        double square = vector_distance2(items->dim, centre, point);
         if (square < least) {
             least = square;
             best = i;
@@ -141,8 +138,7 @@ static enum status choose_part(const struct term *term)
     }
     TRY(choose_by(term, side ? GROUP_FACETS : GROUP_REGION, in));
 done:
-    free(part);
-    free(in);
+    FREE_ALL(part, in);
     return status;
 }
 

@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* "names=a,b" of the groups, allocated. */
@@ -58,9 +57,7 @@ static enum status write_facets(const struct group_body *body, struct stream *st
     TRY(stream_put(stream, "facets", TYPE_I4, count, dim, "", array_take(&node), true, error));
     TRY(stream_put(stream, "facets.set", TYPE_I4, count, 1, names, array_take(&set), true, error));
 done:
-    free(node);
-    free(set);
-    free(names);
+    FREE_ALL(node, set, names);
     return status;
 }
 
@@ -87,9 +84,7 @@ static enum status write_sets(const struct group_body *body, struct stream *stre
     TRY(stream_put(stream, "sets.ptr", TYPE_I8, list->count + 1, 1, names, array_take(&ptr), true, error));
     TRY(stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error));
 done:
-    free(ptr);
-    free(idx);
-    free(names);
+    FREE_ALL(ptr, idx, names);
     return status;
 }
 
@@ -116,8 +111,7 @@ static enum status write_regions(const struct group_body *body, struct stream *s
     TRY(stream_put(stream, "cells.region", TYPE_I4, body->cells.count, 1, names, array_take(&region), true,
                    error));
 done:
-    free(region);
-    free(names);
+    FREE_ALL(region, names);
     return status;
 }
 

@@ -17,8 +17,7 @@ static int axis_across(const struct image *image, int a, int b)
     for (int w = 0; w < 3; w++) {
         bool across = true;
         for (int c = a; c <= b; c += b - a) {
-            double length = hypot(hypot(image->to_world[0][c], image->to_world[1][c]), image->to_world[2][c]);
-            across = across && fabs(image->to_world[w][c]) <= 1e-4 * length;
+            across = across && fabs(image->to_world[w][c]) <= 1e-4 * image_step(image, c);
         }
         if (across) {
             return w;
@@ -85,8 +84,7 @@ double least_step(const struct image *image, int dim)
 {
     double least = INFINITY;
     for (int i = 0; i < dim; i++) {
-        least =
-            fmin(least, hypot(hypot(image->to_world[0][i], image->to_world[1][i]), image->to_world[2][i]));
+        least = fmin(least, image_step(image, i));
     }
     return least;
 }

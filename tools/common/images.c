@@ -2,15 +2,8 @@
 
 #include "output.h"
 
-#include <math.h>
 #include <string.h>
 #include <unistd.h>
-
-static bool ends_in(const char *name, const char *ending)
-{
-    size_t length = strlen(name), tail = strlen(ending);
-    return length > tail && strcmp(name + length - tail, ending) == 0;
-}
 
 void tool_read_image(const struct tool *tool, const char *file, struct image *image)
 {
@@ -36,7 +29,7 @@ void tool_check_image_output(const struct tool *tool)
     if (tool->output == NULL && isatty(STDOUT_FILENO)) {
         tool_fail(tool, STATUS_INPUT, "no image to a terminal: redirect it, or name a file with -o");
     }
-    if (tool->output != NULL && !ends_in(tool->output, ".nii") && !ends_in(tool->output, ".nii.gz") &&
+    if (tool->output != NULL && !text_ends(tool->output, ".nii") && !text_ends(tool->output, ".nii.gz") &&
         strchr(tool->output, '.') != NULL && strncmp(tool->output, "/dev/", 5) != 0) {
         tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii or .nii.gz", tool->output);
     }
@@ -49,18 +42,15 @@ void tool_write_image(const struct tool *tool, const struct image *image)
         TOOL_TRY(tool, fail_in(&error, image_write(image, STDOUT_FILENO, true, &error), "standard output"));
         return;
     }
-    bool gzip = !ends_in(tool->output, ".nii");
+    bool gzip = !text_ends(tool->output, ".nii");
     TOOL_TRY(tool, output_open(&output, tool->output, &error));
     TOOL_TRY(tool, output_end(&output, image_write(image, output.descriptor, gzip, &error), &error));
 }
 
 const char *image_text(const struct image *image, char text[128])
 {
-    double size[3];
-    for (int i = 0; i < 3; i++) {
-        size[i] = 1e3 * hypot(hypot(image->to_world[0][i], image->to_world[1][i]), image->to_world[2][i]);
-    }
     snprintf(text, 128, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", image->size[0], image->size[1],
-             image->size[2], size[0], size[1], size[2]);
+             image->size[2], 1e3 * image_step(image, 0), 1e3 * image_step(image, 1),
+             1e3 * image_step(image, 2));
     return text;
 }

@@ -19,19 +19,16 @@ static enum status add_curve(struct model *model, const struct scene_label *labe
     enum status status = STATUS_OK;
     struct assembly *input = &model->assembly;
     struct table table = {0};
-    struct load_curve *grown = array_grow(input->curves, input->curve_count + 1, sizeof *grown);
-    if (grown == NULL) {
-        return fail_memory(error, "load curves");
-    }
-    input->curves = grown;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&input->curves, input->curve_count + 1, error));
+    struct load_curve *added = &input->curves[input->curve_count];
     if (curve->kind != SCENE_CURVE_FILE) {
-        grown[input->curve_count] = curve_of_kind(kinds[curve->kind]);
+        *added = curve_of_kind(kinds[curve->kind]);
     } else {
         double end = input->in_time ? model->scene->solver.end_time : 1.0;
         TRY(fail_in(error, table_read(curve->file, 2, 2, &table, error),
                     "%s: curve: not smooth, linear or step, and as a file", label->where));
-        TRY(fail_in(error, curve_tabulate(&grown[input->curve_count], table.rows, table.values, end, error),
-                    "%s: curve %s", label->where, curve->file));
+        TRY(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error), "%s: curve %s",
+                    label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;
 done:

@@ -78,7 +78,6 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     }
 done:
     names_free(&sets.names);
-    free(wanted);
-    free(member);
+    FREE_ALL(wanted, member);
     return status;
 }

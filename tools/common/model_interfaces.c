@@ -3,7 +3,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Above such a jump forces, too, may be off: on layers of three cells by 10 % at 20 : 1, 16 % at 100 : 1. */
 static const double large_jump = 20.0;

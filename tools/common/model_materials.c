@@ -3,7 +3,6 @@
 #include "io/table.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static void set_material(const struct scene_material *section, struct material *material)
 {
@@ -58,11 +57,7 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
     struct table table = {0};
     int64_t row = 0;
     TRY(table_read(section->table, dim + 2, dim + 2, &table, error));
-    struct material *grown = array_grow(list->items, list->count + table.rows, sizeof *grown);
-    if (grown == NULL) {
-        TRY(fail_memory(error, "materials"));
-    }
-    list->items = grown;
+    TRY(RESIZE_ARRAY(&list->items, list->count + table.rows, error));
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
         if (list->of_point[q] != m) {
             continue;
@@ -140,10 +135,7 @@ enum status model_materials(struct model *model, struct error *error)
     int64_t points = model->assembly.point_count;
     struct material_list *list = &model->assembly.materials;
     RETURN_IF_ERROR(materials_of_cells(model, error));
-    list->items = array_grow(NULL, scene->material_count, sizeof *list->items);
-    if (list->items == NULL) {
-        return fail_memory(error, "materials");
-    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, scene->material_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&list->of_point, points, error));
     /* At most one for each section and for each point. */
     RETURN_IF_ERROR(NEW_ARRAY(&list->section, scene->material_count + points, error));

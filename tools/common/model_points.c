@@ -116,8 +116,7 @@ static enum status find_field(struct point_section *p, struct error *error)
                           measured->x, p->section->table, &field, error));
     TRY(keep_field(p, &field, error));
 done:
-    free(reach);
-    free(outside);
+    FREE_ALL(reach, outside);
     return status;
 }
 

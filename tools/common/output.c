@@ -117,8 +117,7 @@ void output_abandon(struct output *output)
         close(output->descriptor);
     }
     remove_pending();
-    free(output->temporary);
-    free(output->target);
+    FREE_ALL(output->temporary, output->target);
     *output = (struct output){.descriptor = -1, .name = output->name};
 }
 

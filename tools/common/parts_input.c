@@ -20,13 +20,6 @@ bool parts_are_named(const char *operand)
     return operand != NULL && strstr(operand, "%d") != NULL;
 }
 
-/* The file of a part; to be freed. */
-static char *file_of(const struct tool *tool, const char *operand, int64_t number)
-{
-    const char *at = strstr(operand, "%d");
-    return tool_text(tool, "%.*s%lld%s", (int)(at - operand), operand, (long long)number, at + 2);
-}
-
 static enum status fail_missing(const char *file, int64_t number, int64_t count, struct error *error)
 {
     return fail(error, STATUS_INPUT, "%s: part %lld of %lld is missing", file, (long long)number,
@@ -65,7 +58,7 @@ static enum status count_parts(const char *file, const struct stream *stream, in
 static enum status look_for_last(const struct tool *tool, const char *operand, int64_t count,
                                  struct error *error)
 {
-    char *last = file_of(tool, operand, count - 1);
+    char *last = tool_numbered(tool, "", operand, count - 1);
     enum status status = STATUS_OK;
     if (access(last, F_OK) != 0) {
         status = errno == ENOENT ? fail_missing(last, count - 1, count, error)
@@ -83,14 +76,10 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
     const struct ranks *ranks = process_ranks();
     int64_t count = 0;
     if (ranks_rank(ranks) == 0) {
-        char *file = file_of(tool, operand, 0);
+        char *file = tool_numbered(tool, "", operand, 0);
         status = read_file(file, 0, 0, stream, &error);
-        if (status == STATUS_OK) {
-            status = count_parts(file, stream, &count, &error);
-        }
-        if (status == STATUS_OK) {
-            status = look_for_last(tool, operand, count, &error);
-        }
+        status = status == STATUS_OK ? count_parts(file, stream, &count, &error) : status;
+        status = status == STATUS_OK ? look_for_last(tool, operand, count, &error) : status;
         free(file);
     }
     tool_check(tool, ranks_agree(ranks, status, &error), &error);
@@ -141,7 +130,7 @@ static enum status read_own(struct rejoin *rejoin, const char *operand, const in
     const struct ranks *ranks = process_ranks();
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        part->file = file_of(rejoin->tool, operand, k);
+        part->file = tool_numbered(rejoin->tool, "", operand, k);
         part->read_as = k;
         part->elsewhere = ranks_owner(ranks, first, k) != ranks_rank(ranks);
         if (k == 0 && !part->elsewhere) {
@@ -162,9 +151,6 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     int64_t *first;
     void *packed;
     *parts = (struct parts_input){.given = true};
-    if (strstr(strstr(operand, "%d") + 1, "%d") != NULL) {
-        tool_fail(tool, STATUS_INPUT, "%s: has to have one %%d, where the number of the part goes", operand);
-    }
     tool_names_input(operand);
     stream_init(stream);
     stream_init(&start);
@@ -185,8 +171,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
         free((char *)rejoin.part[k].file);
     }
     rejoin_free(&rejoin);
-    free(packed);
-    free(first);
+    FREE_ALL(packed, first);
 }
 
 void parts_free(struct parts_input *parts)

@@ -134,8 +134,6 @@ enum status parts_share_small(struct rejoin *rejoin, const int64_t *first, void 
         }
     }
 done:
-    free(own.at);
-    free(units);
-    free(begin);
+    FREE_ALL(own.at, units, begin);
     return status;
 }

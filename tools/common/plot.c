@@ -16,13 +16,6 @@ static bool begins_with(const char *text, const char *prefix)
     return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-static bool ends_with(const char *text, const char *suffix)
-{
-    size_t length = strlen(text);
-    size_t tail = strlen(suffix);
-    return length >= tail && strcmp(text + length - tail, suffix) == 0;
-}
-
 /* Does a section of this name (X of X.frame.K) describe the reference state, the same in all frames? */
 static bool is_static(const char *name)
 {
@@ -53,7 +46,7 @@ static bool is_structure(const char *name)
             return true;
         }
     }
-    return is_one_of(name, first) || ends_with(name, ".ptr") || ends_with(name, ".idx");
+    return is_one_of(name, first) || text_ends(name, ".ptr") || text_ends(name, ".idx");
 }
 
 /* Does a section of this name have a row for each integration point or cell? */
@@ -197,7 +190,5 @@ void plot_free(struct plot *plot)
     stream_free(&plot->stream);
     derived_free(&plot->derived);
     names_free(&plot->regions.names);
-    free(plot->fields);
-    free(plot->labels);
-    free(plot->frames);
+    FREE_ALL(plot->fields, plot->labels, plot->frames);
 }

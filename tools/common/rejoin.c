@@ -366,8 +366,6 @@ void rejoin_free(struct rejoin *rejoin)
         free(part->at_edge);
         stream_free(&part->stream);
     }
-    free(rejoin->part);
-    free(rejoin->x);
-    free(rejoin->cell);
+    FREE_ALL(rejoin->part, rejoin->x, rejoin->cell);
     faces_free(&rejoin->faces);
 }

@@ -123,9 +123,7 @@ void rejoin_map_faces(struct rejoin *rejoin)
         }
         map_face_rows(rejoin, part, first_face);
     }
-    free(begin);
-    free(face);
-    free(first_face);
+    FREE_ALL(begin, face, first_face);
     rejoin->rows[ROWS_FACES] = faces->count;
     rejoin->rows[ROWS_OF_FACES] = faces->row_count;
     rejoin->rows[ROWS_FACEPOINTS] = face_row_point(faces, faces->row_count);

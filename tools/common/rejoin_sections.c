@@ -40,8 +40,7 @@ static const char *member(const struct joined_lists *lists, const char *what, ch
 
 static void lists_free(struct joined_lists *lists)
 {
-    free(lists->of);
-    free(lists->ptr);
+    FREE_ALL(lists->of, lists->ptr);
 }
 
 bool rejoin_is_large(const char *name)
@@ -349,12 +348,6 @@ static void put_sets(const struct rejoin *rejoin, struct stream *stream, const s
 
 /* ---- all ---- */
 
-static bool ends_with(const char *name, const char *ending)
-{
-    size_t length = strlen(name), tail = strlen(ending);
-    return length >= tail && strcmp(name + length - tail, ending) == 0;
-}
-
 /* Put one section of part 0, with what goes with it; false if it is none that can be. */
 static bool put_section(const struct rejoin *rejoin, struct stream *stream, const struct section *section)
 {
@@ -376,10 +369,10 @@ static bool put_section(const struct rejoin *rejoin, struct stream *stream, cons
         put_lists(rejoin, stream, section);
     } else if (rows < ROWS_KINDS) {
         put_rows(rejoin, stream, name, rows, NULL);
-    } else if (kind->rows_of != NULL && ends_with(kind->rows_of, ".idx")) {
+    } else if (kind->rows_of != NULL && text_ends(kind->rows_of, ".idx")) {
         put_pairs(rejoin, stream, name, kind->rows_of);
     } else { /* pairs around corners that are another part's only */
-        return ends_with(name, ".around") || ends_with(name, ".image");
+        return text_ends(name, ".around") || text_ends(name, ".image");
     }
     return true;
 }

@@ -244,7 +244,6 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
 void run_contacts_judge(struct run *run, double slack, double share)
 {
     struct solid_system *system = &run->model->system;
-    struct error error;
     double *x = system->contact_count > 0 ? deformed(run) : NULL;
     struct cells cells = run->model->assembly.cells;
     cells.x = x;
@@ -252,7 +251,7 @@ void run_contacts_judge(struct run *run, double slack, double share)
         const struct contact *contact = &system->contacts[c];
         const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
         struct contact_patch patch;
-        tool_check(run->tool, contact_patch_find(contact, set, &cells, &patch, &error), &error);
+        TOOL_TRY(run->tool, contact_patch_find(contact, set, &cells, &patch, &error));
         judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
     }
     free(x);

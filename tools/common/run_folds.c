@@ -80,23 +80,19 @@ static void tell_at_rest(const struct run *run)
 
 void run_folds_begin(struct run *run)
 {
-    struct error error;
     const struct state *restored = run_checkpoint_state(run);
-    tool_check(run->tool, build(&run->model->assembly, &run->folds, &error), &error);
+    TOOL_TRY(run->tool, build(&run->model->assembly, &run->folds, &error));
     tell_at_rest(run);
     if (restored != NULL) {
-        tool_check(run->tool, run_folds_state(run, restored, &error), &error);
+        TOOL_TRY(run->tool, run_folds_state(run, restored, &error));
     }
 }
 
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    free(run->folds.held);
-    free(run->folds.field);
-    free(run->folds.node_first);
-    free(run->folds.stopped);
-    free(run->folds.touched);
+    FREE_ALL(run->folds.held, run->folds.field, run->folds.node_first, run->folds.stopped,
+             run->folds.touched);
 }
 
 void run_folds_forget(struct run *run)
@@ -165,8 +161,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
-        struct error error;
-        tool_check(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error), &error);
+        TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error));
         fold = overlap.kind != FOLD_NONE ? overlap : fold;
     }
     struct fold none = {.kind = FOLD_NONE};

@@ -1,5 +1,6 @@
 /* Forces and moments of the conditions and contacts of a scene. */
 #include "io/sections.h"
+#include "base/vector.h"
 #include "run.h"
 
 #include <math.h>
@@ -20,8 +21,8 @@ struct totals {
 static void add_force(const struct run *run, const struct average *average, const double *force, int64_t row,
                       struct totals *totals)
 {
-    int dim = totals->dim;
-    double arm[3] = {0.0, 0.0, 0.0}, f[3] = {0.0, 0.0, 0.0};
+    int dim = totals->dim, count = totals->moment_count;
+    double arm[3] = {0.0, 0.0, 0.0}, f[3] = {0.0, 0.0, 0.0}, moment[3];
     for (int64_t i = 0; i < average->length; i++) {
         for (int a = 0; a < dim; a++) {
             int64_t at = (int64_t)average->idx[i] * dim + a;
@@ -33,12 +34,9 @@ static void add_force(const struct run *run, const struct average *average, cons
         f[a] = force[a];
         totals->force[row * dim + a] += f[a];
     }
-    double *moment = totals->moment + row * totals->moment_count;
-    if (dim == 3) {
-        moment[0] += arm[1] * f[2] - arm[2] * f[1];
-        moment[1] += arm[2] * f[0] - arm[0] * f[2];
-    }
-    moment[dim == 3 ? 2 : 0] += arm[0] * f[1] - arm[1] * f[0];
+    vector_cross(arm, f, moment);
+    add_scaled(count, 1.0, moment + 3 - count,
+               totals->moment + row * count); /* in 2D the last of the three */
 }
 
 /* Of the conditions, and of the constraint penalties that back them. */
@@ -78,12 +76,9 @@ static void add_contacts(const struct run *run, struct totals *totals)
         double force[3], moment[3];
         contact_total(contact, force);
         contact_moment(contact, totals->about, moment);
-        for (int a = 0; a < totals->dim; a++) {
-            totals->force[row * totals->dim + a] += force[a];
-        }
-        for (int a = 0; a < totals->moment_count; a++) { /* in 2D the last of the three */
-            totals->moment[row * totals->moment_count + a] += moment[3 - totals->moment_count + a];
-        }
+        add_scaled(totals->dim, 1.0, force, totals->force + row * totals->dim);
+        add_scaled(totals->moment_count, 1.0, moment + 3 - totals->moment_count,
+                   totals->moment + row * totals->moment_count);
     }
 }
 

@@ -143,8 +143,7 @@ static void put_point_fields(struct run *run, const struct moment *moment)
     if (output->strain) {
         put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
     }
-    free(F);
-    free(P);
+    FREE_ALL(F, P);
     if (output->pressure) {
         put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
     } else {

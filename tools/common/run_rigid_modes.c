@@ -23,16 +23,8 @@ struct bodies {
 /* of_node[n]: the first node of its body; then its number. Nodes in no cell are bodies of their own. */
 static void join_cells(const struct cells *cells, struct bodies *bodies)
 {
-    int corners = cells->dim + 1;
     int32_t *first = bodies->of_node;
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        first[n] = (int32_t)n;
-    }
-    for (int64_t c = 0; c < cells->count; c++) {
-        for (int k = 1; k < corners; k++) {
-            set_join(first, cells->node[c * corners], cells->node[c * corners + k]);
-        }
-    }
+    set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, first);
     for (int64_t n = 0; n < cells->node_count; n++) {
         /* The first node comes before the others: it has its number by then. */
         int32_t of = first[n];
@@ -116,11 +108,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
 
 static void bodies_free(struct bodies *bodies)
 {
-    free(bodies->of_node);
-    free(bodies->cell);
-    free(bodies->touches);
-    free(bodies->stays);
-    free(bodies->moves);
+    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->moves);
 }
 
 /* A direction in words, its largest component positive, round-off taken out. */

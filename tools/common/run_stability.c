@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include "approx/field_compare.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -98,10 +99,7 @@ static double moved_since(const struct run *run, int64_t *node)
     double most = 0.0;
     *node = 0;
     for (int64_t n = 0; n < run->model->system.node_count; n++) {
-        double move2 = 0.0;
-        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            move2 += (run->u[i] - near[i]) * (run->u[i] - near[i]);
-        }
+        double move2 = vector_distance2(dim, run->u + n * dim, near + n * dim);
         if (move2 > most * most) {
             most = sqrt(move2);
             *node = n;

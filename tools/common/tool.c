@@ -90,6 +90,16 @@ char *tool_text(const struct tool *tool, const char *format, ...)
     return tool_memory(tool, text);
 }
 
+char *tool_numbered(const struct tool *tool, const char *what, const char *pattern, int64_t number)
+{
+    const char *at = strstr(pattern, "%d");
+    if (at == NULL || strstr(at + 1, "%d") != NULL) {
+        tool_fail(tool, STATUS_INPUT, "%s%s: has to have one %%d, where the number of the part goes", what,
+                  pattern);
+    }
+    return tool_text(tool, "%.*s%lld%s", (int)(at - pattern), pattern, (long long)number, at + 2);
+}
+
 /* A file opened later must not become standard input, output or error: fill the gaps, such that using them
  * fails. */
 static void fill_descriptors(void)
@@ -291,7 +301,8 @@ void tool_write(const struct tool *tool, struct stream *stream, bool text)
 static enum status write_stdout(const struct stream *stream, bool text, struct error *error)
 {
     if (!text && isatty(STDOUT_FILENO)) {
-        return fail(error, STATUS_INPUT, "no binary to a terminal: redirect it, name a file by -o, or ask for text");
+        return fail(error, STATUS_INPUT,
+                    "no binary to a terminal: redirect it, name a file by -o, or ask for text");
     }
     RETURN_IF_ERROR(fail_in(error, stream_write(stream, STDOUT_FILENO, text, error), "standard output"));
     stdout_closed = close(STDOUT_FILENO) == 0;

@@ -75,6 +75,10 @@ void *tool_memory(const struct tool *tool, void *memory);
 /* Text as of printf, to be freed; exits when there is no memory. */
 char *tool_text(const struct tool *tool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* A pattern such as part.%d.mts with a number in the place of its %d, to be freed; exits where it has none,
+ * or several, naming the pattern by `what`. */
+char *tool_numbered(const struct tool *tool, const char *what, const char *pattern, int64_t number);
+
 /* Print "name: message" and exit; `status` may also be 128 + the number of a signal. */
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

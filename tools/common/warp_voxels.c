@@ -1,5 +1,7 @@
 #include "warp_voxels.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +10,7 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
                        struct warp_report *report)
 {
     int dim = job->motion->cells.dim;
-    double residual = 0, square = 0;
+    double residual = 0;
     memcpy(place, x, 3 * sizeof *x);
     if (job->owner[v] < 0) {
         return;
@@ -18,11 +20,8 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
         report->inexact++;
     }
-    for (int i = 0; i < dim; i++) {
-        square += (place[i] - x[i]) * (place[i] - x[i]);
-    }
     report->moved++;
-    report->farthest = fmax(report->farthest, sqrt(square));
+    report->farthest = fmax(report->farthest, vector_distance(dim, place, x));
     report->inconsistency = fmax(report->inconsistency, residual);
 }
 

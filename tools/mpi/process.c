@@ -87,8 +87,8 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
     struct cost_of_message message = begin_message();
     MPI_Datatype type = type_of(size);
     for (int r = 0; r < ranks->count; r++) {
-        own.count[r] = (int)(first[r + 1] - first[r]);
-        own.place[r] = (int)first[r];
+        own.count[r] = first != NULL ? (int)(first[r + 1] - first[r]) : 1;
+        own.place[r] = first != NULL ? (int)first[r] : r;
     }
     MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD, own.requests);
     wait_for(1, own.requests);

@@ -1,0 +1,15 @@
+/* Reading and writing by descriptors, past signals and short writes. */
+#ifndef IO_DESCRIPTOR_H
+#define IO_DESCRIPTOR_H
+
+#include "base/status.h"
+
+/* Read up to `size` bytes, > 0; *got receives how many, 0 at the end. A folder is STATUS_INPUT, another
+ * failure STATUS_SYSTEM. */
+MUST_CHECK enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *got,
+                                       struct error *error);
+
+/* Write all `size` bytes. The message of a failure is the cause alone. */
+MUST_CHECK enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error);
+
+#endif
