@@ -7,8 +7,8 @@
 SCALE := $(OUT)/scale
 SCALE_SIZES ?= 22 47
 SCALE_PARTS ?= 2 4 8 16 32 64 128 256 512 1024
-# Nodes along an edge of the cube that is cut.
-SCALE_CUT ?= 47
+# Nodes along an edge of the cube that is cut: a million take minutes.
+SCALE_CUT ?= 100
 SCALE_SCRIPTS := pipelines/scale
 SCALE_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn mtled part)
 

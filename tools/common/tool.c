@@ -93,11 +93,11 @@ char *tool_text(const struct tool *tool, const char *format, ...)
 char *tool_numbered(const struct tool *tool, const char *what, const char *pattern, int64_t number)
 {
     const char *at = strstr(pattern, "%d");
-    if (at == NULL || strstr(at + 1, "%d") != NULL) {
-        tool_fail(tool, STATUS_INPUT, "%s%s: has to have one %%d, where the number of the part goes", what,
-                  pattern);
+    if (at != NULL && strstr(at + 1, "%d") == NULL) {
+        return tool_text(tool, "%.*s%lld%s", (int)(at - pattern), pattern, (long long)number, at + 2);
     }
-    return tool_text(tool, "%.*s%lld%s", (int)(at - pattern), pattern, (long long)number, at + 2);
+    tool_fail(tool, STATUS_INPUT, "%s%s: has to have one %%d, where the number of the part goes", what,
+              pattern);
 }
 
 /* A file opened later must not become standard input, output or error: fill the gaps, such that using them
