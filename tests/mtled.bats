@@ -156,7 +156,7 @@ frames_hold() {
     printf '0.101 -1\n0.101 1\n' > wall.tsv
     shapefn square.mts > table.mts 2> note
     # Each of the two runs leaves gaps or penetrations of up to 1e-3 of its motion: they differ by no more than twice that.
-    frames_hold 1.4e-3 2e-3
+    frames_hold 2e-3
     rows reactions.frames frames.dat | awk '{ wall[NR] = $6 } END { exit !(wall[1] == 0 && wall[5] < -1) }'
     mts list frames.dat | grep -c '^gaps.frame.' | grep -qx 5
 }

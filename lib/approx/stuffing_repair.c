@@ -133,6 +133,25 @@ static double room_score(const struct shaping *shaping, int64_t node, const stru
     return least;
 }
 
+/* Voxels by which a node on an interface gives way at most. */
+static const double most_room = 2.0;
+
+/* Whether nodes on interfaces have given way by no more than that: walls of a gap, which no cells keep apart,
+ * must not pass through each other. */
+static bool stays_near(const struct shaping *shaping, const struct room *room)
+{
+    const struct stuffing *stuffing = shaping->stuffing;
+    int dim = stuffing->dim;
+    double most = most_room * labels_voxel(&shaping->labels);
+    for (int r = 0; r < room->count; r++) {
+        double moved = vector_distance(dim, stuffing->x + room->node[r] * dim, room->x[r]);
+        if (shaping->star.labels[room->node[r]] > 1 && moved > most) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[])
 {
     struct stuffing *stuffing = shaping->stuffing;
@@ -149,7 +168,7 @@ bool star_make_room(const struct shaping *shaping, double least, int64_t node, c
                 (void)search(shaping, 0, room.node[r]);
             }
         }
-        if (room_score(shaping, node, &room) >= wanted) {
+        if (room_score(shaping, node, &room) >= wanted && stays_near(shaping, &room)) {
             return true;
         }
     }

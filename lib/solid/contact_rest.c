@@ -19,6 +19,7 @@ struct facets {
     const struct boundary_averages *points, *averages;
     const double *X;
     double *normal; /* averages->count * dim: of the boundary at each node, of its side; unit */
+    bool *rim;      /* averages->count: the facets end there, and the normal is that of one side alone */
 };
 
 static const double *corner_of(const struct facets *facets, int64_t p)
@@ -57,15 +58,20 @@ static enum status find_normals(struct facets *facets, struct error *error)
     const struct boundary_averages *points = facets->points, *averages = facets->averages;
     int dim = facets->dim;
     RETURN_IF_ERROR(NEW_ARRAY(&facets->normal, averages->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&facets->rim, averages->count, error));
     for (int64_t a = 0; a < averages->count; a++) {
         double *normal = facets->normal + a * dim;
+        int32_t once = 0; /* nodes that only one facet has with this one; 2D: whether one facet is here */
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s]; /* all points of a facet are samples of its corners */
             if (points->node[p] == averages->node[a]) {
-                add_scaled(dim, facet_weight(facets, p - p % dim, (int)(p % dim)), points->normal + p * dim,
+                int64_t first = p - p % dim;
+                add_scaled(dim, facet_weight(facets, first, (int)(p % dim)), points->normal + p * dim,
                            normal);
+                once ^= dim == 2 ? 1 : points->node[first + (p + 1) % 3] ^ points->node[first + (p + 2) % 3];
             }
         }
+        facets->rim[a] = once != 0;
         normalise(dim, normal);
     }
     return STATUS_OK;
@@ -76,7 +82,7 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
                                   struct error *error)
 {
     enum status status;
-    struct facets facets = {dim, points, averages, X, NULL};
+    struct facets facets = {dim, points, averages, X, NULL, NULL};
     int64_t *average = NULL; /* points: of the corner */
     double rough = 0.0, sum = 0.0;
     TRY(find_normals(&facets, error));
@@ -91,17 +97,20 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
         int64_t next = p - p % dim + (p + 1) % dim;
         double here = height_above(&facets, average[p], corner_of(&facets, next));
         double there = height_above(&facets, average[next], corner_of(&facets, p));
-        rough += fabs(here - there);
-        sum += fabs(here) + fabs(there);
+        bool known = !facets.rim[average[p]] && !facets.rim[average[next]];
+        rough += known ? fabs(here - there) : 0.0;
+        sum += known ? fabs(here) + fabs(there) : 0.0;
     }
     *resolved = rough <= most_rough * sum;
 done:
-    FREE_ALL(facets.normal, average);
+    FREE_ALL(facets.normal, facets.rim, average);
     return status;
 }
 
-/* Of the corners of the facet of a point. */
+/* Of the corners of the facet of a point, but for those on a rim: the boundary is taken to go on there as it
+ * is at the others. */
 struct heights {
+    int count;
     double least, most; /* above the point, m */
     double mean;        /* by the corners' hat functions at the point */
 };
@@ -133,6 +142,10 @@ static void measure_heights(const struct facets *facets, struct heights *heights
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
             double height = height_above(facets, a, points->position + p * facets->dim);
+            if (facets->rim[a]) {
+                continue;
+            }
+            heights[p].count++;
             heights[p].least = fmin(heights[p].least, height);
             heights[p].most = fmax(heights[p].most, height);
             heights[p].mean += hat_function(facets, a, s) * height;
@@ -145,21 +158,22 @@ static enum status raise_points(struct contact *contact, const double *X, struct
     enum status status;
     const struct boundary_averages *averages = contact->averages;
     int dim = contact->dim;
-    struct facets facets = {dim, contact->points, averages, X, NULL};
+    struct facets facets = {dim, contact->points, averages, X, NULL, NULL};
     struct heights *heights = NULL;
     TRY(find_normals(&facets, error));
     TRY(NEW_ARRAY(&heights, contact->count, error));
     measure_heights(&facets, heights);
     for (int64_t a = 0; a < averages->count; a++) {
-        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1] && !facets.rim[a]; s++) {
             int64_t p = averages->sample_point[s];
             double height = height_above(&facets, a, contact->points->position + p * dim);
-            add_scaled(dim, 0.5 * share_of_curve(&heights[p]) * hat_function(&facets, a, s) * height,
-                       facets.normal + a * dim, contact->rest + p * dim);
+            double share = 0.5 * dim / heights[p].count * share_of_curve(&heights[p]);
+            add_scaled(dim, share * hat_function(&facets, a, s) * height, facets.normal + a * dim,
+                       contact->rest + p * dim);
         }
     }
 done:
-    FREE_ALL(facets.normal, heights);
+    FREE_ALL(facets.normal, facets.rim, heights);
     return status;
 }
 
