@@ -12,6 +12,8 @@
  * the heights differ by less than this part of them, on average: balls and discs of a dozen facets around do,
  * brains with their folds do not. */
 static const double most_rough = 0.2;
+/* Heights below this part of the edges, on average, are none: the facets are flat. */
+static const double flat = 1e-3;
 
 /* What a contact's facets are, by its points. */
 struct facets {
@@ -84,7 +86,7 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
     enum status status;
     struct facets facets = {dim, points, averages, X, NULL, NULL};
     int64_t *average = NULL; /* points: of the corner */
-    double rough = 0.0, sum = 0.0;
+    double rough = 0.0, sum = 0.0, length = 0.0;
     TRY(find_normals(&facets, error));
     TRY(NEW_ARRAY(&average, points->count, error));
     for (int64_t a = 0; a < averages->count; a++) {
@@ -100,8 +102,9 @@ enum status contact_rest_resolved(int dim, const struct boundary_averages *point
         bool known = !facets.rim[average[p]] && !facets.rim[average[next]];
         rough += known ? fabs(here - there) : 0.0;
         sum += known ? fabs(here) + fabs(there) : 0.0;
+        length += known ? 2.0 * vector_distance(dim, corner_of(&facets, p), corner_of(&facets, next)) : 0.0;
     }
-    *resolved = rough <= most_rough * sum;
+    *resolved = rough <= most_rough * sum || sum <= flat * length;
 done:
     FREE_ALL(facets.normal, facets.rim, average);
     return status;
