@@ -134,7 +134,7 @@ static double room_score(const struct shaping *shaping, int64_t node, const stru
 }
 
 /* Voxels by which a node on an interface gives way at most. */
-static const double most_room = 2.5;
+static const double most_room = 2.0;
 
 /* Whether nodes on interfaces have given way by no more than that: walls of a gap, which no cells keep apart,
  * must not pass through each other. */
