@@ -62,16 +62,16 @@ static enum status build_points(const struct assembly *input, const struct facet
                                 struct error *error)
 {
     const struct face_table *table = &input->face_table;
-    bool resolved = true;
+    bool at_points = between;
     RETURN_IF_ERROR(boundary_averages_build(table, set, averages, error));
     RETURN_IF_ERROR(boundary_points_build(table, set, points, error));
     for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
         points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
     }
-    if (!between) {
-        RETURN_IF_ERROR(contact_rest_resolved(table->dim, points, averages, table->x, &resolved, error));
+    if (!between && !input->in_time) {
+        RETURN_IF_ERROR(contact_rest_resolved(table->dim, points, averages, table->x, &at_points, error));
     }
-    if (!between && (input->in_time || !resolved)) {
+    if (!at_points) {
         boundary_averages_free(points);
         *points = *averages;
         *averages = (struct boundary_averages){0};

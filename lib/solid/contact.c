@@ -150,18 +150,9 @@ void contact_free(struct contact *contact)
 {
     rigid_free(&contact->surface);
     contact_between_free(contact);
-    free(contact->stiffness);
-    free(contact->rest);
-    free(contact->multiplier);
-    free(contact->behind);
-    free(contact->checked_x);
-    free(contact->checked_distance);
-    free(contact->checked_normal);
-    free(contact->held);
-    free(contact->gap);
-    free(contact->pressure);
-    free(contact->normal);
-    free(contact->view);
+    FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->behind, contact->checked_x,
+             contact->checked_distance, contact->checked_normal, contact->held, contact->gap,
+             contact->pressure, contact->normal, contact->view);
     *contact = (struct contact){0};
 }
 

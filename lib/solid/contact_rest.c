@@ -63,7 +63,9 @@ static enum status find_normals(struct facets *facets, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&facets->rim, averages->count, error));
     for (int64_t a = 0; a < averages->count; a++) {
         double *normal = facets->normal + a * dim;
-        int32_t once = 0; /* nodes that only one facet has with this one; 2D: whether one facet is here */
+        /* Exclusive or of the other corners of the facets: inside, each is a corner of two of them, and they
+         * cancel. 2D: whether the facets are one. */
+        int32_t once = 0;
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s]; /* all points of a facet are samples of its corners */
             if (points->node[p] == averages->node[a]) {
