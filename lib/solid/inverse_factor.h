@@ -4,11 +4,11 @@
  * The wider the supports, the more patterns of parameters there are that make hardly any field: a diagonal
  * mass leaves these as slow modes. L knows them. It is of the scalar stiffness
  *
- *   S = sum_q w_q c_q ( g_q (x) g_q + k (h_q - g_q) (x) (h_q - g_q) ) + sum_r s_r phi_r (x) phi_r
+ *   S = sum_q w_q ( c_q g_q (x) g_q + k_q (h_q - g_q) (x) (h_q - g_q) ) + sum_r s_r phi_r (x) phi_r
  *
  * at rest, with the smoothed gradients g_q of the shape functions in cell q, those of the linear interpolant
- * h_q, the modulus c_q of pressure waves, limited as the body's, with twice that of the stabilisation, k the
- * stiffness of the stabilisation by the shear modulus, and the penalties of conditions and contacts. Row i of
+ * h_q, the modulus c_q of pressure waves, limited as the body's, that of the stabilisation k_q, a multiple of
+ * the shear modulus alone, and the penalties of conditions and contacts. Row i of
  * L has the nodes of lower number that are nearest to i, of those that S couples to it; with itself these are
  * the list p, and L_ip = y / sqrt(y_i), S_pp y = e_i. So the diagonal of L S L^T is 1. */
 #ifndef SOLID_INVERSE_FACTOR_H

@@ -19,8 +19,6 @@ static const double share = 0.25;
 static const double kept = 1e-4;
 /* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
 static const double least_free = 0.01;
-/* Contact nodes nearer to a surface than this part of their length count as active. */
-static const double near_share = 0.1;
 static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
 static const double strain = 1e-6;       /* of the differences that stiffness is measured with */
 
@@ -283,12 +281,11 @@ static bool follow_crease(struct preconditioner *p, const struct contact_node *n
 static bool follow_node(struct preconditioner *p, const struct contact *contact, int64_t a, int64_t at,
                         bool leave)
 {
-    double area = contact_nodes(contact)->area[a], length = contact->dim == 2 ? area : sqrt(area);
     double *normal = p->normal + at * contact->dim;
     struct contact_node node = contact_node(contact, a);
     bool *counts = &p->active[at], pressed = node.pressure > 0.0;
     bool creased = follow_crease(p, &node, at, leave);
-    if (!pressed && !p->has_rigid_mode && !(node.gap < near_share * length)) {
+    if (!pressed && !p->has_rigid_mode) {
         bool left = *counts && leave && leaves(p, at);
         *counts = *counts && !left;
         return left || creased;

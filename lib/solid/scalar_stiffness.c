@@ -165,15 +165,22 @@ void scalar_row_free(struct scalar_row *row)
     *row = (struct scalar_row){0};
 }
 
-/* Volume times modulus of a cell. */
-static double modulus_of(const struct body *body, int64_t q)
+/* Volume of a cell times the modulus of pressure waves. */
+static double wave_modulus(const struct body *body, int64_t q)
 {
     const struct material *material = &body->materials[body->material[q]];
     double shear = material->shear_modulus, bulk = material->bulk_modulus;
     if (body->averaged) {
         bulk = fmin(bulk, body->volumes.pressures.most * shear);
     }
-    return body->weight[q] * (bulk + (4.0 / 3.0 + 2.0 * SMOOTHING_STIFFNESS(body->dim)) * shear);
+    return body->weight[q] * (bulk + 4.0 / 3.0 * shear);
+}
+
+/* Volume of a cell times the modulus of the stabilisation. */
+static double stabilisation_modulus(const struct body *body, int64_t q)
+{
+    return body->weight[q] * SMOOTHING_STIFFNESS(body->dim) *
+           body->materials[body->material[q]].shear_modulus;
 }
 
 static void put(const double amount, int64_t f, int64_t i, struct scalar_row *row, int64_t *touched)
@@ -194,11 +201,12 @@ static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64
     int dim = body->dim;
     int rows = FACE_ROWS(dim);
     int64_t nodes = stiffness->field_count - body->node_count, end = smoothed_cells_group_end(body, q);
-    double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, modulus = 0.0;
-    double k_off = SMOOTHING_STIFFNESS(dim), gradients[MERGED_MOST_CELLS * 12];
+    double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, k_smooth = 0.0, k_off = 0.0;
+    double gradients[MERGED_MOST_CELLS * 12];
     for (int64_t c = q; c < end; c++) {
         double *grad_N = gradients + (c - q) * 12, share = smoothed_cells_share(body, c);
-        modulus += modulus_of(body, c);
+        k_smooth += wave_modulus(body, c);
+        k_off += stabilisation_modulus(body, c);
         smoothed_cells_linear_gradients(body, c, grad_N);
         for (int k = 0; k < (dim + 1) * dim; k++) {
             grad_N[k] *= share;
@@ -219,8 +227,8 @@ static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64
         for (int k = 0; k <= dim; k++) {
             double on_mean = 0.0, on_value = 0.0;
             for (int a = 0; a < dim; a++) {
-                on_mean -= dim * modulus * (smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
-                on_value += modulus * k_off * off[a] * grad_N[k * dim + a];
+                on_mean -= dim * (k_smooth * smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
+                on_value += k_off * off[a] * grad_N[k * dim + a];
             }
             for (int r = 0; r < rows; r++) {
                 put(on_mean / rows, smoothed_cells_row(body, c, k, r), i, row, touched);
