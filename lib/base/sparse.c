@@ -83,13 +83,29 @@ enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct er
     return status;
 }
 
+/* The first of the rows of thread t: each has about the same number of entries. */
+static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last, int t, int threads)
+{
+    int64_t wanted = matrix->ptr[first] + (matrix->ptr[last] - matrix->ptr[first]) * t / threads;
+    while (first < last && t > 0) {
+        int64_t middle = (first + last) / 2;
+        if (t == threads || matrix->ptr[middle] < wanted) {
+            first = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
+    return first;
+}
+
 void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
                        const double *x, double *y)
 {
-    struct chunks chunks = chunks_of(last - first, ROWS_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
+    int threads = chunks_of(last - first, ROWS_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++) {
+        int64_t begin = begin_of(matrix, first, last, t, threads);
+        int64_t end = begin_of(matrix, first, last, t + 1, threads);
         if (width == 2) {
             apply_rows(matrix, begin, end, 2, x, y);
         } else if (width == 3) {

@@ -1,5 +1,6 @@
 #include "solid/constraint.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/sparse.h"
 #include "base/vector.h"
@@ -11,6 +12,8 @@
 /* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
  * that is independent of the others is at most a hundred-thousandth of it. */
 static const double least_pivot = 1e-10;
+
+enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -133,17 +136,26 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     return along(rows, r, mean);
 }
 
+/* total[dim] = what the rows of list l amount to together */
+static void amount_of_list(const struct constraint_rows *rows, int64_t l, const double *amount, double *total)
+{
+    for (int a = 0; a < rows->dim; a++) {
+        total[a] = 0.0;
+    }
+    for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+        for (int a = 0; a < rows->dim; a++) {
+            total[a] += amount[r] * rows->direction[r * rows->dim + a];
+        }
+    }
+}
+
 void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
                             double *u)
 {
     for (int64_t l = 0; l < rows->list_count; l++) {
         struct average average = average_of_list(rows, l);
-        double total[3] = {0.0, 0.0, 0.0};
-        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
-            for (int a = 0; a < rows->dim; a++) {
-                total[a] += amount[r] * rows->direction[r * rows->dim + a];
-            }
-        }
+        double total[3];
+        amount_of_list(rows, l, amount, total);
         average_spread(&average, rows->dim, total, mass, u);
     }
 }
@@ -215,6 +227,28 @@ done:
     return status;
 }
 
+/* The lists by nodes, of the nodes that are wanted (NULL: all). */
+static enum status list_by_nodes(struct constraint *constraint, const bool *wanted, struct error *error)
+{
+    enum status status;
+    struct constraint_rows kept = {0};
+    const struct constraint_rows *rows = constraint->inverse_rows;
+    if (wanted != NULL) {
+        TRY(constraint_rows_keep(rows, wanted, &kept, error));
+        rows = &kept;
+    }
+    const struct sparse by_list = {rows->list_count, constraint->node_count, rows->ptr, rows->idx, rows->phi};
+    TRY(sparse_transpose(&by_list, &constraint->lists, error));
+    for (int64_t n = 0; n < constraint->node_count; n++) {
+        for (int64_t i = constraint->lists.ptr[n]; i < constraint->lists.ptr[n + 1]; i++) {
+            constraint->lists.value[i] /= constraint->mass[n];
+        }
+    }
+done:
+    constraint_rows_free_kept(&kept);
+    return status;
+}
+
 /* Of several processes: what each does, of about the same work. */
 static enum status share(struct constraint *constraint, struct error *error)
 {
@@ -224,10 +258,10 @@ static enum status share(struct constraint *constraint, struct error *error)
     double *work = NULL;
     bool *wanted = NULL;
     if (ranks == NULL) {
-        return STATUS_OK;
+        return list_by_nodes(constraint, NULL, error);
     }
     TRY(inverse_factor_wanted(constraint->inverse, &wanted, error));
-    TRY(constraint_rows_keep(constraint->inverse_rows, wanted, &constraint->here, error));
+    TRY(list_by_nodes(constraint, wanted, error));
     TRY(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
@@ -260,6 +294,7 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
     TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
     if (inverse != NULL) {
         TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
+        TRY(NEW_ARRAY(&constraint->on_list, inverse_rows->list_count * rows->dim, error));
         rows = inverse_rows;
     }
     TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
@@ -273,9 +308,9 @@ done:
 
 void constraint_free(struct constraint *constraint)
 {
-    FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
-             constraint->place_first);
-    constraint_rows_free_kept(&constraint->here);
+    FREE_ALL(constraint->multiplier, constraint->on_list, constraint->scratch, constraint->list_first,
+             constraint->row_first, constraint->place_first);
+    sparse_free(&constraint->lists);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
 }
@@ -283,12 +318,15 @@ void constraint_free(struct constraint *constraint)
 void constraint_values(const struct constraint *constraint, const double *u, double *value)
 {
     const struct ranks *ranks = constraint->ranks;
-    if (ranks == NULL) {
-        constraint_rows_values(constraint->rows, u, value);
-        return;
+    const struct constraint_rows *rows = constraint->rows;
+    const int64_t all[2] = {0, rows->list_count};
+    const int64_t *first = ranks != NULL ? constraint->list_first + ranks->rank : all;
+    struct chunks lists = chunks_for_threads(first[1] - first[0], first[1] - first[0], LISTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(lists.threads)
+    for (int64_t c = 0; c < lists.count; c++) {
+        constraint_rows_take(rows, first[0] + chunks_begin(&lists, c), first[0] + chunks_begin(&lists, c + 1),
+                             u, value);
     }
-    const int64_t *first = constraint->list_first + ranks->rank;
-    constraint_rows_take(constraint->rows, first[0], first[1], u, value);
     ranks_gather(ranks, value, sizeof *value, constraint->row_first);
 }
 
@@ -306,9 +344,10 @@ void constraint_spread(const struct constraint *constraint, const double *amount
     int dim = constraint->rows->dim;
     int64_t size = constraint->node_count * dim;
     double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
-    memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
-    constraint_rows_spread(constraint->ranks != NULL ? &constraint->here : constraint->inverse_rows, amount,
-                           constraint->mass, on_inverse);
+    for (int64_t l = 0; l < constraint->inverse_rows->list_count; l++) {
+        amount_of_list(constraint->inverse_rows, l, amount, constraint->on_list + l * dim);
+    }
+    sparse_apply_rows(&constraint->lists, 0, constraint->node_count, dim, constraint->on_list, on_inverse);
     inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
     for (int64_t i = 0; i < size; i++) {
         u[i] += move[i];

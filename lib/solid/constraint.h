@@ -6,6 +6,7 @@
 #define SOLID_CONSTRAINT_H
 
 #include "base/envelope.h"
+#include "base/sparse.h"
 #include "base/status.h"
 #include "solid/average.h"
 
@@ -71,15 +72,17 @@ struct constraint {
     const double *mass;                         /* node_count; the caller's */
     const struct inverse_factor *inverse;       /* NULL; or M^-1 = L^T D^-1 L with this L, and D in `mass`, */
     const struct constraint_rows *inverse_rows; /* and the rows G L^T; both the caller's */
-    double *scratch;                            /* 2 * node_count * dim, with these */
+    struct sparse lists;                        /* with these a row for each node: the lists that it is in, */
+    double *on_list;                            /* and its shares over D; list_count * dim: scratch, */
+    double *scratch;                            /* and 2 * node_count * dim */
     struct envelope factor;
     const struct ranks
         *ranks; /* processes that share `inverse`, and what follows; NULL: one. Of each process */
-    struct constraint_rows here; /* what of inverse_rows the rows of L^T need that it applies, */
-    int64_t *list_first;         /* the lists whose averages it takes, */
-    int64_t *row_first;          /* their rows, */
-    int64_t *place_first;        /* and the stretch of the factor that it solves with */
-    double *multiplier;          /* count: of the last projection, N s2 in the step's scaling */
+    int64_t *list_first;  /* the lists whose averages it takes, */
+    int64_t *row_first;   /* their rows, */
+    int64_t *place_first; /* and the stretch of the factor that it solves with; `lists` has the nodes alone
+                             that its rows of L^T need */
+    double *multiplier;   /* count: of the last projection, N s2 in the step's scaling */
 };
 
 /* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped
