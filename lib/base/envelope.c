@@ -83,13 +83,16 @@ static void find_blocks(struct envelope *factor)
 /* Threads that are worth using for the rows from `begin` to before `end`. */
 static int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
 {
-    return chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads;
+    return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
 }
 
 /* The first row of thread t, where a block begins: each has about the same number of entries. That of thread
  * `threads` is `end`. */
 static int64_t begin_of(const struct envelope *factor, int64_t begin, int64_t end, int t, int threads)
 {
+    if (t == 0 || t == threads) {
+        return t == 0 ? begin : end;
+    }
     int64_t entries = factor->start[end] - factor->start[begin];
     int64_t wanted = factor->start[begin] + entries * t / threads, low = 0, high = factor->block_count;
     while (low < high) {

@@ -136,30 +136,6 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     return along(rows, r, mean);
 }
 
-/* total[dim] = what the rows of list l amount to together */
-static void amount_of_list(const struct constraint_rows *rows, int64_t l, const double *amount, double *total)
-{
-    for (int a = 0; a < rows->dim; a++) {
-        total[a] = 0.0;
-    }
-    for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
-        for (int a = 0; a < rows->dim; a++) {
-            total[a] += amount[r] * rows->direction[r * rows->dim + a];
-        }
-    }
-}
-
-void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
-                            double *u)
-{
-    for (int64_t l = 0; l < rows->list_count; l++) {
-        struct average average = average_of_list(rows, l);
-        double total[3];
-        amount_of_list(rows, l, amount, total);
-        average_spread(&average, rows->dim, total, mass, u);
-    }
-}
-
 /* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
  */
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
@@ -227,28 +203,6 @@ done:
     return status;
 }
 
-/* The lists by nodes, of the nodes that are wanted (NULL: all). */
-static enum status list_by_nodes(struct constraint *constraint, const bool *wanted, struct error *error)
-{
-    enum status status;
-    struct constraint_rows kept = {0};
-    const struct constraint_rows *rows = constraint->inverse_rows;
-    if (wanted != NULL) {
-        TRY(constraint_rows_keep(rows, wanted, &kept, error));
-        rows = &kept;
-    }
-    const struct sparse by_list = {rows->list_count, constraint->node_count, rows->ptr, rows->idx, rows->phi};
-    TRY(sparse_transpose(&by_list, &constraint->lists, error));
-    for (int64_t n = 0; n < constraint->node_count; n++) {
-        for (int64_t i = constraint->lists.ptr[n]; i < constraint->lists.ptr[n + 1]; i++) {
-            constraint->lists.value[i] /= constraint->mass[n];
-        }
-    }
-done:
-    constraint_rows_free_kept(&kept);
-    return status;
-}
-
 /* Of several processes: what each does, of about the same work. */
 static enum status share(struct constraint *constraint, struct error *error)
 {
@@ -258,10 +212,12 @@ static enum status share(struct constraint *constraint, struct error *error)
     double *work = NULL;
     bool *wanted = NULL;
     if (ranks == NULL) {
-        return list_by_nodes(constraint, NULL, error);
+        return constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass,
+                                      NULL, &constraint->nodes, error);
     }
     TRY(inverse_factor_wanted(constraint->inverse, &wanted, error));
-    TRY(list_by_nodes(constraint, wanted, error));
+    TRY(constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass, wanted,
+                               &constraint->nodes, error));
     TRY(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
@@ -294,11 +250,11 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
     TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
     if (inverse != NULL) {
         TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
-        TRY(NEW_ARRAY(&constraint->on_list, inverse_rows->list_count * rows->dim, error));
         rows = inverse_rows;
     }
     TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    TRY(inverse != NULL ? share(constraint, error) : STATUS_OK);
+    TRY(inverse != NULL ? share(constraint, error)
+                        : constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error));
 done:
     if (status != STATUS_OK) {
         constraint_free(constraint);
@@ -308,9 +264,9 @@ done:
 
 void constraint_free(struct constraint *constraint)
 {
-    FREE_ALL(constraint->multiplier, constraint->on_list, constraint->scratch, constraint->list_first,
-             constraint->row_first, constraint->place_first);
-    sparse_free(&constraint->lists);
+    FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
+             constraint->place_first);
+    constraint_nodes_free(&constraint->nodes);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
 }
@@ -338,16 +294,14 @@ void constraint_solve(const struct constraint *constraint, double *x)
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
 {
     if (constraint->inverse == NULL) {
-        constraint_rows_spread(constraint->rows, amount, constraint->mass, u);
+        constraint_nodes_spread(&constraint->nodes, amount, u);
         return;
     }
     int dim = constraint->rows->dim;
     int64_t size = constraint->node_count * dim;
     double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
-    for (int64_t l = 0; l < constraint->inverse_rows->list_count; l++) {
-        amount_of_list(constraint->inverse_rows, l, amount, constraint->on_list + l * dim);
-    }
-    sparse_apply_rows(&constraint->lists, 0, constraint->node_count, dim, constraint->on_list, on_inverse);
+    memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
+    constraint_nodes_spread(&constraint->nodes, amount, on_inverse);
     inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
     for (int64_t i = 0; i < size; i++) {
         u[i] += move[i];
