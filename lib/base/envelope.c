@@ -86,24 +86,26 @@ static int threads_for(const struct envelope *factor, int64_t begin, int64_t end
     return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
 }
 
-/* The first row of thread t, where a block begins: each has about the same number of entries. That of thread
- * `threads` is `end`. */
+/* The first row of thread t, where a block begins: each thread has about the same number of entries. That of
+ * thread `threads` is `end`. */
 static int64_t begin_of(const struct envelope *factor, int64_t begin, int64_t end, int t, int threads)
 {
     if (t == 0 || t == threads) {
         return t == 0 ? begin : end;
     }
-    int64_t entries = factor->start[end] - factor->start[begin];
-    int64_t wanted = factor->start[begin] + entries * t / threads, low = 0, high = factor->block_count;
-    while (low < high) {
+    const int64_t *start = factor->start, *block = factor->block;
+    int64_t wanted = start[begin] + (start[end] - start[begin]) * t / threads;
+    int64_t low = 0, high = factor->block_count;
+    while (low < high) { /* the first block from there on */
         int64_t middle = (low + high) / 2;
-        if (factor->block[middle] < begin || factor->start[factor->block[middle]] < wanted) {
+        if (start[block[middle]] < wanted) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    return factor->block[low];
+    bool before = low > 0 && wanted - start[block[low - 1]] < start[block[low]] - wanted;
+    return block[before ? low - 1 : low];
 }
 
 /* The envelope of the reordered matrix, filled with its lower triangle. */
