@@ -86,26 +86,19 @@ static int threads_for(const struct envelope *factor, int64_t begin, int64_t end
     return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
 }
 
-/* The first row of thread t, where a block begins: each thread has about the same number of entries. That of
- * thread `threads` is `end`. */
-static int64_t begin_of(const struct envelope *factor, int64_t begin, int64_t end, int t, int threads)
+/* The first block from place i on. */
+static int64_t block_from(const struct envelope *factor, int64_t i)
 {
-    if (t == 0 || t == threads) {
-        return t == 0 ? begin : end;
-    }
-    const int64_t *start = factor->start, *block = factor->block;
-    int64_t wanted = start[begin] + (start[end] - start[begin]) * t / threads;
     int64_t low = 0, high = factor->block_count;
-    while (low < high) { /* the first block from there on */
+    while (low < high) {
         int64_t middle = (low + high) / 2;
-        if (start[block[middle]] < wanted) {
+        if (factor->block[middle] < i) {
             low = middle + 1;
         } else {
             high = middle;
         }
     }
-    bool before = low > 0 && wanted - start[block[low - 1]] < start[block[low]] - wanted;
-    return block[before ? low - 1 : low];
+    return low;
 }
 
 /* The envelope of the reordered matrix, filled with its lower triangle. */
@@ -213,10 +206,9 @@ static void factor_row(struct envelope *factor, int64_t i, double least)
 static void factor_rows(struct envelope *factor, int64_t kept, double least)
 {
     int threads = threads_for(factor, 0, factor->n);
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++) {
-        int64_t end = begin_of(factor, 0, factor->n, t + 1, threads);
-        for (int64_t i = begin_of(factor, 0, factor->n, t, threads); i < end; i++) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int64_t b = 0; b < factor->block_count; b++) {
+        for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
             if (i < kept) {
                 factor_row(factor, i, least);
             } else {
@@ -346,7 +338,7 @@ void envelope_free(struct envelope *factor)
     *factor = (struct envelope){0};
 }
 
-/* y[begin .. end): whole blocks. */
+/* y[begin .. end): a block. */
 static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
 {
     for (int64_t i = begin; i < end; i++) {
@@ -376,11 +368,11 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
     double *y = factor->scratch;
     int rank = ranks_rank(ranks);
     int64_t begin = ranks != NULL ? first[rank] : 0, end = ranks != NULL ? first[rank + 1] : factor->n;
+    int64_t last = block_from(factor, end);
     int threads = threads_for(factor, begin, end);
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++) {
-        solve_rows(factor, begin_of(factor, begin, end, t, threads),
-                   begin_of(factor, begin, end, t + 1, threads), x, y);
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int64_t b = block_from(factor, begin); b < last; b++) {
+        solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
     }
     ranks_gather(ranks, y, sizeof *y, first);
     for (int64_t i = 0; i < factor->n; i++) {
