@@ -1,6 +1,7 @@
 #include "approx/field.h"
 
 #include "approx/support_space.h"
+#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -9,6 +10,8 @@
 
 /* A point nearer to a cell than this share of its size counts as inside. */
 static const double in_cell = 1e-9;
+
+enum { POINTS_FOR_THREAD = 4000 }; /* see chunks_of */
 
 enum status field_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
@@ -135,6 +138,8 @@ void field_table_free(struct field_table *table)
 void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
                     const double *field, double *values)
 {
+    int threads = chunks_of(count, POINTS_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads)
     for (int64_t p = 0; p < count; p++) {
         double *row = values + p * cols;
         for (int64_t c = 0; c < cols; c++) {

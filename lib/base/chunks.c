@@ -10,6 +10,12 @@ struct chunks chunks_of(int64_t items, int64_t worthwhile)
     return (struct chunks){items, count, (int)(count < available ? count : available)};
 }
 
+struct chunks chunks_for_threads(int64_t items, int64_t work, int64_t worthwhile)
+{
+    int threads = chunks_of(work, worthwhile).threads;
+    return (struct chunks){items, threads, threads};
+}
+
 int64_t chunks_begin(const struct chunks *chunks, int64_t chunk)
 {
     int64_t length = chunks->items / chunks->count, longer = chunks->items % chunks->count;

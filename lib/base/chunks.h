@@ -18,6 +18,10 @@ struct chunks {
  * ten microseconds. */
 struct chunks chunks_of(int64_t items, int64_t worthwhile);
 
+/* The same of a loop whose items know nothing of each other, so that it may be cut anywhere: a chunk for each
+ * thread. `work` is that of all items, of which `worthwhile` is worth the while of a thread. */
+struct chunks chunks_for_threads(int64_t items, int64_t work, int64_t worthwhile);
+
 /* First item of a chunk; that of chunk `count` is `items`. */
 int64_t chunks_begin(const struct chunks *chunks, int64_t chunk);
 

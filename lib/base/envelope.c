@@ -1,5 +1,6 @@
 #include "base/envelope.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -14,6 +15,8 @@ static const double weak_pivot = 1e-3;
 /* Rows with more than this times the mean number of entries are put last, too: elsewhere they would widen the
  * envelope of all rows behind them. */
 static const int64_t most_entries = 8;
+
+enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 
 /* Reverse Cuthill-McKee: breadth first from a node of least degree in each component. order[i] is the old
  * row; the last *longs are the long rows. */
@@ -61,6 +64,43 @@ done:
     return status;
 }
 
+/* Where blocks begin: from the end, at a row before which none behind it reaches. */
+static void find_blocks(struct envelope *factor)
+{
+    int64_t n = factor->n, least = n, *block = factor->block, blocks = 0;
+    block[n] = n;
+    for (int64_t i = n - 1; i >= 0; i--) {
+        least = factor->first[i] < least ? factor->first[i] : least;
+        if (least == i) {
+            blocks++;
+            block[n - blocks] = i;
+        }
+    }
+    memmove(block, block + n - blocks, (size_t)(blocks + 1) * sizeof *block);
+    factor->block_count = blocks;
+}
+
+/* Threads that are worth using for the rows from `begin` to before `end`. */
+static int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
+{
+    return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
+}
+
+/* The first block from place i on. */
+static int64_t block_from(const struct envelope *factor, int64_t i)
+{
+    int64_t low = 0, high = factor->block_count;
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (factor->block[middle] < i) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 /* The envelope of the reordered matrix, filled with its lower triangle. */
 static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                         struct envelope *factor, struct error *error)
@@ -92,6 +132,7 @@ static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, co
             }
         }
     }
+    find_blocks(factor);
 done:
     free(place);
     return status;
@@ -146,21 +187,39 @@ static void drop_row(struct envelope *factor, int64_t i)
         row[l] = 0.0;
     }
     row[i] = INFINITY;
-    factor->dropped++;
 }
 
-/* Row i of L; false, and dropped, when its pivot is below `least` times its diagonal entry. */
-static bool factor_row(struct envelope *factor, int64_t i, double least)
+/* Row i of L; dropped when its pivot is below `least` times its diagonal entry. */
+static void factor_row(struct envelope *factor, int64_t i, double least)
 {
     double diagonal = row_at(factor, i)[i];
     eliminate(factor, i, i);
     double pivot = reduced(factor, i, i, i);
     if (!(pivot > least * diagonal) || !(pivot > 0.0)) {
         drop_row(factor, i);
-        return false;
+        return;
     }
     row_at(factor, i)[i] = sqrt(pivot);
-    return true;
+}
+
+/* The rows of L before `kept`; the others are dropped. */
+static void factor_rows(struct envelope *factor, int64_t kept, double least)
+{
+    int threads = threads_for(factor, 0, factor->n);
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int64_t b = 0; b < factor->block_count; b++) {
+        for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
+            if (i < kept) {
+                factor_row(factor, i, least);
+            } else {
+                drop_row(factor, i);
+            }
+        }
+    }
+    factor->dropped = 0;
+    for (int64_t i = 0; i < factor->n; i++) {
+        factor->dropped += isinf(row_at(factor, i)[i]) != 0;
+    }
 }
 
 /* Order `count` rows by the largest remaining pivot, relative to the diagonal entries: matrix[count * count]
@@ -220,7 +279,7 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
             diagonal[i - strong] = row_at(factor, i)[i];
             eliminate(factor, i, strong);
         } else {
-            (void)factor_row(factor, i, 0.0);
+            factor_row(factor, i, 0.0);
         }
     }
     for (int64_t i = 0; i < count; i++) {
@@ -247,27 +306,15 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
     TRY(NEW_ARRAY(&factor->first, n, error));
     TRY(NEW_ARRAY(&factor->start, n + 1, error));
     TRY(NEW_ARRAY(&factor->scratch, n, error));
+    TRY(NEW_ARRAY(&factor->block, n + 1, error));
     TRY(order_rows(n, ptr, column, factor->order, &longs, error));
     TRY(fill(n, ptr, column, value, factor, error));
-    for (int64_t i = 0; i < n; i++) {
-        if (i < n - longs) {
-            (void)factor_row(factor, i, fmax(weak_pivot, least));
-        } else {
-            drop_row(factor, i);
-        }
-    }
+    factor_rows(factor, n - longs, fmax(weak_pivot, least));
     if (factor->dropped > 0) {
         TRY(order_weak(n, ptr, column, value, least, factor, &kept, error));
         TRY(fill(n, ptr, column, value, factor, error));
-        factor->dropped = 0;
-        for (int64_t i = 0; i < n; i++) {
-            if (i < kept) {
-                /* A pivot that was above `least` before cannot be far below now, but by round-off. */
-                (void)factor_row(factor, i, 0.1 * least);
-            } else {
-                drop_row(factor, i);
-            }
-        }
+        /* A pivot that was above `least` before cannot be far below now, but by round-off. */
+        factor_rows(factor, kept, 0.1 * least);
     }
 done:
     if (status != STATUS_OK) {
@@ -287,11 +334,11 @@ void envelope_dropped(const struct envelope *factor, int64_t *row)
 
 void envelope_free(struct envelope *factor)
 {
-    FREE_ALL(factor->order, factor->first, factor->start, factor->value, factor->scratch);
+    FREE_ALL(factor->order, factor->first, factor->start, factor->value, factor->scratch, factor->block);
     *factor = (struct envelope){0};
 }
 
-/* y[begin .. end): rows that no others couple to, nor they to others. */
+/* y[begin .. end): a block. */
 static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
 {
     for (int64_t i = begin; i < end; i++) {
@@ -320,7 +367,13 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
 {
     double *y = factor->scratch;
     int rank = ranks_rank(ranks);
-    solve_rows(factor, ranks != NULL ? first[rank] : 0, ranks != NULL ? first[rank + 1] : factor->n, x, y);
+    int64_t begin = ranks != NULL ? first[rank] : 0, end = ranks != NULL ? first[rank + 1] : factor->n;
+    int64_t last = block_from(factor, end);
+    int threads = threads_for(factor, begin, end);
+#pragma omp parallel for schedule(static, 1) num_threads(threads)
+    for (int64_t b = block_from(factor, begin); b < last; b++) {
+        solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
+    }
     ranks_gather(ranks, y, sizeof *y, first);
     for (int64_t i = 0; i < factor->n; i++) {
         x[factor->order[i]] = y[i];
@@ -331,20 +384,9 @@ enum status envelope_share(const struct envelope *factor, const struct ranks *ra
                            struct error *error)
 {
     enum status status;
-    int64_t *begin = NULL, blocks = 0, least = factor->n;
+    const int64_t *begin = factor->block, blocks = factor->block_count;
     double *work = NULL;
-    TRY(NEW_ARRAY(&begin, factor->n + 1, error));
-    TRY(NEW_ARRAY(&work, factor->n, error));
-    /* From the end: a row begins a block when none behind it reaches before it. */
-    begin[factor->n] = factor->n;
-    for (int64_t i = factor->n - 1; i >= 0; i--) {
-        least = factor->first[i] < least ? factor->first[i] : least;
-        if (least == i) {
-            blocks++;
-            begin[factor->n - blocks] = i;
-        }
-    }
-    memmove(begin, begin + factor->n - blocks, (size_t)(blocks + 1) * sizeof *begin);
+    TRY(NEW_ARRAY(&work, blocks, error));
     for (int64_t b = 0; b < blocks; b++) {
         work[b] = (double)(factor->start[begin[b + 1]] - factor->start[begin[b]]);
     }
@@ -353,6 +395,6 @@ enum status envelope_share(const struct envelope *factor, const struct ranks *ra
         (*first)[r] = begin[(*first)[r]];
     }
 done:
-    FREE_ALL(begin, work);
+    free(work);
     return status;
 }

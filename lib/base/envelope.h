@@ -16,6 +16,8 @@ struct envelope {
     double *value;   /* the factor L */
     double *scratch; /* n */
     int64_t dropped; /* rows that depend on others: their diagonal entry of L is infinite */
+    int64_t *block;  /* block_count + 1: where rows begin that no others couple to, nor they to others */
+    int64_t block_count;
 };
 
 /* Factorise the matrix given in CSR, both triangles: column[ptr[n]], value[ptr[n]]. A row whose pivot is
@@ -38,7 +40,7 @@ MUST_CHECK enum status envelope_share(const struct envelope *factor, const struc
 void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
                            double *x);
 
-/* Solve in place: x[n] holds the right-hand side, then the solution. */
+/* Solve in place, blocks by several threads: x[n] holds the right-hand side, then the solution. */
 void envelope_solve(const struct envelope *factor, double *x);
 
 #endif

@@ -55,14 +55,15 @@ void sparse_free(struct sparse *matrix)
     *matrix = (struct sparse){0};
 }
 
-/* The width is known when compiling where it is 2 or 3. */
-static inline __attribute__((always_inline)) void
-apply_rows(const struct sparse *matrix, int64_t begin, int64_t end, int64_t width, const double *x, double *y)
+/* y = A x; or += with `add`. The width is known when compiling where it is 2 or 3. */
+static inline __attribute__((always_inline)) void apply_rows(const struct sparse *matrix, int64_t begin,
+                                                             int64_t end, int64_t width, bool add,
+                                                             const double *x, double *y)
 {
     for (int64_t r = begin; r < end; r++) {
         double sum[3] = {0.0, 0.0, 0.0}, *to = width <= 3 ? sum : y + r * width;
         for (int64_t a = 0; a < width; a++) {
-            to[a] = 0.0;
+            to[a] = add ? y[r * width + a] : 0.0;
         }
         for (int64_t i = matrix->ptr[r]; i < matrix->ptr[r + 1]; i++) {
             const double *at = x + matrix->idx[i] * width;
@@ -83,19 +84,50 @@ enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct er
     return status;
 }
 
+/* The first of the rows of thread t: each has about the same number of entries. */
+static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last, int t, int threads)
+{
+    if (t == 0 || t == threads) {
+        return t == 0 ? first : last;
+    }
+    int64_t wanted = matrix->ptr[first] + (matrix->ptr[last] - matrix->ptr[first]) * t / threads;
+    while (first < last) {
+        int64_t middle = (first + last) / 2;
+        if (matrix->ptr[middle] < wanted) {
+            first = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
+    return first;
+}
+
+static void share_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, bool add,
+                       const double *x, double *y)
+{
+    int threads = chunks_of(last - first, ROWS_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++) {
+        int64_t begin = begin_of(matrix, first, last, t, threads);
+        int64_t end = begin_of(matrix, first, last, t + 1, threads);
+        if (width == 2) {
+            apply_rows(matrix, begin, end, 2, add, x, y);
+        } else if (width == 3) {
+            apply_rows(matrix, begin, end, 3, add, x, y);
+        } else {
+            apply_rows(matrix, begin, end, width, add, x, y);
+        }
+    }
+}
+
 void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
                        const double *x, double *y)
 {
-    struct chunks chunks = chunks_of(last - first, ROWS_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
-        if (width == 2) {
-            apply_rows(matrix, begin, end, 2, x, y);
-        } else if (width == 3) {
-            apply_rows(matrix, begin, end, 3, x, y);
-        } else {
-            apply_rows(matrix, begin, end, width, x, y);
-        }
-    }
+    share_rows(matrix, first, last, width, false, x, y);
+}
+
+void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,
+                     double *y)
+{
+    share_rows(matrix, first, last, width, true, x, y);
 }

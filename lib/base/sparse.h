@@ -33,4 +33,8 @@ MUST_CHECK enum status sparse_rows_used(const struct sparse *matrix, bool **used
 void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
                        const double *x, double *y);
 
+/* y += A x, likewise, in the order of the entries. */
+void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,
+                     double *y);
+
 #endif

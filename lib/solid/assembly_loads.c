@@ -113,7 +113,7 @@ static enum status add_traction(const struct assembly *input, const struct load 
         for (int k = 0; k < system->dim; k++) {
             amount[k] = averages.area[a] * load->components[k];
         }
-        average_spread(&average, system->dim, amount, NULL, force);
+        average_spread(&average, system->dim, amount, force);
     }
 done:
     boundary_averages_free(&averages);
@@ -129,7 +129,7 @@ static enum status add_force(const struct assembly *input, const struct load *lo
     for (int64_t n = 0; n < load->node_count; n++) {
         int64_t at = lists->ptr[load->nodes[n]];
         struct average field = {lists->ptr[load->nodes[n] + 1] - at, lists->idx + at, input->node_phi + at};
-        average_spread(&field, system->dim, load->components, NULL, force);
+        average_spread(&field, system->dim, load->components, force);
     }
     return STATUS_OK;
 }

@@ -30,24 +30,21 @@ void average_take(const struct average *average, int dim, const double *u, doubl
     }
 }
 
-static inline void spread(const struct average *average, int dim, const double *amount, const double *mass,
-                          double *u)
+static inline void spread(const struct average *average, int dim, const double *amount, double *u)
 {
     for (int64_t i = 0; i < average->length; i++) {
         int64_t node = average->idx[i];
-        double share = mass != NULL ? average->phi[i] / mass[node] : average->phi[i];
         for (int a = 0; a < dim; a++) {
-            u[node * dim + a] += share * amount[a];
+            u[node * dim + a] += average->phi[i] * amount[a];
         }
     }
 }
 
-void average_spread(const struct average *average, int dim, const double *amount, const double *mass,
-                    double *u)
+void average_spread(const struct average *average, int dim, const double *amount, double *u)
 {
     if (dim == 2) {
-        spread(average, 2, amount, mass, u);
+        spread(average, 2, amount, u);
     } else {
-        spread(average, 3, amount, mass, u);
+        spread(average, 3, amount, u);
     }
 }

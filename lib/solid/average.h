@@ -19,8 +19,7 @@ struct average average_of_boundary(const struct boundary_averages *averages, int
 /* mean[dim] = sum_j phi_j u_j of u[node_count * dim]. */
 void average_take(const struct average *average, int dim, const double *u, double *mean);
 
-/* The transpose: u_j += phi_j amount[dim], divided by mass[node] unless mass is NULL. */
-void average_spread(const struct average *average, int dim, const double *amount, const double *mass,
-                    double *u);
+/* The transpose: u_j += phi_j amount[dim]. */
+void average_spread(const struct average *average, int dim, const double *amount, double *u);
 
 #endif

@@ -1,5 +1,6 @@
 #include "solid/constraint.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/sparse.h"
 #include "base/vector.h"
@@ -11,6 +12,8 @@
 /* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
  * that is independent of the others is at most a hundred-thousandth of it. */
 static const double least_pivot = 1e-10;
+
+enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -133,21 +136,6 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     return along(rows, r, mean);
 }
 
-void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
-                            double *u)
-{
-    for (int64_t l = 0; l < rows->list_count; l++) {
-        struct average average = average_of_list(rows, l);
-        double total[3] = {0.0, 0.0, 0.0};
-        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
-            for (int a = 0; a < rows->dim; a++) {
-                total[a] += amount[r] * rows->direction[r * rows->dim + a];
-            }
-        }
-        average_spread(&average, rows->dim, total, mass, u);
-    }
-}
-
 /* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
  */
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
@@ -224,10 +212,12 @@ static enum status share(struct constraint *constraint, struct error *error)
     double *work = NULL;
     bool *wanted = NULL;
     if (ranks == NULL) {
-        return STATUS_OK;
+        return constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass,
+                                      NULL, &constraint->nodes, error);
     }
     TRY(inverse_factor_wanted(constraint->inverse, &wanted, error));
-    TRY(constraint_rows_keep(constraint->inverse_rows, wanted, &constraint->here, error));
+    TRY(constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass, wanted,
+                               &constraint->nodes, error));
     TRY(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
@@ -263,7 +253,8 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         rows = inverse_rows;
     }
     TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    TRY(inverse != NULL ? share(constraint, error) : STATUS_OK);
+    TRY(inverse != NULL ? share(constraint, error)
+                        : constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error));
 done:
     if (status != STATUS_OK) {
         constraint_free(constraint);
@@ -275,7 +266,7 @@ void constraint_free(struct constraint *constraint)
 {
     FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
              constraint->place_first);
-    constraint_rows_free_kept(&constraint->here);
+    constraint_nodes_free(&constraint->nodes);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
 }
@@ -283,12 +274,15 @@ void constraint_free(struct constraint *constraint)
 void constraint_values(const struct constraint *constraint, const double *u, double *value)
 {
     const struct ranks *ranks = constraint->ranks;
-    if (ranks == NULL) {
-        constraint_rows_values(constraint->rows, u, value);
-        return;
+    const struct constraint_rows *rows = constraint->rows;
+    const int64_t all[2] = {0, rows->list_count};
+    const int64_t *first = ranks != NULL ? constraint->list_first + ranks->rank : all;
+    struct chunks lists = chunks_for_threads(first[1] - first[0], first[1] - first[0], LISTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(lists.threads)
+    for (int64_t c = 0; c < lists.count; c++) {
+        constraint_rows_take(rows, first[0] + chunks_begin(&lists, c), first[0] + chunks_begin(&lists, c + 1),
+                             u, value);
     }
-    const int64_t *first = constraint->list_first + ranks->rank;
-    constraint_rows_take(constraint->rows, first[0], first[1], u, value);
     ranks_gather(ranks, value, sizeof *value, constraint->row_first);
 }
 
@@ -300,15 +294,14 @@ void constraint_solve(const struct constraint *constraint, double *x)
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
 {
     if (constraint->inverse == NULL) {
-        constraint_rows_spread(constraint->rows, amount, constraint->mass, u);
+        constraint_nodes_spread(&constraint->nodes, amount, u);
         return;
     }
     int dim = constraint->rows->dim;
     int64_t size = constraint->node_count * dim;
     double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
     memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
-    constraint_rows_spread(constraint->ranks != NULL ? &constraint->here : constraint->inverse_rows, amount,
-                           constraint->mass, on_inverse);
+    constraint_nodes_spread(&constraint->nodes, amount, on_inverse);
     inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
     for (int64_t i = 0; i < size; i++) {
         u[i] += move[i];

@@ -6,6 +6,7 @@
 #define SOLID_CONSTRAINT_H
 
 #include "base/envelope.h"
+#include "base/sparse.h"
 #include "base/status.h"
 #include "solid/average.h"
 
@@ -51,16 +52,23 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
 void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
                           double *value);
 
-/* The transpose: u_j += amount_r phi_j direction_r, divided by mass[node] unless mass is NULL. */
-void constraint_rows_spread(const struct constraint_rows *rows, const double *amount, const double *mass,
-                            double *u);
+/* The transpose, by nodes. */
+struct constraint_nodes {
+    const struct constraint_rows *rows; /* the caller's; must outlive this */
+    struct sparse lists;                /* a row for each node: the lists that it is in, and its weights */
+    bool *used;                         /* list_count: lists that have nodes here */
+    double *on_list;                    /* list_count * dim: scratch */
+};
 
-/* The rows with those of their pairs alone whose nodes are wanted[]: lists may be empty. What they spread to
- * these nodes is the same to the last bit. All but pairs is shared with `rows`: free with
- * constraint_rows_free_kept. */
-MUST_CHECK enum status constraint_rows_keep(const struct constraint_rows *rows, const bool *wanted,
-                                            struct constraint_rows *kept, struct error *error);
-void constraint_rows_free_kept(struct constraint_rows *kept);
+/* Weights are divided by mass[node_count] unless that is NULL; other nodes than wanted[node_count], unless
+ * that is NULL, get nothing. */
+MUST_CHECK enum status constraint_nodes_build(const struct constraint_rows *rows, int64_t node_count,
+                                              const double *mass, const bool *wanted,
+                                              struct constraint_nodes *nodes, struct error *error);
+void constraint_nodes_free(struct constraint_nodes *nodes);
+
+/* u_j += amount_r phi_j direction_r, over the mass: in the order of the lists. Threaded. */
+void constraint_nodes_spread(const struct constraint_nodes *nodes, const double *amount, double *u);
 
 struct inverse_factor;
 
@@ -72,14 +80,15 @@ struct constraint {
     const struct inverse_factor *inverse;       /* NULL; or M^-1 = L^T D^-1 L with this L, and D in `mass`, */
     const struct constraint_rows *inverse_rows; /* and the rows G L^T; both the caller's */
     double *scratch;                            /* 2 * node_count * dim, with these */
+    struct constraint_nodes nodes;              /* of inverse_rows, or else of `rows`, over D; of several
+                                                   processes of the nodes that own rows of L^T need */
     struct envelope factor;
     const struct ranks
-        *ranks; /* processes that share `inverse`, and what follows; NULL: one. Of each process */
-    struct constraint_rows here; /* what of inverse_rows the rows of L^T need that it applies, */
-    int64_t *list_first;         /* the lists whose averages it takes, */
-    int64_t *row_first;          /* their rows, */
-    int64_t *place_first;        /* and the stretch of the factor that it solves with */
-    double *multiplier;          /* count: of the last projection, N s2 in the step's scaling */
+        *ranks;           /* processes that share `inverse`, and what follows; NULL: one. Of each process */
+    int64_t *list_first;  /* the lists whose averages it takes, */
+    int64_t *row_first;   /* their rows, */
+    int64_t *place_first; /* and the stretch of the factor that it solves with */
+    double *multiplier;   /* count: of the last projection, N s2 in the step's scaling */
 };
 
 /* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped

@@ -312,7 +312,7 @@ void contact_force(struct contact *contact, const double *u, double *force)
             struct average average = average_of_boundary(contact->points, p);
             double on_point[3];
             contact_point_force(contact, p, on_point);
-            average_spread(&average, contact->dim, on_point, NULL, force);
+            average_spread(&average, contact->dim, on_point, force);
         }
     }
     contact_between_react(contact, force);

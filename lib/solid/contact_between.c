@@ -276,7 +276,7 @@ void contact_between_react(struct contact *contact, double *force)
         struct average average = average_of_boundary(&opposite->rows, v);
         const double *load = opposite->load + v * dim;
         if (load[0] != 0.0 || load[1] != 0.0 || load[dim - 1] != 0.0) {
-            average_spread(&average, dim, load, NULL, force);
+            average_spread(&average, dim, load, force);
         }
     }
 }

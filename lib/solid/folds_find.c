@@ -1,6 +1,8 @@
 /* Looking for folds of a displacement field; see folds.h. */
 #include "solid/folds_private.h"
 
+#include "base/chunks.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +10,10 @@ static const double full_turn = 6.28318530717958648;
 
 /* Positions below this share of the largest coordinate are round-off. */
 static const double round_off = 1e-12;
+
+enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
+
+static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}};
 
 /* See folds_find_beyond, are_deep. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
@@ -28,29 +34,39 @@ static void name_facets(const struct folds *folds, int64_t facet, int64_t other,
     vector_middle(dim, folds->input.x, dim, folds->input.facet + facet * dim, fold->place);
 }
 
-/* The share of this process of so many items: from the first to before the second. */
-static void share_of(const struct folds *folds, int64_t count, int64_t share[2])
+/* What there is in shares in turn: the gravest kind, its first one, and how many there are. */
+static struct fold put_together(int64_t count, const struct fold *found)
 {
-    const struct ranks *ranks = folds->input.ranks;
-    share[0] = count * ranks_rank(ranks) / ranks_count(ranks);
-    share[1] = count * (ranks_rank(ranks) + 1) / ranks_count(ranks);
-}
-
-/* From what each process has found in its share: the gravest kind, its first one, and how many there are. */
-static void put_together(const struct folds *folds, struct fold *fold)
-{
-    const struct ranks *ranks = folds->input.ranks;
-    folds->found[ranks_rank(ranks)] = *fold;
-    ranks_gather(ranks, folds->found, sizeof *fold, NULL);
-    *fold = folds->found[0];
-    for (int r = 1; r < ranks_count(ranks); r++) {
-        const struct fold *found = &folds->found[r];
-        if (found->kind == fold->kind) {
-            fold->count += found->count;
-        } else if (fold->kind == FOLD_NONE || (found->kind != FOLD_NONE && found->kind < fold->kind)) {
-            *fold = *found;
+    struct fold fold = found[0];
+    for (int64_t i = 1; i < count; i++) {
+        if (found[i].kind == fold.kind) {
+            fold.count += found[i].count;
+        } else if (fold.kind == FOLD_NONE || (found[i].kind != FOLD_NONE && found[i].kind < fold.kind)) {
+            fold = found[i];
         }
     }
+    return fold;
+}
+
+/* A look at cells, rings or boxes, from `begin` to before `end`. */
+typedef struct fold look_at(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+
+/* The look at so many of them, by all threads of all processes. */
+static struct fold look(const struct folds *folds, int64_t count, look_at *at_items, const bool *stopped)
+{
+    const struct ranks *ranks = folds->input.ranks;
+    int64_t first = count * ranks_rank(ranks) / ranks_count(ranks);
+    int64_t last = count * (ranks_rank(ranks) + 1) / ranks_count(ranks);
+    struct chunks chunks = chunks_of(last - first, ITEMS_FOR_THREAD);
+    struct fold found[CHUNKS_MOST];
+#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
+        found[c] = at_items(folds, begin, end, stopped);
+    }
+    folds->found[ranks_rank(ranks)] = put_together(chunks.count, found);
+    ranks_gather(ranks, folds->found, sizeof *found, NULL);
+    return put_together(ranks_count(ranks), folds->found);
 }
 
 /* Whether something presses the cell flat: all nodes are held or stopped, not all of them held. */
@@ -94,26 +110,25 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node, doubl
 }
 
 /* Turned cells, or else inverted ones. */
-static void find_cells(const struct folds *folds, const bool *stopped, struct fold *fold)
+static struct fold look_at_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
     const struct fold_input *input = &folds->input;
+    struct fold fold = none;
     int dim = input->dim, corners = dim + 1;
-    int64_t share[2];
-    share_of(folds, input->cell_count, share);
-    for (int64_t c = share[0]; c < share[1]; c++) {
+    for (int64_t c = begin; c < end; c++) {
         const int32_t *node = input->cell + c * corners;
         double volume = cell_size(folds, node);
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
             continue;
         }
         enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
-        if (fold->kind == FOLD_NONE || (fold->kind == FOLD_FLAT && kind == FOLD_CELL)) {
-            *fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
-            vector_middle(dim, input->x, corners, node, fold->place);
+        if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
+            fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
+            vector_middle(dim, input->x, corners, node, fold.place);
         }
-        fold->count += kind == fold->kind;
+        fold.count += kind == fold.kind;
     }
-    put_together(folds, fold);
+    return fold;
 }
 
 /* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
@@ -148,23 +163,22 @@ static double most_angle(const struct folds *folds, const struct fold_ring *ring
     return full_turn * (1.0 + 1e-6) + (touches ? beyond_facet : 0.0);
 }
 
-static bool find_creases(const struct folds *folds, struct fold *fold)
+static struct fold look_at_rings(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
+    struct fold fold = none;
     int corners = folds->input.dim + 1;
-    int64_t share[2];
-    share_of(folds, folds->ring_count, share);
-    for (int64_t r = share[0]; r < share[1]; r++) {
+    (void)stopped;
+    for (int64_t r = begin; r < end; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
             sum += angle_around(folds, folds->ring_cell + i * corners);
         }
-        if (sum > most_angle(folds, &folds->rings[r]) && fold->count++ == 0) {
-            name_facets(folds, folds->rings[r].facet, -1, fold);
+        if (sum > most_angle(folds, &folds->rings[r]) && fold.count++ == 0) {
+            name_facets(folds, folds->rings[r].facet, -1, &fold);
         }
     }
-    fold->kind = fold->count > 0 ? FOLD_CREASE : FOLD_NONE;
-    put_together(folds, fold);
-    return fold->count > 0;
+    fold.kind = fold.count > 0 ? FOLD_CREASE : FOLD_NONE;
+    return fold;
 }
 
 /* Whether the segment p q goes through facet f, at neither's border. */
@@ -300,13 +314,14 @@ static void sort_boxes(struct folds *folds)
     qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_placed);
 }
 
-static void find_crossings(struct folds *folds, struct fold *fold)
+/* Facets that go through each other. */
+static struct fold look_at_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
-    int64_t count = folds->input.facet_count, share[2];
-    sort_boxes(folds);
-    share_of(folds, count, share);
-    for (int64_t i = share[0]; i < share[1]; i++) {
-        const struct fold_box *boxes = folds->boxes;
+    struct fold fold = none;
+    int64_t count = folds->input.facet_count;
+    const struct fold_box *boxes = folds->boxes;
+    (void)stopped;
+    for (int64_t i = begin; i < end; i++) {
         int64_t f = boxes[i].facet.item;
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
             int64_t g = boxes[k].facet.item;
@@ -314,13 +329,13 @@ static void find_crossings(struct folds *folds, struct fold *fold)
                 !(goes_through(folds, f, g) || goes_through(folds, g, f)) || !are_deep(folds, f, g)) {
                 continue;
             }
-            if (fold->count++ == 0) {
-                name_facets(folds, f < g ? f : g, f < g ? g : f, fold);
+            if (fold.count++ == 0) {
+                name_facets(folds, f < g ? f : g, f < g ? g : f, &fold);
             }
         }
     }
-    fold->kind = fold->count > 0 ? FOLD_CROSSING : FOLD_NONE;
-    put_together(folds, fold);
+    fold.kind = fold.count > 0 ? FOLD_CROSSING : FOLD_NONE;
+    return fold;
 }
 
 void folds_fill_planes(struct folds *folds, const double *y)
@@ -367,14 +382,15 @@ void folds_take_positions(struct folds *folds, const double *u)
 
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
-    struct fold cells = {.cell = -1, .facet = {-1, -1}}, fold = cells;
     folds_take_positions(folds, u);
-    find_cells(folds, stopped, &cells);
+    struct fold cells = look(folds, folds->input.cell_count, look_at_cells, stopped);
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
-    if (!find_creases(folds, &fold) && folds->at_rest.kind == FOLD_NONE) {
-        find_crossings(folds, &fold);
+    struct fold fold = look(folds, folds->ring_count, look_at_rings, stopped);
+    if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
+        sort_boxes(folds);
+        fold = look(folds, folds->input.facet_count, look_at_boxes, stopped);
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }
@@ -384,7 +400,7 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
 
 struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)
 {
-    struct fold fold = {.cell = -1, .facet = {-1, -1}};
+    struct fold fold = none;
     folds_take_positions(folds, u);
     folds_fill_planes(folds, folds->y);
     for (int64_t r = 0; r < folds->rim_count; r++) {

@@ -1,5 +1,6 @@
 #include "solid/preconditioner_private.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/rigid_modes.h"
@@ -10,6 +11,8 @@
 /* Nodes for each field at least: each field costs an evaluation for each direction at the begin. With twice
  * COARSE_MOST_CENTRES steps are no fewer. */
 static const int64_t nodes_per_coarse_field = 8;
+
+enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
 {
@@ -157,10 +160,16 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     constraint_values(&p->constraint, acceleration, seen);
     const struct ranks *ranks = p->factor.ranks;
     const int64_t *first = p->column_first + ranks_rank(ranks);
-    for (int64_t r = 0; r < rows->count; r++) {
-        const double *held = p->held + r * p->size;
-        for (int64_t k = first[0]; k < first[1] && seen[r] != 0.0; k++) {
-            amount[k] -= held[k] * seen[r];
+    int64_t columns = first[1] - first[0];
+    struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
+        for (int64_t r = 0; r < rows->count; r++) {
+            const double *held = p->held + r * p->size;
+            for (int64_t k = begin; k < end && seen[r] != 0.0; k++) {
+                amount[k] -= held[k] * seen[r];
+            }
         }
     }
     ranks_gather(ranks, amount, sizeof *amount, p->column_first);
@@ -180,6 +189,8 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
         return;
     }
     constraint_solve(constraint, multiplier);
+    int threads = chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads)
     for (int64_t r = 0; r < rows->count; r++) {
         const double *held = p->held + r * p->size;
         double sum = multiplier[r];
@@ -223,18 +234,21 @@ static void restrict_move(const struct preconditioner *p, const double *moved, d
         return;
     }
     const struct ranks *ranks = p->factor.ranks;
-    const int64_t *first = p->field_first;
-    memset(amount, 0, (size_t)p->size * sizeof *amount);
-    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
+    const int64_t *first = p->field_first + ranks_rank(ranks);
+    int threads = chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int64_t k = first[0]; k < first[1]; k++) {
         const double *field = p->inverse_fields + k * nodes;
+        double sum[3] = {0.0, 0.0, 0.0};
         for (int64_t n = 0; n < nodes; n++) {
             double weight = p->mass[n] * field[n];
             for (int a = 0; a < dim; a++) {
-                amount[k * dim + a] += weight * moved[n * dim + a];
+                sum[a] += weight * moved[n * dim + a];
             }
         }
+        memcpy(amount + k * dim, sum, (size_t)dim * sizeof *sum);
     }
-    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, first);
+    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, p->field_first);
 }
 
 /* Both moves in terms of L. */

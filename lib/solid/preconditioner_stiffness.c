@@ -118,7 +118,7 @@ static void spread_opposite(const struct contact *contact, int64_t a, const doub
         for (int c = 0; c < contact->dim; c++) {
             there[c] = -weight * amount[c];
         }
-        average_spread(&average, contact->dim, there, NULL, field);
+        average_spread(&average, contact->dim, there, field);
     }
 }
 
@@ -147,7 +147,7 @@ void preconditioner_resist_open(const struct preconditioner *p, const struct sol
                 double aside = p->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
                 on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
             }
-            average_spread(&average, (int)dim, on_node, NULL, force);
+            average_spread(&average, (int)dim, on_node, force);
             spread_opposite(contact, a, on_node, force);
         }
     }

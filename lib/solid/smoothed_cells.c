@@ -1,6 +1,7 @@
 #include "solid/smoothed_cells.h"
 
 #include "approx/renumber.h"
+#include "base/chunks.h"
 #include "base/memory.h"
 #include "base/read_rows.h"
 #include "solid/body.h"
@@ -9,6 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */
 
 /* Gradients of the linear shape functions 1 .. dim of a simplex, dim x dim. */
 static void linear_gradients(int dim, const double *x, const int32_t *vertex, double *gradient)
@@ -144,6 +147,9 @@ struct given_table {
 static enum status check_table(const struct given_table *table, int64_t rows, int dim, const double *nodes,
                                struct error *error)
 {
+    int64_t bad = rows;
+    int threads = chunks_of(rows, ROWS_FOR_THREAD).threads;
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(min : bad)
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
         if (table->reader != NULL && table->reader[r] != table->rank) {
@@ -159,12 +165,13 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
             }
         }
         for (int k = 0; k <= dim; k++) {
-            if (!(fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent))) {
-                return fail(error, STATUS_INPUT,
-                            "%s: %s %lld: not the shape functions at this %s: run shapefn again",
-                            table->section, table->of, (long long)r, table->of);
-            }
+            bool right = fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent);
+            bad = !right && r < bad ? r : bad;
         }
+    }
+    if (bad < rows) {
+        return fail(error, STATUS_INPUT, "%s: %s %lld: not the shape functions at this %s: run shapefn again",
+                    table->section, table->of, (long long)bad, table->of);
     }
     return STATUS_OK;
 }

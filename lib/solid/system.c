@@ -30,7 +30,7 @@ void system_free(struct solid_system *system)
     FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
     constraint_rows_free(&system->rows);
     constraint_rows_free(&system->penalties);
-    constraint_rows_free_kept(&system->penalties_here);
+    constraint_nodes_free(&system->penalty_nodes);
     FREE_ALL(system->penalty_stiffness, system->penalty_force);
     body_free(&system->body);
     *system = (struct solid_system){0};
@@ -210,7 +210,7 @@ static void add_pressure(const struct solid_system *system, const struct pressur
                 share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
             }
             struct average average = average_of_boundary(&load->points, p);
-            average_spread(&average, dim, share, NULL, residual);
+            average_spread(&average, dim, share, residual);
         }
     }
 }

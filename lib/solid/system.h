@@ -72,7 +72,7 @@ struct solid_system {
      * quadrature points of the constrained facets hold the field to the same targets. Their forces vanish
      * where the field meets these, so that a linear field stays exact. */
     struct constraint_rows penalties;
-    struct constraint_rows penalties_here; /* of several processes: of the penalties what own nodes have */
+    struct constraint_nodes penalty_nodes; /* what they put on nodes, of several processes on own ones */
     int64_t spring_count; /* the last of the penalties: they hold measured points and back no condition */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_force;     /* penalties.count: scratch */
@@ -145,7 +145,7 @@ MUST_CHECK enum status system_append_penalty(struct solid_system *system, const 
                                              int32_t section, int32_t node, double stiffness,
                                              struct error *error);
 
-/* Of several processes, once all penalties are there: what of them is for own nodes. */
+/* Once all penalties are there: what they put on nodes. */
 MUST_CHECK enum status system_share_penalties(struct solid_system *system, struct error *error);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */

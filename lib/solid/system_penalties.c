@@ -1,9 +1,12 @@
 /* Constraint penalties of a system, and springs of measured points, which are kept among them. */
 #include "solid/system.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
+
+enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
 
 enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                   const double *direction, double target, int32_t curve, int32_t section,
@@ -20,17 +23,17 @@ enum status system_append_penalty(struct solid_system *system, const struct aver
 
 enum status system_share_penalties(struct solid_system *system, struct error *error)
 {
-    enum status status = STATUS_OK;
+    enum status status;
     const struct body *body = &system->body;
     bool *own = NULL;
-    if (body->share.ranks == NULL) {
-        return STATUS_OK;
+    if (body->share.ranks != NULL) {
+        TRY(NEW_ARRAY(&own, body->node_count, error));
+        for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
+            own[body->node_order[p]] = true;
+        }
     }
-    TRY(NEW_ARRAY(&own, body->node_count, error));
-    for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
-        own[body->node_order[p]] = true;
-    }
-    TRY(constraint_rows_keep(&system->penalties, own, &system->penalties_here, error));
+    TRY(constraint_nodes_build(&system->penalties, body->node_count, NULL, own, &system->penalty_nodes,
+                               error));
 done:
     free(own);
     return status;
@@ -46,20 +49,25 @@ double system_penalty_force(const struct solid_system *system, int64_t r, const 
 void system_add_penalties(struct solid_system *system, const double *u, double *force)
 {
     const struct constraint_rows *penalties = &system->penalties;
-    const struct constraint_rows *here =
-        system->body.share.ranks != NULL ? &system->penalties_here : penalties;
     double *pull = system->penalty_force;
-    for (int64_t l = 0; l < here->list_count; l++) {
-        if (here->ptr[l] == here->ptr[l + 1]) {
-            continue;
-        }
-        constraint_rows_take(penalties, l, l + 1, u, pull);
-        for (int64_t r = penalties->first[l]; r < penalties->first[l + 1]; r++) {
-            double target = penalties->target[r] * system->factor[penalties->curve[r]];
-            pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
+    if (penalties->count == 0) {
+        return;
+    }
+    struct chunks chunks = chunks_for_threads(penalties->list_count, penalties->list_count, LISTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        for (int64_t l = chunks_begin(&chunks, c); l < chunks_begin(&chunks, c + 1); l++) {
+            if (!system->penalty_nodes.used[l]) {
+                continue;
+            }
+            constraint_rows_take(penalties, l, l + 1, u, pull);
+            for (int64_t r = penalties->first[l]; r < penalties->first[l + 1]; r++) {
+                double target = penalties->target[r] * system->factor[penalties->curve[r]];
+                pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
+            }
         }
     }
-    constraint_rows_spread(here, pull, NULL, force);
+    constraint_nodes_spread(&system->penalty_nodes, pull, force);
 }
 
 double system_penalty_energy(const struct solid_system *system, const double *u)

@@ -35,6 +35,20 @@ TEST(cover)
     omp_set_num_threads(before);
 }
 
+/* Loops that may be cut anywhere are cut for the threads that their work is worth. */
+TEST(for_threads)
+{
+    int before = omp_get_max_threads();
+    omp_set_num_threads(3);
+    for (int64_t work = 100; work <= 1000; work += 100) {
+        struct chunks chunks = chunks_for_threads(7, work, 100);
+        check_cover(&chunks, 7);
+        assert_int_equal(chunks.count, work < 300 ? work / 100 : 3);
+        assert_int_equal(chunks.threads, chunks.count);
+    }
+    omp_set_num_threads(before);
+}
+
 /* What is not worth a second thread is one chunk; what is, is worth two. */
 TEST(worthwhile)
 {

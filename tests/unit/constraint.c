@@ -62,7 +62,11 @@ static void meets_all(struct line *line, struct constraint *constraint)
 static void spread(const struct line *line, const double *force, double *total)
 {
     double both[2 * NODES] = {0.0};
-    constraint_rows_spread(&line->system.rows, force, NULL, both);
+    struct constraint_nodes nodes;
+    struct error error;
+    GOOD(constraint_nodes_build(&line->system.rows, NODES, NULL, NULL, &nodes, &error));
+    constraint_nodes_spread(&nodes, force, both);
+    constraint_nodes_free(&nodes);
     for (int n = 0; n < NODES; n++) {
         total[n] = both[2 * n];
     }
@@ -112,29 +116,32 @@ TEST(dependent_rows_share)
     system_free(&line.system);
 }
 
-/* Rows with some nodes alone put on these what all put on them, to the last bit, and nothing elsewhere. */
+/* On some nodes alone rows put what they put there of all nodes, to the last bit, and nothing elsewhere. */
 TEST(rows_of_some_nodes)
 {
     static const double force[4] = {0.3, -0.7, 1.1, 0.13};
     const bool wanted[NODES] = {[3] = true, [4] = true, [7] = true};
     struct line line;
     struct error error;
-    struct constraint_rows kept;
+    struct constraint_nodes of_all, kept;
     double all[2 * NODES] = {0.0}, some[2 * NODES] = {0.0};
     line_begin(&line);
     hold(&line, 0, 2, 0.1, 0); /* none of its nodes */
     hold(&line, 2, 5, 0.3, 0);
     hold(&line, 3, 7, 0.2, 1);
     hold(&line, 4, 8, 0.5, 0);
-    GOOD(constraint_rows_keep(&line.system.rows, wanted, &kept, &error));
-    assert_true(kept.ptr[1] == 0 && kept.ptr[2] == 2 && kept.list_count == line.system.rows.list_count);
-    constraint_rows_spread(&line.system.rows, force, line.mass, all);
-    constraint_rows_spread(&kept, force, line.mass, some);
+    GOOD(constraint_nodes_build(&line.system.rows, NODES, line.mass, NULL, &of_all, &error));
+    GOOD(constraint_nodes_build(&line.system.rows, NODES, line.mass, wanted, &kept, &error));
+    assert_true(!kept.used[0] && kept.used[1] && kept.lists.ptr[NODES] == 2 + 2 + 2);
+    constraint_nodes_spread(&of_all, force, all);
+    constraint_nodes_spread(&kept, force, some);
+    NEAR_TO(all[2 * 3], (force[1] / 3 + force[2] / 4) / line.mass[3], 1e-15);
     for (int i = 0; i < 2 * NODES; i++) {
         double expected = wanted[i / 2] ? all[i] : 0.0;
         assert_memory_equal(&some[i], &expected, sizeof expected);
     }
-    constraint_rows_free_kept(&kept);
+    constraint_nodes_free(&of_all);
+    constraint_nodes_free(&kept);
     system_free(&line.system);
 }
 
