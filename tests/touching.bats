@@ -146,10 +146,12 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     printf '%s\n' 'SetFactory("OpenCASCADE");' 'Disk(1) = {0, 0, 0, 50};' 'Disk(2) = {0, 0, 0, 35};' 'Rectangle(3) = {0, -0.2, 0, 100, 0.4};' \
         'BooleanDifference(4) = {Surface{1}; Delete;}{Surface{2, 3}; Delete;};' 'Mesh.MeshSizeMin = 4;' 'Mesh.MeshSizeMax = 4;' > ring.geo
     gmsh -2 -v 1 ring.geo -o ring.msh
-    nodes -u mm ring.msh 2> note | groups -u mm -f ends=box:34,-0.3,51,0.3 -f back=box:-51,-4,-49,4 -f 'outer=all without ball:0,0,49 without ends without back' |
+    nodes -u mm ring.msh 2> note |
+        groups -u mm -f ends=box:34,-0.3,51,0.3 -f back=box:-51,-4,-49,4 -f 'outer=all without ball:0,0,49 without ends without back' |
         shapefn > ring.mts 2> note
     block quasi-static | sed '/^region/s/=.*/= body/; s/^nu = .*/nu = 0.49/' > bent.scene
-    printf '[displacement back]\nfacets = back\ncomponents = 0, 0\n[pressure round]\nfacets = outer\nvalue = -5\n[solver]\nmax_steps = 1000\n' >> bent.scene
+    printf '[displacement back]\nfacets = back\ncomponents = 0, 0\n' >> bent.scene
+    printf '[pressure round]\nfacets = outer\nvalue = -5\n[solver]\nmax_steps = 1000\n' >> bent.scene
     mtled bent.scene ring.mts > u.dat
     { sed 's/^value = .*/value = 5/' bent.scene; printf '[contact ends]\nfacets = ends\nagainst = ends\n[output]\ngaps = yes\n'; } > closed.scene
     mtled closed.scene ring.mts > u.dat
