@@ -164,6 +164,9 @@ missing() {
         mtled same.scene cube.mts > u.dat 2> said
         ! grep -q 'prescribed twice' said
     done
+    sed 's/-0.0048/-0.00500001/' near.scene > close.scene # enough digits to see the difference
+    mtled close.scene cube.mts > u.dat 2> said
+    grep -q 'prescribed twice: -0.00500001 m here, -0.005 m in' said
     sed 's/-0.0048/-0.0040/' near.scene > far.scene
     refused 2 "prescribed twice: -0.004 m here, -0.005 m in [displacement top]" mtled far.scene cube.mts
 }

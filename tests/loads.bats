@@ -237,5 +237,5 @@ immersed() {
     refused 2 "floor.tsv:3: repeats the point before" mtled block.scene square.mts
     mts drop sets.ptr square.mts | mts drop sets.idx > none.mts
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
-    refused 2 "sets.ptr" mtled block.scene none.mts
+    refused 2 "[force c]: no node sets: run groups -n" mtled block.scene none.mts
 }

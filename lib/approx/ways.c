@@ -10,11 +10,6 @@
 /* A way may be so many times as long as the straight one. */
 static const double most_detour = 2.0;
 
-struct way_end {
-    double length;
-    int32_t node;
-};
-
 static void assign_nodes(struct ways *ways, int64_t stride, const double *place, double unit)
 {
     const struct cells *cells = &ways->reach.cells;
@@ -56,7 +51,8 @@ void ways_free(struct ways *ways)
 {
     reach_free(&ways->reach);
     reach_work_free(&ways->work);
-    FREE_ALL(ways->node, ways->verdict, ways->length, ways->queue);
+    queue_free(&ways->queue);
+    FREE_ALL(ways->node, ways->verdict, ways->length);
     *ways = (struct ways){0};
 }
 
@@ -69,40 +65,6 @@ void ways_begin(struct ways *ways, int32_t from)
     }
 }
 
-/* Whether the first of two comes earlier: of equal lengths, the lower node. */
-static bool is_shorter(const struct way_end *a, const struct way_end *b)
-{
-    return a->length < b->length || (a->length == b->length && a->node < b->node);
-}
-
-static enum status push(struct ways *ways, double length, int32_t node, struct error *error)
-{
-    RETURN_IF_ERROR(GROW_ARRAY(&ways->queue, ways->queued + 1, &ways->capacity, error));
-    struct way_end end = {.length = length, .node = node};
-    int64_t at = ways->queued++;
-    for (; at > 0 && is_shorter(&end, &ways->queue[(at - 1) / 2]); at = (at - 1) / 2) {
-        ways->queue[at] = ways->queue[(at - 1) / 2];
-    }
-    ways->queue[at] = end;
-    return STATUS_OK;
-}
-
-static struct way_end pop(struct ways *ways)
-{
-    struct way_end first = ways->queue[0], last = ways->queue[--ways->queued];
-    int64_t at = 0;
-    for (int64_t child = 1; child < ways->queued; child = 2 * at + 1) {
-        child += child + 1 < ways->queued && is_shorter(&ways->queue[child + 1], &ways->queue[child]);
-        if (!is_shorter(&ways->queue[child], &last)) {
-            break;
-        }
-        ways->queue[at] = ways->queue[child];
-        at = child;
-    }
-    ways->queue[at] = last;
-    return first;
-}
-
 /* Shortest ways along edges from ways->from, up to that length (Dijkstra 1959). */
 static enum status search(struct ways *ways, double limit, struct error *error)
 {
@@ -112,11 +74,11 @@ static enum status search(struct ways *ways, double limit, struct error *error)
         ways->length[n] = INFINITY;
     }
     ways->searched = limit;
-    ways->queued = 0;
+    ways->queue.count = 0;
     ways->length[ways->from] = 0.0;
-    RETURN_IF_ERROR(push(ways, 0.0, ways->from, error));
-    while (ways->queued > 0) {
-        struct way_end end = pop(ways);
+    RETURN_IF_ERROR(queue_push(&ways->queue, 0.0, ways->from, error));
+    while (ways->queue.count > 0) {
+        struct way_end end = queue_pop(&ways->queue);
         for (int64_t s = reach->star_ptr[end.node];
              end.length <= ways->length[end.node] && s < reach->star_ptr[end.node + 1]; s++) {
             for (int k = 0; k <= dim; k++) {
@@ -125,7 +87,7 @@ static enum status search(struct ways *ways, double limit, struct error *error)
                                                              reach->cells.x + (int64_t)next * dim);
                 if (length < ways->length[next] && length <= limit) {
                     ways->length[next] = length;
-                    RETURN_IF_ERROR(push(ways, length, next, error));
+                    RETURN_IF_ERROR(queue_push(&ways->queue, length, next, error));
                 }
             }
         }

@@ -8,6 +8,7 @@
 #define APPROX_WAYS_H
 
 #include "approx/reach.h"
+#include "base/queue.h"
 
 enum way_verdict { WAY_UNKNOWN, WAY_GOOD, WAY_NONE };
 
@@ -20,8 +21,7 @@ struct ways {
     int32_t from;     /* -1: none yet */
     double searched;  /* ways from there are known up to this length, m; negative: none */
     double *length;   /* node_count: their lengths, infinite beyond */
-    int64_t queued, capacity;
-    struct way_end *queue; /* a heap, the shortest first */
+    struct queue queue;
 };
 
 /* place[place_count * stride], the first dim of each row, in units of `unit` m. The cells must outlive this.

@@ -3,6 +3,8 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/processor.h"
+#include "base/queue.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,66 +13,107 @@
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
 static const double reach = 1.5;
+/* A way may be so many times as long as the straight one, as in convex bodies all are, before it counts. */
+static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
-static double distance2(const struct coarse_space *coarse, int64_t c, int64_t node)
+/* share[..][c] = lengths of the shortest ways from a node, from neighbour to neighbour; infinite where there
+ * is none. */
+static enum status measure_ways(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
+                                int64_t from, struct queue *queue, struct error *error)
 {
-    double sum = 0.0;
-    for (int a = 0; a < coarse->dim; a++) {
-        double step = coarse->X[node * coarse->dim + a] - coarse->centre[a][c];
-        sum += step * step;
-    }
-    return sum;
-}
-
-/* Centres: nodes, each the farthest from those before it. Sets the radius. */
-static enum status pick_centres(struct coarse_space *coarse, struct error *error)
-{
-    enum status status;
-    double *least2 = NULL;
-    int64_t next = 0;
-    TRY(NEW_ARRAY(&least2, coarse->node_count, error));
+    int dim = coarse->dim;
+    of_centres *length = coarse->share;
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        least2[n] = INFINITY;
+        length[n][c] = INFINITY;
     }
-    for (int64_t c = 0; c < coarse->centre_count; c++) {
-        for (int a = 0; a < coarse->dim; a++) {
-            coarse->centre[a][c] = coarse->X[next * coarse->dim + a];
+    length[from][c] = 0.0;
+    RETURN_IF_ERROR(queue_push(queue, 0.0, (int32_t)from, error));
+    while (queue->count > 0) {
+        struct way_end end = queue_pop(queue);
+        int64_t last = end.length > length[end.node][c] ? 0 : neighbours->ptr[end.node + 1];
+        for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
+            int32_t next = neighbours->idx[i];
+            double way = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
+                                                      coarse->X + (int64_t)next * dim);
+            if (way < length[next][c]) {
+                length[next][c] = way;
+                RETURN_IF_ERROR(queue_push(queue, way, next, error));
+            }
         }
-        for (int64_t n = 0; n < coarse->node_count; n++) {
-            least2[n] = fmin(least2[n], distance2(coarse, c, n));
-        }
-        for (int64_t n = 0; n < coarse->node_count; n++) {
-            next = least2[n] > least2[next] ? n : next;
-        }
-    }
-    coarse->radius = reach * sqrt(least2[next]);
-done:
-    free(least2);
-    return status;
-}
-
-/* Quartic spline of the distance of a node from centre c. */
-static double weight_of(const struct coarse_space *coarse, int64_t c, int64_t node)
-{
-    double q = sqrt(distance2(coarse, c, node)) / coarse->radius, q2 = q * q;
-    return q < 1.0 ? 1.0 + q2 * (-6.0 + q * (8.0 - 3.0 * q)) : 0.0;
-}
-
-static enum status share_unity(struct coarse_space *coarse, struct error *error)
-{
-    RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, coarse->node_count, error));
-    for (int64_t n = 0; n < coarse->node_count; n++) {
-        double sum = 0.0;
-        for (int64_t c = 0; c < coarse->centre_count; c++) {
-            sum += coarse->share[n][c] = weight_of(coarse, c, n);
-        }
-        coarse->share[n] /= sum;
     }
     return STATUS_OK;
 }
 
-enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
+/* share[..][c] = distances from node `from`, which becomes centre c. */
+static enum status add_centre(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
+                              int64_t from, struct queue *queue, struct error *error)
+{
+    int dim = coarse->dim;
+    const double *place = coarse->X + from * dim;
+    for (int a = 0; a < dim; a++) {
+        coarse->centre[a][c] = place[a];
+    }
+    if (neighbours != NULL) {
+        RETURN_IF_ERROR(measure_ways(coarse, neighbours, c, from, queue, error));
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double straight = vector_distance(dim, coarse->X + n * dim, place);
+        double way = neighbours != NULL ? coarse->share[n][c] / most_detour : 0.0;
+        coarse->share[n][c] = isfinite(way) ? fmax(straight, way) : straight;
+    }
+    return STATUS_OK;
+}
+
+/* Centres: nodes, each the farthest from those before it. Sets the radius; share = distances from the
+ * centres, m. */
+static enum status pick_centres(struct coarse_space *coarse, const struct neighbours *neighbours,
+                                struct error *error)
+{
+    enum status status;
+    struct queue queue = {0};
+    double *least = NULL;
+    int64_t next = 0;
+    TRY(NEW_ARRAY(&least, coarse->node_count, error));
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        least[n] = INFINITY;
+    }
+    for (int64_t c = 0; c < coarse->centre_count; c++) {
+        TRY(add_centre(coarse, neighbours, c, next, &queue, error));
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            least[n] = fmin(least[n], coarse->share[n][c]);
+        }
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            next = least[n] > least[next] ? n : next;
+        }
+    }
+    coarse->radius = reach * least[next];
+done:
+    queue_free(&queue);
+    free(least);
+    return status;
+}
+
+/* Quartic spline of a distance. */
+static double weight_at(const struct coarse_space *coarse, double distance)
+{
+    double q = distance / coarse->radius, q2 = q * q;
+    return q < 1.0 ? 1.0 + q2 * (-6.0 + q * (8.0 - 3.0 * q)) : 0.0;
+}
+
+static void share_unity(struct coarse_space *coarse)
+{
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double sum = 0.0;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            sum += coarse->share[n][c] = weight_at(coarse, coarse->share[n][c]);
+        }
+        coarse->share[n] /= sum;
+    }
+}
+
+enum status coarse_space_build(int dim, int64_t node_count, const double *X,
+                               const struct neighbours *neighbours, int64_t centre_count,
                                struct coarse_space *coarse, struct error *error)
 {
     enum status status = STATUS_OK;
@@ -80,8 +123,9 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X, int
                                     .centre_count = centre_count,
                                     .count = centre_count * (dim + 1)};
     if (centre_count > 0) {
-        TRY(pick_centres(coarse, error));
-        TRY(share_unity(coarse, error));
+        TRY(NEW_ARRAY(&coarse->share, node_count, error));
+        TRY(pick_centres(coarse, neighbours, error));
+        share_unity(coarse);
     }
 done:
     if (status != STATUS_OK) {

@@ -1,10 +1,14 @@
 /* The coarse space of the preconditioner, equation (25) of lib/README.md: a partition of unity times the
  * linear polynomials. A few centres, nodes far from each other, have shares that sum to one (Shepard), by
  * their distance; each share is a field, and so is its product with each coordinate. Linear fields are
- * contained exactly. The construction works on any cloud, however thin. */
+ * contained exactly. The construction works on any cloud, however thin.
+ *
+ * The distance is the straight one, or half of the shortest way from neighbour to neighbour where that is
+ * more: the two lips of a slit are far from each other. */
 #ifndef SOLID_COARSE_SPACE_H
 #define SOLID_COARSE_SPACE_H
 
+#include "approx/shape.h"
 #include "base/status.h"
 
 #include <stdint.h>
@@ -27,8 +31,10 @@ struct coarse_space {
     of_centres *share;    /* node_count: sum 1 */
 };
 
-/* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. */
-MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const double *X, int64_t centre_count,
+/* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. `neighbours` of each node; NULL: all
+ * distances are straight, as they are between bodies. Errors: STATUS_SYSTEM (memory). */
+MUST_CHECK enum status coarse_space_build(int dim, int64_t node_count, const double *X,
+                                          const struct neighbours *neighbours, int64_t centre_count,
                                           struct coarse_space *coarse, struct error *error);
 void coarse_space_free(struct coarse_space *coarse);
 

@@ -50,7 +50,7 @@ static enum status compare(const struct assembly *input, const struct nodal_cons
     }
     point_text(input->cells.dim, input->cells.x + (int64_t)second->node * input->cells.dim, place);
     return fail(error, STATUS_INPUT,
-                "%s: node %d at %s is prescribed twice: %g m here, %g m in [displacement %s]",
+                "%s: node %d at %s is prescribed twice: %.10g m here, %.10g m in [displacement %s]",
                 input->conditions[second->condition].where, second->node, place, second->value, first->value,
                 input->conditions[first->condition].name);
 }

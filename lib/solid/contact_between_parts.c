@@ -11,7 +11,7 @@ void contact_between_take(struct contact *contact)
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
         const struct between_view *here = &between->view[p];
         if (contact->view[p].searched) {
-            between->taken_facet[p] = here->led ? 0 : here->facet + 1;
+            between->taken_facet[p] = here->facet + 1;
             memcpy(between->taken_weight + p * 3, here->weight, sizeof here->weight);
         }
     }

@@ -70,8 +70,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     }
     TRY(NEW_ARRAY(&p->mass, system->node_count, error));
     TRY(NEW_ARRAY(&p->stiffness, system->node_count, error));
-    TRY(coarse_space_build(system->dim, system->node_count, system->X, coarse ? centre_count(system) : 0,
-                           &p->coarse, error));
+    TRY(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
+                           coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
     cells = p->size * p->size;
     TRY(NEW_ARRAY(&p->active, p->contact_node_count, error));

@@ -33,7 +33,7 @@ static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count
     for (int64_t n = 0; n < node_count; n++) {
         cloud.X[n * dim] += 5.0 * cloud.X[n * dim + 1]; /* slender, so that some shares vanish */
     }
-    GOOD(coarse_space_build(dim, node_count, cloud.X, centre_count, &cloud.coarse, &error));
+    GOOD(coarse_space_build(dim, node_count, cloud.X, NULL, centre_count, &cloud.coarse, &error));
     assert_int_equal(cloud.coarse.count, centre_count * (dim + 1));
     cloud.v = numbers(cloud.size, -1.0, 1.0, &random);
     cloud.weight = numbers(node_count, 0.5, 2.0, &random);
@@ -152,6 +152,55 @@ TEST(linear_fields)
         }
         free(u);
         release(&cloud);
+    }
+}
+
+/* A ring of nodes with a slit, each with its neighbours, and `alone` nodes behind it without any. */
+static void make_ring(int64_t ring, int64_t alone, double *X, int64_t *ptr, int32_t *idx)
+{
+    int64_t count = 0;
+    for (int64_t n = 0; n < ring + alone; n++) {
+        double angle = 6.28 * (double)n / (double)ring;
+        X[2 * n] = n < ring ? cos(angle) : 2.0 + 0.1 * (double)(n - ring);
+        X[2 * n + 1] = n < ring ? sin(angle) : 0.0;
+        ptr[n] = count;
+        for (int64_t next = n - 2; next <= n + 2 && n < ring; next++) {
+            if (next >= 0 && next < ring) {
+                idx[count++] = (int32_t)next;
+            }
+        }
+    }
+    ptr[ring + alone] = count;
+}
+
+/* What one end of a ring with a slit feels the other does not; where there is no way distances are straight.
+ */
+TEST(ways)
+{
+    enum { RING = 200, ALONE = 5, ALL = RING + ALONE };
+    double X[2 * ALL];
+    int64_t ptr[ALL + 1];
+    int32_t idx[5 * ALL];
+    struct neighbours neighbours = {.count = ALL, .ptr = ptr, .idx = idx};
+    make_ring(RING, ALONE, X, ptr, idx);
+    for (int with_ways = 0; with_ways < 2; with_ways++) {
+        struct coarse_space coarse;
+        struct error error;
+        GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, COARSE_MOST_CENTRES, &coarse,
+                                &error));
+        double both = 0.0;
+        for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
+            both += coarse.share[0][c] * coarse.share[RING - 1][c];
+        }
+        assert_true(with_ways ? both < 0.01 : both > 0.1);
+        for (int64_t n = 0; n < ALL; n++) {
+            double sum = 0.0;
+            for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
+                sum += coarse.share[n][c];
+            }
+            NEAR_TO(sum, 1.0, 1e-14);
+        }
+        coarse_space_free(&coarse);
     }
 }
 

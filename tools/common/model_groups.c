@@ -60,6 +60,9 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
+    if (stream_find(model->stream, "sets.ptr") == NULL) {
+        return fail(error, STATUS_INPUT, "%s: no node sets: run groups -n", label->where);
+    }
     TRY(stream_sets(model->stream, true, node_count, &sets, error));
     TRY(NEW_ARRAY(&wanted, sets.names.count, error));
     TRY(choose(label, names, "node set", &sets.names, wanted, error));

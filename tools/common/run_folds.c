@@ -261,17 +261,34 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     }
 }
 
-bool run_folds_let_touch(struct run *run)
+/* Whether parts of the boundary pass through each other, which contact stops. */
+static bool is_crossed(const struct run *run)
 {
     const struct run_folds *folds = &run->folds;
     const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
     enum fold_kind kind = spell->fold.kind;
-    char text[400];
-    bool between = run->scene->output.folds_allowed;
-    for (int64_t c = 0; c < run->scene->contact_count; c++) {
-        between = between || run->scene->contacts[c].against.count > 0;
+    return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN;
+}
+
+/* How many of the scene's contacts let parts of the boundary touch; `whole`: whether one of them lets all. */
+static int64_t count_touching(const struct scene *scene, bool *whole)
+{
+    int64_t count = 0;
+    *whole = false;
+    for (int64_t c = 0; c < scene->contact_count; c++) {
+        const struct name_list *facets = &scene->contacts[c].facets, *against = &scene->contacts[c].against;
+        count += against->count > 0;
+        *whole = *whole || (against->count > 0 && strcmp(against->names[0], "*") == 0 &&
+                            strcmp(facets->names[0], "*") == 0);
     }
-    if (between || !(kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN)) {
+    return count;
+}
+
+bool run_folds_let_touch(struct run *run)
+{
+    char text[400];
+    bool whole;
+    if (run->scene->output.folds_allowed || count_touching(run->scene, &whole) > 0 || !is_crossed(run)) {
         return false;
     }
     run_folds_describe(run, FOLDED, text, sizeof text);
@@ -285,6 +302,10 @@ void run_folds_judge(struct run *run)
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
     const char *remedy = "press less, refine there";
+    bool whole;
+    if (is_crossed(run) && count_touching(run->scene, &whole) > 0 && !whole) {
+        remedy = "let all of it touch (facets = *, against = *), press less, refine there";
+    }
     if (text[0] == '\0') {
         run_stability_describe(run, text, sizeof text);
         remedy = "press less, hold it there";

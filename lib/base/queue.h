@@ -1,0 +1,28 @@
+/* Ends of ways by their lengths, the shortest first: a binary heap, for the shortest ways through a graph
+ * (Dijkstra 1959). Zero-initialised it is empty. */
+#ifndef BASE_QUEUE_H
+#define BASE_QUEUE_H
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+struct way_end {
+    double length;
+    int32_t node;
+};
+
+struct queue {
+    int64_t count, capacity;
+    struct way_end *end;
+};
+
+/* Errors: STATUS_SYSTEM (memory). */
+MUST_CHECK enum status queue_push(struct queue *queue, double length, int32_t node, struct error *error);
+
+/* Takes the shortest one out, of equal lengths that of the lower node; count > 0. */
+struct way_end queue_pop(struct queue *queue);
+
+void queue_free(struct queue *queue);
+
+#endif
