@@ -5,6 +5,7 @@
 #include "base/vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Cosines between inward normals of faces: the angle between two faces is 180 degrees less that of the
  * normals. */
@@ -69,24 +70,25 @@ static enum status make(const struct labels *labels, const struct stuffing_optio
                         struct stuffing *stuffing, struct error *error)
 {
     struct lattice lattice;
-    bool *apart = NULL, *between = NULL;
-    double *dropped = NULL;
+    bool *between = NULL;
+    struct stuffing_kept kept = {0};
     enum status status;
     *stuffing = (struct stuffing){.dim = labels->dim};
     TRY(lattice_make(labels, options, &lattice, error));
     TRY(lattice_cut(&lattice, error));
     TRY(lattice_cells(&lattice, stuffing, &between, error));
     lattice_free(&lattice);
-    TRY(NEW_ARRAY(&dropped, labels->count, error));
-    TRY(stuffing_keep(options, between, stuffing, &apart, dropped, error));
-    if (stuffing->cell_count == 0) {
+    TRY(stuffing_keep(labels, options, between, stuffing, &kept, error));
+    if (stuffing->facet_count == 0) {
         TRY(fail(error, STATUS_INPUT, "spacing %g m: no lattice point lies in a label: smaller?",
                  options->spacing));
     }
-    TRY(stuffing_improve(labels, options, apart, dropped, stuffing, error));
+    TRY(stuffing_improve(labels, options, &kept, stuffing, error));
+    TRY(stuffing_drop(kept.wanted, stuffing, error));
 done:
     lattice_free(&lattice);
-    FREE_ALL(apart, between, dropped);
+    stuffing_kept_free(&kept);
+    free(between);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
     }

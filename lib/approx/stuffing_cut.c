@@ -17,21 +17,24 @@ static bool on_interface(const struct cutting *cutting, int32_t node)
     return node >= cutting->lattice->node_count || cutting->lattice->on[node];
 }
 
-/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle.
- */
+/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle,
+ * but of points that are all left out, too, so that gaps stay open. */
 static int32_t label_of(const struct cutting *cutting, const int32_t *node)
 {
-    int dim = cutting->lattice->dim;
+    const struct lattice *lattice = cutting->lattice;
+    int dim = lattice->dim;
+    bool left_out = true;
     double middle[3] = {0};
     for (int k = 0; k <= dim; k++) {
         if (!on_interface(cutting, node[k])) {
-            return cutting->lattice->label[node[k]];
+            return lattice->label[node[k]];
         }
+        left_out = left_out && node[k] < lattice->node_count && !lattice->keep[lattice->label[node[k]]];
         for (int d = 0; d < dim; d++) {
             middle[d] += cutting->x[(int64_t)node[k] * dim + d] / (dim + 1);
         }
     }
-    return labels_at(cutting->lattice->labels, middle);
+    return left_out ? lattice->label[node[0]] : labels_at(lattice->labels, middle);
 }
 
 static enum status append(struct cutting *cutting, const int32_t *node, struct error *error)
@@ -211,7 +214,7 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
     stuffing->x = cutting.x;
     stuffing->node_count = cutting.node_count;
     cutting.x = NULL;
-    TRY(stuffing_compact(stuffing, NULL, error));
+    TRY(stuffing_compact(stuffing, error));
 done:
     FREE_ALL(cutting.x, cutting.cut_node, cutting.cut_edge, cutting.second);
     *between = cutting.between;

@@ -40,12 +40,21 @@ double stuffing_score(const struct stuffing *stuffing, int64_t cell)
     return volume < 0 ? volume / product : 0;
 }
 
+double shaping_score(const struct shaping *shaping, int64_t cell)
+{
+    struct cells cells = stuffing_cells(shaping->stuffing);
+    if (!shaping->kept->wanted[cell] && cell_volume(&cells, cell) > 0) {
+        return INFINITY;
+    }
+    return stuffing_score(shaping->stuffing, cell);
+}
+
 double star_score(const struct shaping *shaping, int64_t node)
 {
     const struct stuffing_star *star = &shaping->star;
     double least = INFINITY;
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        least = fmin(least, stuffing_score(shaping->stuffing, star->cell[i]));
+        least = fmin(least, shaping_score(shaping, star->cell[i]));
     }
     return least;
 }
@@ -145,23 +154,24 @@ static void separate(const struct shaping *shaping)
 {
     const struct stuffing *stuffing = shaping->stuffing;
     const struct stuffing_star *star = &shaping->star;
-    const bool *apart = shaping->apart;
+    const bool *apart = shaping->kept->apart, *wanted = shaping->kept->wanted;
     int dim = stuffing->dim;
     double most = most_separation * labels_voxel(&shaping->labels);
     struct cells cells = stuffing_cells(stuffing);
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double target[3] = {0};
-        int64_t count = star->ptr[n + 1] - star->ptr[n];
+        int64_t count = 0;
         for (int64_t i = star->ptr[n]; i < star->ptr[n + 1] && apart[n]; i++) {
             double middle[3];
             cell_centroid(&cells, star->cell[i], middle);
-            for (int d = 0; d < dim; d++) {
-                target[d] += middle[d] / (double)count;
+            for (int d = 0; d < dim && wanted[star->cell[i]]; d++) {
+                target[d] += middle[d];
             }
+            count += wanted[star->cell[i]];
         }
         double square = 0;
         for (int d = 0; d < dim; d++) {
-            target[d] = separation * (target[d] - stuffing->x[n * dim + d]);
+            target[d] = separation * (target[d] / (double)count - stuffing->x[n * dim + d]);
             square += target[d] * target[d];
         }
         for (int d = 0; d < dim; d++) {
@@ -249,15 +259,14 @@ static void measure(const struct shaping *shaping)
 }
 
 enum status stuffing_improve(const struct labels *parts, const struct stuffing_options *options,
-                             const bool *apart, const double *dropped, struct stuffing *stuffing,
-                             struct error *error)
+                             const struct stuffing_kept *kept, struct stuffing *stuffing, struct error *error)
 {
     enum status status;
     struct shaping shaping = {
-        .parts = parts, .labels = *parts, .keep = options->keep, .apart = apart, .stuffing = stuffing};
+        .parts = parts, .labels = *parts, .keep = options->keep, .kept = kept, .stuffing = stuffing};
     TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
     TRY(stuffing_rims(parts, options, stuffing, &shaping.rim, error));
-    TRY(star_make(stuffing, options->whole, &shaping.star, error));
+    TRY(star_make(stuffing, kept->wanted, options->whole, &shaping.star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&shaping);
         stuffing_repair(&shaping, least_score, 0);
@@ -266,7 +275,7 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         settle(&shaping);
     }
-    TRY(stuffing_volumes(&shaping, options, dropped, error));
+    TRY(stuffing_volumes(&shaping, options, error));
     stuffing_repair(&shaping, last_score, last_slack * labels_voxel(parts));
     measure(&shaping);
 done:

@@ -22,8 +22,8 @@ static void add_label(struct stuffing_star *star, int64_t node, int32_t label)
     }
 }
 
-enum status star_make(const struct stuffing *stuffing, const int32_t *whole, struct stuffing_star *star,
-                      struct error *error)
+enum status star_make(const struct stuffing *stuffing, const bool *wanted, const int32_t *whole,
+                      struct stuffing_star *star, struct error *error)
 {
     enum status status;
     int corners = stuffing->dim + 1;
@@ -34,7 +34,9 @@ enum status star_make(const struct stuffing *stuffing, const int32_t *whole, str
     TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
     for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
         int32_t label = stuffing->label[i / corners];
-        add_label(star, stuffing->cell[i], whole != NULL ? whole[label] : label);
+        if (wanted == NULL || wanted[i / corners]) {
+            add_label(star, stuffing->cell[i], whole != NULL ? whole[label] : label);
+        }
     }
     for (int64_t i = 0; i < stuffing->facet_count * stuffing->dim; i++) {
         int32_t label = stuffing->side[2 * (i / stuffing->dim) + 1];
@@ -77,7 +79,7 @@ static int64_t find_facets(const struct stuffing_keeping *keeping, int32_t *face
     return count;
 }
 
-enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error *error)
+enum status stuffing_compact(struct stuffing *stuffing, struct error *error)
 {
     int dim = stuffing->dim, corners = dim + 1;
     int64_t slots = stuffing->cell_count * corners, nodes = 0;
@@ -89,9 +91,6 @@ enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         if (number[n] != 0) {
             memmove(stuffing->x + nodes * dim, stuffing->x + n * dim, (size_t)dim * sizeof *stuffing->x);
-            if (flag != NULL) {
-                flag[nodes] = flag[n];
-            }
             number[n] = (int32_t)nodes++;
         }
     }
@@ -106,21 +105,19 @@ enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error
     return STATUS_OK;
 }
 
-/* Drop the cells that are not wanted, and the nodes of none. */
-static enum status drop(struct stuffing_keeping *keeping, struct error *error)
+enum status stuffing_drop(const bool *wanted, struct stuffing *stuffing, struct error *error)
 {
-    struct stuffing *stuffing = keeping->stuffing;
     int corners = stuffing->dim + 1;
     int64_t cells = 0;
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        if (keeping->wanted[c]) {
+        if (wanted[c]) {
             memmove(stuffing->cell + cells * corners, stuffing->cell + c * corners,
                     (size_t)corners * sizeof *stuffing->cell);
             stuffing->label[cells++] = stuffing->label[c];
         }
     }
     stuffing->cell_count = cells;
-    return stuffing_compact(stuffing, keeping->apart, error);
+    return stuffing_compact(stuffing, error);
 }
 
 /* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the
@@ -178,8 +175,9 @@ static void keep_bodies(struct stuffing_keeping *keeping, bool largest_only)
     }
 }
 
-enum status stuffing_keep(const struct stuffing_options *options, const bool *between,
-                          struct stuffing *stuffing, bool **apart, double *dropped, struct error *error)
+enum status stuffing_keep(const struct labels *labels, const struct stuffing_options *options,
+                          const bool *between, struct stuffing *stuffing, struct stuffing_kept *kept,
+                          struct error *error)
 {
     enum status status;
     int dim = stuffing->dim;
@@ -188,14 +186,15 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     struct stuffing_star star = {0};
     struct stuffing_keeping keeping = {
         .stuffing = stuffing, .between = between, .cells = stuffing_cells(stuffing)};
-    *apart = NULL;
+    *kept = (struct stuffing_kept){0};
+    TRY(NEW_ARRAY(&kept->dropped, labels->count, error));
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));
     TRY(NEW_ARRAY(&keeping.group, count, error));
     TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
     TRY(NEW_ARRAY(&keeping.from, count, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
-    TRY(star_make(stuffing, NULL, &star, error));
+    TRY(star_make(stuffing, NULL, NULL, &star, error));
     for (int64_t c = 0; c < count; c++) {
         keeping.wanted[c] = options->keep[stuffing->label[c]];
         keeping.group[c] = -1;
@@ -203,7 +202,7 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     keep_bodies(&keeping, options->largest);
     for (int64_t c = 0; c < count; c++) {
         bool left_out = options->keep[stuffing->label[c]] && !keeping.wanted[c];
-        dropped[stuffing->label[c]] += left_out ? cell_volume(&keeping.cells, c) : 0;
+        kept->dropped[stuffing->label[c]] += left_out ? cell_volume(&keeping.cells, c) : 0;
         keeping.group[c] = -1;
     }
     stuffing_join(&keeping, &star);
@@ -219,11 +218,16 @@ enum status stuffing_keep(const struct stuffing_options *options, const bool *be
     TRY(NEW_ARRAY(&stuffing->facet, stuffing->facet_count * dim, error));
     TRY(NEW_ARRAY(&stuffing->side, stuffing->facet_count * 2, error));
     find_facets(&keeping, stuffing->facet, stuffing->side);
-    TRY(drop(&keeping, error));
-    *apart = keeping.apart;
-    keeping.apart = NULL;
 done:
+    kept->wanted = keeping.wanted;
+    kept->apart = keeping.apart;
     star_free(&star);
-    FREE_ALL(keeping.across, keeping.wanted, keeping.group, keeping.stack, keeping.from, keeping.apart);
+    FREE_ALL(keeping.across, keeping.group, keeping.stack, keeping.from);
     return status;
+}
+
+void stuffing_kept_free(struct stuffing_kept *kept)
+{
+    FREE_ALL(kept->wanted, kept->apart, kept->dropped);
+    *kept = (struct stuffing_kept){0};
 }

@@ -13,6 +13,8 @@ struct points {
     double spacing, low[3]; /* of the finest level */
     int64_t count[3], corners, total;
     uint16_t *label; /* total */
+    bool *near;      /* total: of a cell with a point of a label */
+    bool marking;    /* points near are marked, and no cells are made */
     int32_t *node;   /* total: number of the node, -1: not used */
     int64_t room;    /* numbers allocated in lattice->cell */
     struct error *error;
@@ -84,6 +86,7 @@ static enum status size_points(struct points *points, struct error *error)
 static enum status label_points(struct points *points, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&points->label, points->total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->near, points->total, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->node, points->total, error));
 #pragma omp parallel for schedule(static)
     for (int64_t p = 0; p < points->total; p++) {
@@ -97,16 +100,20 @@ static enum status label_points(struct points *points, struct error *error)
 
 /* ---- cells ---- */
 
-/* Append a cell of these points, unless all of them are outside. */
+/* Append a cell of these points, unless it is far outside. */
 static enum status add_cell(struct points *points, int64_t corner[4])
 {
     struct lattice *lattice = points->lattice;
     int corners = lattice->dim + 1;
-    bool outside = true;
+    bool labelled = false, near = false;
     for (int k = 0; k < corners; k++) {
-        outside = outside && points->label[corner[k]] == 0;
+        labelled = labelled || points->label[corner[k]] != 0;
+        near = near || points->near[corner[k]];
     }
-    if (outside) {
+    for (int k = 0; k < corners && points->marking && labelled; k++) {
+        points->near[corner[k]] = true;
+    }
+    if (points->marking || !near) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(
@@ -214,6 +221,9 @@ static enum status add_tetrahedra(struct points *points, const struct stuffing_o
                        &points->lattice->unsized, points->error));
     }
     TRY(octree_make(points->levels, cubes, wish, &octree, points->error));
+    points->marking = true;
+    TRY(octree_cells(&octree, add_tetrahedron, points));
+    points->marking = false;
     TRY(octree_cells(&octree, add_tetrahedron, points));
 done:
     octree_free(&octree);
@@ -288,10 +298,13 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
     TRY(count_levels(options, &points, error));
     TRY(size_points(&points, error));
     TRY(label_points(&points, error));
+    points.marking = labels->dim == 2;
     TRY(labels->dim == 3 ? add_tetrahedra(&points, options) : add_triangles(&points));
+    points.marking = false;
+    TRY(labels->dim == 3 ? STATUS_OK : add_triangles(&points));
     TRY(make_nodes(&points, error));
 done:
-    FREE_ALL(points.label, points.node);
+    FREE_ALL(points.label, points.near, points.node);
     if (status != STATUS_OK) {
         lattice_free(lattice);
     }

@@ -117,8 +117,9 @@ struct stuffing_star {
     uint16_t (*label)[STUFFING_MOST_LABELS];
     uint8_t *labels; /* node_count: labels that meet; 1: not on an interface */
 };
-/* With whole[] in place of each label; NULL: as they are. */
-MUST_CHECK enum status star_make(const struct stuffing *stuffing, const int32_t *whole,
+/* Labels are those of cells that are wanted[cell_count] and of facets, with whole[] in place of each; NULL:
+ * of all cells, as they are. */
+MUST_CHECK enum status star_make(const struct stuffing *stuffing, const bool *wanted, const int32_t *whole,
                                  struct stuffing_star *star, struct error *error);
 void star_free(struct stuffing_star *star);
 
@@ -133,16 +134,25 @@ MUST_CHECK enum status stuffing_rims(const struct labels *labels, const struct s
 MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
                                             struct labels *result, struct error *error);
 
-/* Keep the cells of labels that are wanted, without specks, join or cut apart what hangs together by nodes or
- * edges alone, and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces.
- * (*apart)[node_count], allocated: nodes that have others at the same place. dropped[labels]: the volume of
- * bodies that are left out is added, m3. */
-MUST_CHECK enum status stuffing_keep(const struct stuffing_options *options, const bool *between,
-                                     struct stuffing *stuffing, bool **apart, double *dropped,
-                                     struct error *error);
+/* Which cells make the body, and its boundary. */
+struct stuffing_kept {
+    bool *wanted;    /* cell_count: of the body; the others lie around it */
+    bool *apart;     /* node_count: nodes that have others at the same place */
+    double *dropped; /* labels->count: the volume of bodies that are left out, m3 */
+};
 
-/* Number the nodes anew, without those of no cell; flag[node_count], unless NULL, follows them. */
-MUST_CHECK enum status stuffing_compact(struct stuffing *stuffing, bool *flag, struct error *error);
+/* Choose the cells of labels that are wanted, without specks, join or cut apart what hangs together by nodes
+ * or edges alone, and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces. */
+MUST_CHECK enum status stuffing_keep(const struct labels *labels, const struct stuffing_options *options,
+                                     const bool *between, struct stuffing *stuffing,
+                                     struct stuffing_kept *kept, struct error *error);
+void stuffing_kept_free(struct stuffing_kept *kept);
+
+/* Drop the cells that are not wanted, and the nodes of none. */
+MUST_CHECK enum status stuffing_drop(const bool *wanted, struct stuffing *stuffing, struct error *error);
+
+/* Number the nodes anew, without those of no cell. */
+MUST_CHECK enum status stuffing_compact(struct stuffing *stuffing, struct error *error);
 
 /* The cells that are kept, and scratch. */
 struct stuffing_keeping {
@@ -165,25 +175,28 @@ void stuffing_join(struct stuffing_keeping *keeping, const struct stuffing_star 
 MUST_CHECK enum status stuffing_cut_apart(struct stuffing_keeping *keeping, const struct stuffing_star *star,
                                           struct error *error);
 
-/* A body whose nodes are moved. */
+/* A body whose nodes are moved. The cells around it are part of `stuffing`: as long as none of them is
+ * inverted, no wall of the body passes through another one. */
 struct shaping {
     const struct labels *parts; /* the labels, */
     struct labels labels;       /* and with the whole in place of its parts */
     const bool *keep;           /* labels.count: labels of the body */
-    const bool *apart;          /* nodes that have others at the same place */
+    const struct stuffing_kept *kept;
     struct stuffing *stuffing;
     struct stuffing_star star;
     uint16_t (*rim)[3]; /* stuffing_rims */
 };
 
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
- * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. */
+ * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. Of cells
+ * around the body no more is asked than that they are not. */
 double star_score(const struct shaping *shaping, int64_t node);
+double shaping_score(const struct shaping *shaping, int64_t cell);
 double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 
 /* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
- * nodes around it, but those of rims and those that are apart, out of the way: those of interfaces within
- * these. False, and all as it was, where that does not help. */
+ * nodes of the body around it, but those of rims and those that are apart, out of the way: those of
+ * interfaces within these. False, and all as it was, where that does not help. */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
 /* Move x onto the interface of the labels; false where there is none near. */
@@ -219,13 +232,13 @@ void stuffing_repair(const struct shaping *shaping, double least, double slack);
 /* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
  * poor cells into shape, and interfaces for the volumes of labels. */
 MUST_CHECK enum status stuffing_improve(const struct labels *labels, const struct stuffing_options *options,
-                                        const bool *apart, const double *dropped, struct stuffing *stuffing,
+                                        const struct stuffing_kept *kept, struct stuffing *stuffing,
                                         struct error *error);
 
-/* Correct the volumes of labels, those of their voxels less dropped[], by small moves of interfaces, without
- * the nodes that are apart. */
+/* Correct the volumes of labels, those of their voxels less what is dropped, by small moves of interfaces,
+ * without the nodes that are apart. */
 MUST_CHECK enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
-                                        const double *dropped, struct error *error);
+                                        struct error *error);
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(const struct shaping *shaping, int64_t node, const double target[]);

@@ -82,9 +82,9 @@ void stuffing_repair(const struct shaping *shaping, double least, double slack)
     for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
         improved = false;
         for (int64_t c = 0; c < stuffing->cell_count; c++) {
-            for (int k = 0; k <= stuffing->dim && stuffing_score(stuffing, c) < least; k++) {
+            for (int k = 0; k <= stuffing->dim && shaping_score(shaping, c) < least; k++) {
                 int64_t node = stuffing->cell[c * (stuffing->dim + 1) + k];
-                improved = search(shaping, slack, node) || improved;
+                improved = (shaping->star.labels[node] > 0 && search(shaping, slack, node)) || improved;
             }
         }
     }
@@ -110,7 +110,8 @@ static void find_room(const struct shaping *shaping, int64_t node, struct room *
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         for (int k = 0; k <= dim; k++) {
             int64_t other = stuffing->cell[(int64_t)star->cell[i] * (dim + 1) + k];
-            bool fixed = shaping->rim[other][0] != 0 || shaping->apart[other];
+            bool fixed = shaping->rim[other][0] != 0 || shaping->kept->apart[other] ||
+                         shaping->star.labels[other] == 0;
             bool listed = other == node || fixed || room->count == ROOM_MOST;
             for (int r = 0; r < room->count && !listed; r++) {
                 listed = room->node[r] == other;
@@ -133,25 +134,6 @@ static double room_score(const struct shaping *shaping, int64_t node, const stru
     return least;
 }
 
-/* Voxels by which a node on an interface gives way at most. */
-static const double most_room = 2.0;
-
-/* Whether nodes on interfaces have given way by no more than that: walls of a gap, which no cells keep apart,
- * must not pass through each other. */
-static bool stays_near(const struct shaping *shaping, const struct room *room)
-{
-    const struct stuffing *stuffing = shaping->stuffing;
-    int dim = stuffing->dim;
-    double most = most_room * labels_voxel(&shaping->labels);
-    for (int r = 0; r < room->count; r++) {
-        double moved = vector_distance(dim, stuffing->x + room->node[r] * dim, room->x[r]);
-        if (shaping->star.labels[room->node[r]] > 1 && moved > most) {
-            return false;
-        }
-    }
-    return true;
-}
-
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[])
 {
     struct stuffing *stuffing = shaping->stuffing;
@@ -168,7 +150,7 @@ bool star_make_room(const struct shaping *shaping, double least, int64_t node, c
                 (void)search(shaping, 0, room.node[r]);
             }
         }
-        if (room_score(shaping, node, &room) >= wanted && stays_near(shaping, &room)) {
+        if (room_score(shaping, node, &room) >= wanted) {
             return true;
         }
     }

@@ -28,21 +28,23 @@ struct volumes {
     double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
     double *pressure;     /* labels->count */
     double *matrix;       /* labels->count squared */
-    double *place;        /* nodes: on their interface, or where there is none near as they were */
+    bool *moves;          /* nodes: of interfaces that are near them */
+    double *place;        /* nodes: on their interface */
 };
 
 /* Gradients of the volumes of the labels at a node: one row for each label of its star. */
 static void node_gradients(const struct volumes *volumes, int64_t node, double G[STUFFING_MOST_LABELS][3])
 {
-    const struct stuffing_star *star = &volumes->shaping->star;
-    const struct stuffing *stuffing = volumes->shaping->stuffing;
+    const struct shaping *shaping = volumes->shaping;
+    const struct stuffing_star *star = &shaping->star;
+    const struct stuffing *stuffing = shaping->stuffing;
     int corners = stuffing->dim + 1;
     memset(G, 0, STUFFING_MOST_LABELS * sizeof *G);
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         double gradient[3];
         int64_t cell = star->cell[i];
         int32_t label = volumes->whole[stuffing->label[cell]];
-        int k = 0, row = 0;
+        int k = 0, row = shaping->kept->wanted[cell] ? 0 : star->labels[node];
         while (k < corners - 1 && stuffing->cell[cell * corners + k] != node) {
             k++;
         }
@@ -80,7 +82,9 @@ static bool find_pressures(struct volumes *volumes)
     memcpy(volumes->pressure, volumes->wanted, (size_t)count * sizeof(double));
     memset(volumes->matrix, 0, (size_t)count * (size_t)count * sizeof(double));
     for (int64_t c = 0; c < cells.count; c++) {
-        volumes->pressure[volumes->whole[stuffing->label[c]]] -= cell_volume(&cells, c);
+        if (volumes->shaping->kept->wanted[c]) {
+            volumes->pressure[volumes->whole[stuffing->label[c]]] -= cell_volume(&cells, c);
+        }
     }
     for (int32_t l = 0; l < count; l++) {
         volumes->pressure[l] = volumes->wanted[l] > 0 ? volumes->pressure[l] : 0;
@@ -89,7 +93,7 @@ static bool find_pressures(struct volumes *volumes)
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3];
         const uint16_t *label = star->label[n];
-        if (star->labels[n] < 2 || volumes->shaping->apart[n]) {
+        if (!volumes->moves[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -122,7 +126,7 @@ static void correct_volumes(struct volumes *volumes)
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double G[STUFFING_MOST_LABELS][3], target[3] = {0}, length = 0;
         const double *place = volumes->place + n * dim;
-        if (star->labels[n] < 2 || volumes->shaping->apart[n]) {
+        if (!volumes->moves[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -162,7 +166,7 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
 }
 
 enum status stuffing_volumes(const struct shaping *shaping, const struct stuffing_options *options,
-                             const double *dropped, struct error *error)
+                             struct error *error)
 {
     enum status status;
     const struct labels *labels = &shaping->labels;
@@ -175,23 +179,26 @@ enum status stuffing_volumes(const struct shaping *shaping, const struct stuffin
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
     TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
     TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
+    TRY(NEW_ARRAY(&volumes.moves, stuffing->node_count, error));
     TRY(NEW_ARRAY(&volumes.place, stuffing->node_count * stuffing->dim, error));
     memcpy(volumes.place, stuffing->x, (size_t)(stuffing->node_count * stuffing->dim) * sizeof(double));
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        if (shaping->star.labels[n] >= 2) {
-            (void)node_project(shaping, n, volumes.place + n * stuffing->dim);
-        }
+        const double *x = stuffing->x + n * stuffing->dim;
+        double *place = volumes.place + n * stuffing->dim;
+        volumes.moves[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
+                           node_project(shaping, n, place) &&
+                           vector_distance(stuffing->dim, place, x) <= most_offset * labels_voxel(labels);
     }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
         whole[l] = options->whole != NULL ? options->whole[l] : l;
-        volumes.wanted[whole[l]] += fmax(voxels[l] - dropped[l], 0);
+        volumes.wanted[whole[l]] += fmax(voxels[l] - shaping->kept->dropped[l], 0);
     }
     volumes.whole = whole;
     for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }
 done:
-    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.place);
+    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.moves, volumes.place);
     return status;
 }

@@ -61,6 +61,24 @@ static inline int shape_blobs(const struct shape_seeds *seeds, const double x[3]
     return label;
 }
 
+/* Regions of three labels in a ball, each where its random waves are the highest: gaps and necks of all
+ * widths. */
+static inline int shape_waves(const struct shape_seeds *seeds, const double x[3])
+{
+    double best = 1.2;
+    int label = 0;
+    for (int l = 1; l <= 3; l++) {
+        double value = 0;
+        for (int b = 10 * l; b < 10 * l + 10; b++) {
+            const double *wave = seeds->x[b];
+            value += cos(0.04 * (wave[0] * x[0] + wave[1] * x[1] + wave[2] * x[2]) + seeds->size[b]);
+        }
+        label = value > best ? l : label;
+        best = fmax(value, best);
+    }
+    return label;
+}
+
 /* The piece of an atlas: the nearest place. */
 static inline int shape_atlas(const struct shape_seeds *seeds, const double x[3])
 {
@@ -109,6 +127,9 @@ static inline int shape_label(const char *name, const struct shape_seeds *seeds,
     }
     if (strcmp(name, "blobs") == 0) {
         return shape_blobs(seeds, x);
+    }
+    if (strcmp(name, "waves") == 0) {
+        return r > 24 ? 0 : shape_waves(seeds, x);
     }
     return strcmp(name, "atlas") != 0 ? -1 : r > 24 ? 0 : shape_atlas(seeds, x);
 }
