@@ -158,6 +158,7 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
 
 /* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
 typedef of_centres coarse_amounts[4][3];
+typedef double eight_centres __attribute__((vector_size(64)));
 typedef double four_centres __attribute__((vector_size(32)));
 typedef double two_centres __attribute__((vector_size(16)));
 
@@ -192,11 +193,13 @@ KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t b
 /* By halves: in a fixed order, which costs few instructions. */
 KERNEL_INLINE double total(const of_centres *value)
 {
-    four_centres half = __builtin_shufflevector(*value, *value, 0, 1, 2, 3) +
-                        __builtin_shufflevector(*value, *value, 4, 5, 6, 7);
-    two_centres quarter =
-        __builtin_shufflevector(half, half, 0, 1) + __builtin_shufflevector(half, half, 2, 3);
-    return quarter[0] + quarter[1];
+    eight_centres half = __builtin_shufflevector(*value, *value, 0, 1, 2, 3, 4, 5, 6, 7) +
+                         __builtin_shufflevector(*value, *value, 8, 9, 10, 11, 12, 13, 14, 15);
+    four_centres quarter =
+        __builtin_shufflevector(half, half, 0, 1, 2, 3) + __builtin_shufflevector(half, half, 4, 5, 6, 7);
+    two_centres eighth =
+        __builtin_shufflevector(quarter, quarter, 0, 1) + __builtin_shufflevector(quarter, quarter, 2, 3);
+    return eighth[0] + eighth[1];
 }
 
 /* u += amount there. */

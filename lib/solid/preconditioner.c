@@ -8,16 +8,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes for each field at least: each field costs an evaluation for each direction at the begin. With twice
- * COARSE_MOST_CENTRES steps are no fewer. */
+/* Nodes for each field at least. */
 static const int64_t nodes_per_coarse_field = 8;
+/* Of the coarse space at most: each costs an evaluation at the begin, and when the body has stiffened. So
+ * there are up to 16 centres in two dimensions and 8 in three. */
+static const int64_t most_freedoms = 96;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
 {
-    int64_t count = system->node_count / (nodes_per_coarse_field * (system->dim + 1));
-    return count < COARSE_MOST_CENTRES ? count : COARSE_MOST_CENTRES;
+    int64_t fields = system->dim + 1, most = most_freedoms / (fields * system->dim);
+    int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    return count < most ? count : most;
 }
 
 /* L^-T Z of the scalar coarse fields, by rows. */
