@@ -138,8 +138,7 @@ void field_table_free(struct field_table *table)
 void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
                     const double *field, double *values)
 {
-    int threads = chunks_of(count, POINTS_FOR_THREAD).threads;
-#pragma omp parallel for schedule(static) num_threads(threads)
+#pragma omp parallel for schedule(static) num_threads(chunks_of(count, POINTS_FOR_THREAD).threads)
     for (int64_t p = 0; p < count; p++) {
         double *row = values + p * cols;
         for (int64_t c = 0; c < cols; c++) {

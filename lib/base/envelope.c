@@ -80,8 +80,8 @@ static void find_blocks(struct envelope *factor)
     factor->block_count = blocks;
 }
 
-/* Threads that are worth using for the rows from `begin` to before `end`. */
-static int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
+/* The threads that are worth using for the rows from `begin` to before `end`. */
+static inline int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
 {
     return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
 }
@@ -205,8 +205,7 @@ static void factor_row(struct envelope *factor, int64_t i, double least)
 /* The rows of L before `kept`; the others are dropped. */
 static void factor_rows(struct envelope *factor, int64_t kept, double least)
 {
-    int threads = threads_for(factor, 0, factor->n);
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
+#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, 0, factor->n))
     for (int64_t b = 0; b < factor->block_count; b++) {
         for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
             if (i < kept) {
@@ -369,8 +368,7 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
     int rank = ranks_rank(ranks);
     int64_t begin = ranks != NULL ? first[rank] : 0, end = ranks != NULL ? first[rank + 1] : factor->n;
     int64_t last = block_from(factor, end);
-    int threads = threads_for(factor, begin, end);
-#pragma omp parallel for schedule(static, 1) num_threads(threads)
+#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, begin, end))
     for (int64_t b = block_from(factor, begin); b < last; b++) {
         solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
     }
