@@ -87,7 +87,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     with 's/region = body/region = bdoy/'
     refused "region of a scene misspelt" 2 "no region 'bdoy'; present: body" 'mtled edited.scene table.mts'
     with 's/facets = ymax/nodes = corner/'
-    refused "node set absent" 2 "sets.ptr" 'mtled edited.scene table.mts'
+    refused "node set absent" 2 "no node sets: run groups -n" 'mtled edited.scene table.mts'
 }
 
 @test "fault 8: duplicate nodes, orphan nodes, tags with gaps" {

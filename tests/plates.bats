@@ -206,6 +206,27 @@ buckled() {
     [ ! -s said ]
 }
 
+@test "a side that goes through the support beside it is not let touch it: a plate beside the support is" {
+    cat > tilted.geo << END
+Mesh.MeshSizeMax = 3.5;
+Point(1) = {-50, 0, 0}; Point(2) = {50, 0, 0}; Point(3) = {50, 60, 0}; Point(4) = {-50, 60, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
+Physical Surface("body") = {1}; Physical Curve("ymin") = {1}; Physical Curve("sides") = {2, 4}; Physical Curve("ymax") = {3};
+END
+    gmsh -v 1 -2 tilted.geo -o tilted.msh
+    nodes -u mm tilted.msh | shapefn > tilted.mts 2> note
+    printf -- '-0.295 0.017\n0.295 0.121\n' > tilted.tsv
+    printf -- '-1 0\n1 0\n' > base.tsv
+    { block quasi-static && printf '[displacement bonded]\nfacets = ymin\ncomponents = 0, 0\n' &&
+        printf '[contact plate]\nfacets = ymax, sides\nrigid = tilted.tsv\nunit = m\nside = right\ntranslation = 0, -0.03\ncurve = linear\n' ; } |
+        sed 's/^nu = .*/nu = 0.49/' > tilted.scene
+    refused 1 ': let a rigid surface beside the support stop it, ' mtled tilted.scene tilted.mts
+    [[ $stderr != *"once more"* ]]
+    { cat tilted.scene && printf '[contact base]\nfacets = sides\nrigid = base.tsv\nunit = m\nside = left\n' ; } > base.scene
+    mtled base.scene tilted.mts > u.dat 2> said
+    [ ! -s said ]
+}
+
 @test "what was seen of a fold outlasts an interruption" {
     cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
     crushed 'folds = allowed' > fold.scene

@@ -1,5 +1,5 @@
 /* Ends of ways by their lengths, the shortest first: a binary heap, for the shortest ways through a graph
- * (Dijkstra 1959). Zero-initialised it is empty. */
+ * (Dijkstra's algorithm). Zero-initialised it is empty. */
 #ifndef BASE_QUEUE_H
 #define BASE_QUEUE_H
 

@@ -284,11 +284,22 @@ static int64_t count_touching(const struct scene *scene, bool *whole)
     return count;
 }
 
+/* Whether a free side has gone through a support and its plane, where a rigid surface would stop it. */
+static bool is_through_support(const struct run *run)
+{
+    const struct run_folds *folds = &run->folds;
+    const struct fold_spell *beyond = folds->now[NOTED].seen ? &folds->now[NOTED] : &folds->past[NOTED];
+    const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
+    return beyond->seen && beyond->fold.kind == FOLD_SUPPORT && spell->fold.kind == FOLD_CROSSING &&
+           (folds->held[spell->fold.facet[0]] || folds->held[spell->fold.facet[1]]);
+}
+
 bool run_folds_let_touch(struct run *run)
 {
     char text[400];
     bool whole;
-    if (run->scene->output.folds_allowed || count_touching(run->scene, &whole) > 0 || !is_crossed(run)) {
+    if (run->scene->output.folds_allowed || count_touching(run->scene, &whole) > 0 || !is_crossed(run) ||
+        is_through_support(run)) {
         return false;
     }
     run_folds_describe(run, FOLDED, text, sizeof text);
@@ -305,6 +316,9 @@ void run_folds_judge(struct run *run)
     bool whole;
     if (is_crossed(run) && count_touching(run->scene, &whole) > 0 && !whole) {
         remedy = "let all of it touch (facets = *, against = *), press less, refine there";
+    }
+    if (is_through_support(run)) {
+        remedy = "let a rigid surface beside the support stop it, press less, refine there";
     }
     if (text[0] == '\0') {
         run_stability_describe(run, text, sizeof text);
