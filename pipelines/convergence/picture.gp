@@ -1,7 +1,7 @@
 # The mean errors of convergence.tsv over the mean spacing, a panel for each case: gnuplot -e "data=...; cases=...; out=..."
-# Panels stand four in a row; a scheme that the table lacks is not in the legend.
-columns = words(cases) < 4 ? words(cases) : 4
-lines = (words(cases) + columns - 1) / columns
+# Panels stand three in a row, and the legend in the last one; a scheme that the table lacks is not in it.
+columns = words(cases) < 3 ? words(cases) + 1 : 3
+lines = (words(cases) + columns) / columns
 set terminal pngcairo size 420 * columns, 400 * lines + 60 font "DejaVu Sans,12"
 set output out
 set datafile separator "\t"
@@ -17,7 +17,7 @@ set logscale xy
 set format "%g"
 set xlabel "nodes to the power -1/2"
 set ylabel "mean error, mm"
-set key left top samplen 2
+unset key
 set grid
 set multiplot layout lines, columns
 do for [body in cases] {
@@ -25,4 +25,12 @@ do for [body in cases] {
     plot for [s in there] data \
         using (strcol(1) eq body && strcol(2) eq s ? $4 ** -0.5 : NaN):5 with linespoints pt 7 ps 0.9 lw 2 lc rgb colour(s) title name(s)
 }
+set key center samplen 3 spacing 1.5
+unset border
+unset tics
+unset title
+unset xlabel
+unset ylabel
+unset logscale
+plot [0:1] [0:1] for [s in there] NaN with linespoints pt 7 ps 0.9 lw 2 lc rgb colour(s) title name(s)
 unset multiplot
