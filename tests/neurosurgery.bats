@@ -26,9 +26,10 @@ setup() {
         END { exit !(share[3] > 0.9 && share[3] < 1.1 && share[2] > 0.5 && share[2] < 1.02 && share[1] > 0.97 && share[1] < 1.01) }' \
         "$at/craniotomy.labels.log"
     sample -p "$at/landmarks.tsv" -u mm "$at/craniotomy.scan.nii.gz" > values
-    # What warp says is what the text of the example shows, but for the numbers, which are those of a finer lattice.
+    # What warp says is what the text of the example shows, but for the numbers, which are those of a finer lattice, where no cell is inverted.
     warp -v --field "$top/examples/neurosurgery/colin27_labels.nii.gz" "$at/craniotomy.u.dat" 2> said > field.nii.gz
-    words() { grep '^warp: ' "$1" | sed -E 's/[0-9][0-9.e+-]*/#/g'; }
+    awk '/cells are folded/ { n = $2 } END { exit n > 2 }' said
+    words() { sed -E '/^warp: /!d; /folded|two parts/d; s/[0-9][0-9.e+-]*/#/g' "$1"; }
     [ "$(words said | wc -l)" -eq 3 ]
     diff <(words "$top/examples/neurosurgery/README.md") <(words said)
 }
