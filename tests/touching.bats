@@ -151,7 +151,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
         shapefn > ring.mts 2> note
     block quasi-static | sed '/^region/s/=.*/= body/; s/^nu = .*/nu = 0.49/' > bent.scene
     printf '[displacement back]\nfacets = back\ncomponents = 0, 0\n' >> bent.scene
-    printf '[pressure round]\nfacets = outer\nvalue = -5\n[solver]\nmax_steps = 1000\n' >> bent.scene
+    printf '[pressure round]\nfacets = outer\nvalue = -5\n[solver]\nmax_steps = 1500\n' >> bent.scene
     mtled bent.scene ring.mts > u.dat
     { sed 's/^value = .*/value = 5/' bent.scene; printf '[contact ends]\nfacets = ends\nagainst = ends\n[output]\ngaps = yes\n'; } > closed.scene
     mtled closed.scene ring.mts > u.dat
