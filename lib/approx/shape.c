@@ -1,6 +1,7 @@
 #include "approx/shape.h"
 
 #include "approx/quadrature.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -48,21 +49,6 @@ static enum status find_images(int dim, const struct neighbours *lists, int64_t 
     return STATUS_OK;
 }
 
-/* The first neighbour from `pair` on that is seen around a corner. */
-static int64_t first_around(const struct around *around, int64_t pair)
-{
-    int64_t low = 0, high = around->count;
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-        if (around->pair[middle] < pair) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
 /* What a table is made of, and its points. */
 struct tabulation {
     const struct mls *mls;
@@ -79,7 +65,8 @@ static enum status tabulate(const struct tabulation *table, int64_t first, int64
     enum status status = STATUS_OK;
     const struct neighbours *lists = table->lists;
     struct mls_work work = {0};
-    struct images images = {.next = first_around(&lists->around, lists->ptr[first])};
+    const struct around *around = &lists->around; /* neighbours that are seen around corners */
+    struct images images = {.next = first_from(around->pair, 0, around->count, lists->ptr[first])};
     int dim = table->mls->dim;
     for (int64_t p = first; p < last; p++) {
         enum mls_verdict verdict;

@@ -1,6 +1,7 @@
 #include "base/envelope.h"
 
 #include "base/chunks.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -84,21 +85,6 @@ static void find_blocks(struct envelope *factor)
 static inline int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
 {
     return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
-}
-
-/* The first block from place i on. */
-static int64_t block_from(const struct envelope *factor, int64_t i)
-{
-    int64_t low = 0, high = factor->block_count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (factor->block[middle] < i) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
 }
 
 /* The envelope of the reordered matrix, filled with its lower triangle. */
@@ -367,9 +353,9 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
     double *y = factor->scratch;
     int rank = ranks_rank(ranks);
     int64_t begin = ranks != NULL ? first[rank] : 0, end = ranks != NULL ? first[rank + 1] : factor->n;
-    int64_t last = block_from(factor, end);
+    int64_t last = first_from(factor->block, 0, factor->block_count, end);
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, begin, end))
-    for (int64_t b = block_from(factor, begin); b < last; b++) {
+    for (int64_t b = first_from(factor->block, 0, last, begin); b < last; b++) {
         solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
     }
     ranks_gather(ranks, y, sizeof *y, first);

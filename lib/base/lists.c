@@ -32,6 +32,19 @@ int compare_numbers(int count, const int32_t *a, const int32_t *b)
     return k == count ? 0 : a[k] < b[k] ? -1 : 1;
 }
 
+int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least)
+{
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (ascending[middle] < least) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 int compare_placed(const void *left, const void *right)
 {
     const struct placed *a = left, *b = right;

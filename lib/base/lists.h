@@ -17,6 +17,10 @@ MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, 
  */
 int compare_numbers(int count, const int32_t *a, const int32_t *b);
 
+/* The first place from `low` on whose number is not below `least`, of ascending[low .. high); `high` where
+ * there is none. */
+int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least);
+
 /* An item by its place along a line. */
 struct placed {
     double place;

@@ -1,6 +1,7 @@
 #include "base/sparse.h"
 
 #include "base/chunks.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -91,15 +92,7 @@ static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last
         return t == 0 ? first : last;
     }
     int64_t wanted = matrix->ptr[first] + (matrix->ptr[last] - matrix->ptr[first]) * t / threads;
-    while (first < last) {
-        int64_t middle = (first + last) / 2;
-        if (matrix->ptr[middle] < wanted) {
-            first = middle + 1;
-        } else {
-            last = middle;
-        }
-    }
-    return first;
+    return first_from(matrix->ptr, first, last, wanted);
 }
 
 static void share_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, bool add,

@@ -2,18 +2,16 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
-#include "base/sparse.h"
 #include "base/vector.h"
 #include "solid/inverse_factor.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
  * that is independent of the others is at most a hundred-thousandth of it. */
 static const double least_pivot = 1e-10;
-
-enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -203,21 +201,14 @@ done:
     return status;
 }
 
-/* Of several processes: what each does, of about the same work. */
-static enum status share(struct constraint *constraint, struct error *error)
+/* Of several processes: what each does, of about the same work, and the nodes that its rows of L^T need. */
+static enum status share(struct constraint *constraint, bool **wanted, struct error *error)
 {
     enum status status;
     const struct constraint_rows *rows = constraint->rows;
     const struct ranks *ranks = constraint->inverse->ranks;
     double *work = NULL;
-    bool *wanted = NULL;
-    if (ranks == NULL) {
-        return constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass,
-                                      NULL, &constraint->nodes, error);
-    }
-    TRY(inverse_factor_wanted(constraint->inverse, &wanted, error));
-    TRY(constraint_nodes_build(constraint->inverse_rows, constraint->node_count, constraint->mass, wanted,
-                               &constraint->nodes, error));
+    TRY(inverse_factor_wanted(constraint->inverse, wanted, error));
     TRY(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
@@ -230,7 +221,7 @@ static enum status share(struct constraint *constraint, struct error *error)
     TRY(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
     constraint->ranks = ranks;
 done:
-    FREE_ALL(work, wanted);
+    free(work);
     return status;
 }
 
@@ -238,7 +229,8 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
                              const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
-    enum status status = STATUS_OK;
+    enum status status;
+    bool *wanted = NULL;
     *constraint = (struct constraint){.node_count = node_count,
                                       .rows = rows,
                                       .mass = mass,
@@ -253,9 +245,10 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         rows = inverse_rows;
     }
     TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    TRY(inverse != NULL ? share(constraint, error)
-                        : constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error));
+    TRY(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error) : STATUS_OK);
+    TRY(constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error));
 done:
+    free(wanted);
     if (status != STATUS_OK) {
         constraint_free(constraint);
     }

@@ -13,6 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { LISTS_FOR_THREAD = 500 }; /* of rows; see chunks_of */
+
 /* Rows as they are collected: row r prescribes direction . (sum_j phi_j u_j) = target * factor(curve, time),
  * where the sum is over the pairs of a list. Rows that follow each other share a list where they can: an
  * average that is held along several directions is taken once. */

@@ -3,8 +3,6 @@
 #include "base/memory.h"
 #include "solid/constraint.h"
 
-enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
-
 /* Drop the nodes that are not wanted, and divide by the mass. */
 static void weigh(struct sparse *lists, const double *mass, const bool *wanted)
 {

@@ -144,12 +144,9 @@ static void measure_heights(const struct facets *facets, struct heights *heights
         heights[p] = (struct heights){.least = INFINITY, .most = -INFINITY};
     }
     for (int64_t a = 0; a < averages->count; a++) {
-        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1] && !facets->rim[a]; s++) {
             int64_t p = averages->sample_point[s];
             double height = height_above(facets, a, points->position + p * facets->dim);
-            if (facets->rim[a]) {
-                continue;
-            }
             heights[p].count++;
             heights[p].least = fmin(heights[p].least, height);
             heights[p].most = fmax(heights[p].most, height);

@@ -192,8 +192,8 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
         return;
     }
     constraint_solve(constraint, multiplier);
-    int threads = chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads;
-#pragma omp parallel for schedule(static) num_threads(threads)
+#pragma omp parallel for schedule(static)                                                                    \
+    num_threads(chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads)
     for (int64_t r = 0; r < rows->count; r++) {
         const double *held = p->held + r * p->size;
         double sum = multiplier[r];
@@ -238,8 +238,8 @@ static void restrict_move(const struct preconditioner *p, const double *moved, d
     }
     const struct ranks *ranks = p->factor.ranks;
     const int64_t *first = p->field_first + ranks_rank(ranks);
-    int threads = chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads;
-#pragma omp parallel for schedule(static) num_threads(threads)
+#pragma omp parallel for schedule(static)                                                                    \
+    num_threads(chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads)
     for (int64_t k = first[0]; k < first[1]; k++) {
         const double *field = p->inverse_fields + k * nodes;
         double sum[3] = {0.0, 0.0, 0.0};

@@ -148,8 +148,7 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
                                struct error *error)
 {
     int64_t bad = rows;
-    int threads = chunks_of(rows, ROWS_FOR_THREAD).threads;
-#pragma omp parallel for schedule(static) num_threads(threads) reduction(min : bad)
+#pragma omp parallel for reduction(min : bad) num_threads(chunks_of(rows, ROWS_FOR_THREAD).threads)
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
         if (table->reader != NULL && table->reader[r] != table->rank) {

@@ -6,8 +6,6 @@
 
 #include <stdlib.h>
 
-enum { LISTS_FOR_THREAD = 500 }; /* see chunks_of */
-
 enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                   const double *direction, double target, int32_t curve, int32_t section,
                                   int32_t node, double stiffness, struct error *error)

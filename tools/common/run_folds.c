@@ -202,10 +202,16 @@ enum status run_folds_state(struct run *run, const struct state *state, struct e
     return spell_state(&run->folds.past[NOTED], "noted.past", state, error);
 }
 
-void run_folds_describe(const struct run *run, int which, char *text, size_t size)
+/* That of now, or else that of before. */
+static const struct fold_spell *spell_of(const struct run *run, int which)
 {
     const struct run_folds *folds = &run->folds;
-    const struct fold_spell *spell = folds->now[which].seen ? &folds->now[which] : &folds->past[which];
+    return folds->now[which].seen ? &folds->now[which] : &folds->past[which];
+}
+
+void run_folds_describe(const struct run *run, int which, char *text, size_t size)
+{
+    const struct fold_spell *spell = spell_of(run, which);
     bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
     char place[96], one[64], other[64], when[96];
     text[0] = '\0';
@@ -264,9 +270,7 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
 /* Whether parts of the boundary pass through each other, which contact stops. */
 static bool is_crossed(const struct run *run)
 {
-    const struct run_folds *folds = &run->folds;
-    const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
-    enum fold_kind kind = spell->fold.kind;
+    enum fold_kind kind = spell_of(run, FOLDED)->fold.kind;
     return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN;
 }
 
@@ -287,11 +291,10 @@ static int64_t count_touching(const struct scene *scene, bool *whole)
 /* Whether a free side has gone through a support and its plane, where a rigid surface would stop it. */
 static bool is_through_support(const struct run *run)
 {
-    const struct run_folds *folds = &run->folds;
-    const struct fold_spell *beyond = folds->now[NOTED].seen ? &folds->now[NOTED] : &folds->past[NOTED];
-    const struct fold_spell *spell = folds->now[FOLDED].seen ? &folds->now[FOLDED] : &folds->past[FOLDED];
-    return beyond->seen && beyond->fold.kind == FOLD_SUPPORT && spell->fold.kind == FOLD_CROSSING &&
-           (folds->held[spell->fold.facet[0]] || folds->held[spell->fold.facet[1]]);
+    const struct fold *fold = &spell_of(run, FOLDED)->fold;
+    const bool *held = run->folds.held;
+    return spell_of(run, NOTED)->fold.kind == FOLD_SUPPORT && fold->kind == FOLD_CROSSING &&
+           (held[fold->facet[0]] || held[fold->facet[1]]);
 }
 
 bool run_folds_let_touch(struct run *run)
