@@ -52,6 +52,10 @@ report() {
     [ "$(report facets again)" = "$(report facets top)" ]
     [[ "$(report nodes rim)" == "36, "* ]]
     [[ "$(report nodes grown)" == "72, "* ]]
+    # cells and nodes shrink from the boundary of the body: 3 x 3 x 8 of 5 x 5 x 10 blocks of 6 cells, less the corners that touch it
+    groups -v -r 'core=all shrunk:1' -n 'inside=all shrunk:1' bare.mts 2> said | mts check
+    [[ "$(report nodes inside)" == "144, "*"box 0.02 0.02 0.02 to 0.08 0.08 0.18 m"* ]]
+    [[ "$(report region core)" == *"box 0.02 0.02 0.02 to 0.08 0.08 0.18 m"* ]]
     cloud -d 2 -k regular -n 6,11 --box 0,0.1,0,0.2 |
         groups -v -f left=plane:0,0,1,0 -f up=normal:0,1,10 -f long=side:1,30 -n half=half:0,0.1,0,1 2> said | mts check
     [ "$(report facets left)" = "10, length 0.2 m, box 0 0 to 0 0.2 m, mean normal -1 0" ]

@@ -168,8 +168,9 @@ static void invert(int64_t count, bool *chosen)
 
 /* Chosen items and nodes take in each other's neighbours, beginning with the nodes of the items or the items
  * of the nodes. */
-enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count, int rings,
-                        bool of_items, bool *chosen, struct error *error)
+enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
+                        int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,
+                        struct error *error)
 {
     bool *other;
     RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
@@ -180,6 +181,9 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
     for (int step = 0; step < 2 * abs(rings); step++) {
         if ((step % 2 == 0) == of_items) {
             mark_nodes(count, corners, item, items, nodes);
+            for (int64_t i = 0; i < edge_count && rings < 0; i++) {
+                nodes[edge[i]] = true;
+            }
         } else {
             mark_items(count, corners, item, nodes, items);
         }

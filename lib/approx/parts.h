@@ -30,8 +30,10 @@ MUST_CHECK enum status boundary_sides(const double *x, const struct faces *bound
 
 /* Grow a choice by `rings` rings of neighbours; with `rings` negative shrink it, by those of what is not
  * chosen. Of items, chosen[count]: neighbours have a node in common; of nodes, chosen[node_count]: an item.
- * item[count * corners] indexes node_count nodes. */
+ * item[count * corners] indexes node_count nodes. Beyond edge[edge_count], the nodes at the end of the items,
+ * nothing is chosen: a choice shrinks there, too. */
 MUST_CHECK enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
-                                   int rings, bool of_items, bool *chosen, struct error *error);
+                                   int64_t edge_count, const int32_t *edge, int rings, bool of_items,
+                                   bool *chosen, struct error *error);
 
 #endif

@@ -102,14 +102,27 @@ TEST(rings_grow_and_shrink)
     bool items[5] = {false, false, true, false, false};
     bool nodes[6] = {true};
     struct error error;
-    GOOD(choice_grow(5, 2, chain, 6, 1, true, items, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, 1, true, items, &error));
     assert_true(!items[0] && items[1] && items[2] && items[3] && !items[4]);
-    GOOD(choice_grow(5, 2, chain, 6, -1, true, items, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, -1, true, items, &error));
     assert_true(!items[0] && !items[1] && items[2] && !items[3] && !items[4]);
-    GOOD(choice_grow(5, 2, chain, 6, 2, false, nodes, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, 2, false, nodes, &error));
     assert_true(nodes[0] && nodes[1] && nodes[2] && !nodes[3]);
-    GOOD(choice_grow(5, 2, chain, 6, -1, false, nodes, &error));
+    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, -1, false, nodes, &error));
     assert_true(nodes[0] && nodes[1] && !nodes[2]);
+}
+
+TEST(rings_shrink_from_the_edge)
+{
+    const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5}, ends[] = {0, 5};
+    bool items[5] = {true, true, true, true, true}, nodes[6] = {true, true, true, true, true, true};
+    struct error error;
+    GOOD(choice_grow(5, 2, chain, 6, 2, ends, -1, true, items, &error));
+    assert_true(!items[0] && items[1] && items[3] && !items[4]);
+    GOOD(choice_grow(5, 2, chain, 6, 2, ends, -2, false, nodes, &error));
+    assert_true(!nodes[0] && !nodes[1] && nodes[2] && nodes[3] && !nodes[4] && !nodes[5]);
+    GOOD(choice_grow(5, 2, chain, 6, 2, ends, 1, false, nodes, &error));
+    assert_true(!nodes[0] && nodes[1] && nodes[4] && !nodes[5]);
 }
 
 RUN_TESTS(NULL, NULL)

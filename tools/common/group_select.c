@@ -43,8 +43,10 @@ static enum status grow(const struct group_body *body, enum group_kind kind, con
     const struct items *items = &body->items[kind == GROUP_NODES ? GROUP_REGION : kind];
     int64_t rings = 0;
     RETURN_IF_ERROR(parse_integer(strchr(word, ':') + 1, word, 1, 1000, &rings, error));
-    return choice_grow(items->count, items->corners, items->item, body->cells.node_count,
-                       word[0] == 's' ? -(int)rings : (int)rings, kind != GROUP_NODES, chosen, error);
+    int64_t edge_count = kind == GROUP_FACETS ? 0 : body->boundary.count * body->cells.dim;
+    return choice_grow(items->count, items->corners, items->item, body->cells.node_count, edge_count,
+                       body->boundary.node, word[0] == 's' ? -(int)rings : (int)rings, kind != GROUP_NODES,
+                       chosen, error);
 }
 
 /* Terms and words alternate; chosen[] is what they give from left to right. */
