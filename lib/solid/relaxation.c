@@ -15,6 +15,8 @@ static const double bulk_limit = 50.0;
 /* An error that stays below this is accepted where contacts act: points that go to and fro between facets
  * leave one. */
 static const double most_hovering = 1e-3;
+/* Sizes of the body: one that moves farther does not come to rest. */
+static const double most_sizes = 10.0;
 static const int64_t calm_steps = 20; /* after that was mended, before the next look */
 /* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
 static const int iterations = 1, iterations_loading = 2;
@@ -260,6 +262,10 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         r->converged_checks = 0;
     }
     relaxation_note_best(r);
+    if (r->largest_move > most_sizes * r->body_size + system_longest_way(r->system)) {
+        *outcome = RELAXATION_AWAY;
+        return true;
+    }
     bool round_off = *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200);
     bool hovering =
         r->system->contact_count > 0 && *error_now <= most_hovering && relaxation_stays(r, 20.0, 1000);

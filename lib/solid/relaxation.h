@@ -37,6 +37,7 @@ enum relaxation_outcome {
     RELAXATION_CONVERGED, /* report.error above the tolerance: as far as round-off admits */
     RELAXATION_TOO_MANY_STEPS,
     RELAXATION_STALLED,  /* the error no longer falls, well above round-off */
+    RELAXATION_AWAY,     /* a node is many sizes of the body farther than what is prescribed takes it */
     RELAXATION_INVERTED, /* J <= 0 or not a number at a point */
     RELAXATION_STOPPED   /* by the progress function */
 };

@@ -2,6 +2,10 @@
 
 #include "solid/relaxation.h"
 
+static const char beyond_limit[] =
+    "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
+    "a dynamic scene, or refine there; frames show up to which load it stands";
+
 /* A verdict other than converged ends the run: nothing half-done passes for a result. */
 static void judge(struct run *run, const struct relaxation_report *report)
 {
@@ -41,11 +45,18 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
+        /* The relaxation has gone back several times, and let the load grow more slowly each time. */
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: step %lld%s: integration point %lld at %s is inverted (J = %.3g), however slowly the load "
+            "grows: %s",
+            scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
+            report->least_jacobian, beyond_limit);
+    }
+    if (report->outcome == RELAXATION_AWAY) {
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld: integration point %lld at %s is inverted (J = %.3g): apply the load in "
-                 "more steps (ramp_steps > %lld), or a smaller one, or refine there",
-                 scene->path, (long long)report->steps, (long long)report->inverted_point, place,
-                 report->least_jacobian, (long long)report->ramp_steps);
+                 "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
+                 scene->path, (long long)report->steps, load, report->largest_move, beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
