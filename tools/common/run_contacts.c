@@ -1,4 +1,5 @@
-/* What a run tells of its contacts: those that the body's facets are too large for, and what gives way. */
+/* What a run tells of its contacts: those that the body's facets are too large for, and what gives way; and
+ * of prescribed displacements, where facets are too large for these. */
 #include "run.h"
 
 #include "solid/contact_patch.h"
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More than this part of a contact's force on patches that are less than three nodes across. */
+/* More than this part of a contact's force, or of the facets held, on patches less than three nodes across.
+ */
 static const double most_thin = 0.5;
 
 /* More than this part of the forces that is missing because contacts still give way. */
@@ -255,4 +257,80 @@ void run_contacts_judge(struct run *run, double slack, double share)
         judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
     }
     free(x);
+}
+
+/* core[node_count]: nodes inside what is held, all of whose faces on the boundary are; in 3D, those of facets
+ * with all nodes inside. */
+static enum status find_core(const struct run *run, bool **core, struct error *error)
+{
+    enum status status;
+    const struct assembly *input = &run->model->assembly;
+    const struct faces *boundary = &input->boundary;
+    int dim = run->scene->dim;
+    int64_t node_count = input->cells.node_count;
+    bool *held = NULL, *inside = NULL;
+    TRY(assembly_held_faces(input, 1, &held, error));
+    TRY(NEW_ARRAY(&inside, node_count, error));
+    TRY(NEW_ARRAY(core, node_count, error));
+    memset(inside, true, (size_t)node_count * sizeof *inside);
+    for (int64_t i = 0; i < boundary->count * dim; i++) {
+        inside[boundary->node[i]] = inside[boundary->node[i]] && held[i / dim];
+    }
+    for (int64_t f = 0; f < boundary->count; f++) {
+        const int32_t *node = boundary->node + f * dim;
+        bool all = dim == 2 || (inside[node[0]] && inside[node[1]] && inside[node[2]]);
+        for (int k = 0; k < dim; k++) {
+            (*core)[node[k]] = (*core)[node[k]] || (all && inside[node[k]]);
+        }
+    }
+done:
+    FREE_ALL(held, inside);
+    return status;
+}
+
+/* A condition most of whose facets are on patches that are too narrow to have such nodes. */
+static void note_narrow(const struct run *run, const struct condition *condition, const bool *core)
+{
+    const struct facet_set *set = &condition->facets;
+    int dim = run->scene->dim;
+    int64_t narrow = 0, at = 0;
+    char place[96];
+    for (int64_t f = 0; f < set->count; f++) {
+        bool any = false;
+        for (int k = 0; k < dim; k++) {
+            any = any || core[set->facet[f * dim + k]];
+        }
+        narrow += !any;
+        at = narrow == 1 && !any ? f : at;
+    }
+    if ((double)narrow > most_thin * (double)set->count) {
+        point_text(dim, run->model->assembly.cells.x + (int64_t)set->facet[at * dim] * dim, place);
+        tool_note(
+            run->tool,
+            "%s: [displacement %s]: %lld of its %lld facets, such as that at %s, are on patches of less than "
+            "%s facets across: the force may be %s too large: refine the body there",
+            run->scene->path, condition->name, (long long)narrow, (long long)set->count, place,
+            dim == 2 ? "two" : "three", dim == 2 ? "several percent" : "tens of percent");
+    }
+}
+
+void run_displacements_judge(const struct run *run)
+{
+    const struct assembly *input = &run->model->assembly;
+    bool *core = NULL;
+    if (!wants_forces(&run->scene->output)) {
+        return;
+    }
+    TOOL_TRY(run->tool, find_core(run, &core, &error));
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct condition *condition = &input->conditions[i];
+        bool whole = condition->kind == CONDITION_TABLE || condition->kind == CONDITION_COMPONENTS;
+        for (int k = 0; k < input->cells.dim; k++) {
+            whole = whole && !condition->is_free[k];
+        }
+        if (whole) {
+            note_narrow(run, condition, core);
+        }
+    }
+    free(core);
 }
