@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/options.h"
 
+#include <ctype.h>
 #include <float.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -106,8 +107,12 @@ static enum status number(const struct place *place, const char *key, const char
     if (parse_double(text, key, -DBL_MAX, DBL_MAX, value, &ignored) == STATUS_OK) {
         return STATUS_OK;
     }
+    char *rest;
+    (void)strtod(text, &rest);
+    bool has_unit = rest != text && isalpha((unsigned char)rest[strspn(rest, " \t")]);
     return place_fail(place, key, "'%s' is not a finite number%s", text,
-                      strchr(text, ',') != NULL   ? ": write one number, with a decimal point"
+                      has_unit                    ? ": write it in SI units, without the name of one"
+                      : strchr(text, ',') != NULL ? ": write one number, with a decimal point"
                       : strchr(text, ' ') != NULL ? ": separate components by commas"
                                                   : "");
 }
@@ -208,7 +213,8 @@ static enum status read_vector(const struct place *place, const char *key, char 
         }
     }
     return count == dim ? STATUS_OK
-                        : place_fail(place, key, "has %d components: dim = %d needs %d", count, dim, dim);
+                        : place_fail(place, key, "has %d components: dim = %d needs %d%s", count, dim, dim,
+                                     count > dim ? ", with decimal points" : "");
 }
 
 static enum status read_names(const struct place *place, const char *key, char *rest, struct name_list *list)

@@ -218,7 +218,7 @@ TEST(strict_form)
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY, 0, "end_time: missing");
     fails(HEAD "[material m]\nregion = r\nE = 3,0\nnu = .49\nrho = 1\n", 6, "with a decimal point");
     fails(HEAD "[material m]\nregion = r\nE = 3000 Pa\nnu = .49\nrho = 1\n", 6,
-          "'3000 Pa' is not a finite number");
+          "'3000 Pa' is not a finite number: write it in SI units, without the name of one");
     fails(HEAD "[material m]\nregion = r\nE = 0x10\nnu = .49\nrho = 1\n", 6, "'0x10' is not a finite number");
     fails(HEAD "[material m]\r\nregion = r\n", 4, "carriage return: save with Unix line ends");
     fails("\xef\xbb\xbf" HEAD BODY, 1, "byte order mark");
@@ -329,7 +329,7 @@ TEST(conditions)
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0\n", 11,
           "has 1 components: dim = 2 needs 2");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,1,2\n", 11,
-          "has 3 components: dim = 2 needs 2");
+          "has 3 components: dim = 2 needs 2, with decimal points");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = free,free\n", 11, "all are free");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,fre\n", 11, "'fre' is not a finite number");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,\n", 11, "'' is not a finite number");
