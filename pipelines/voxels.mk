@@ -2,9 +2,9 @@
 #
 # A row for each image: nodes, cells, whether mts check finds fault, least and largest dihedral angle, the volume of the label that is
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
-# compression's status, steps and least J, and what is told of crevices that it closes (folds are allowed), and from which share of the load
-# on. Then one body, meshed by gmsh and from an image: meshes.sh. Bodies of random blobs have crevices of some voxels, whose walls meet under the push: with
-# folds allowed each run ends; mtled by default computes such a body once more with contact, which does not end well for all of them.
+# compression's status, steps and least J, and from which share of the load on the body folds. Bodies of random blobs have crevices of some
+# voxels, whose walls meet under the push: such a body is computed once more, with contact with itself, and steps are those of both runs. Then
+# one body, meshed by gmsh and from an image: meshes.sh.
 VOXELS_OUT := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20

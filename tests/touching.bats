@@ -351,3 +351,19 @@ END
     sed 's/= ymin/= up/' stack.scene > bare.scene
     refused 2 "[displacement bottom]" mtled stack.scene bare.mts
 }
+
+@test "facets that share a corner: a crevice of blobs closes at its root, and the body stays in order" {
+    "$BUILD/tests/helper/phantom" blobs 7 > blobs.nii.gz
+    voxels --largest -h 5mm blobs.nii.gz 2> note | groups -f held=low:long,12% -f pushed=high:long,12% 2> note | shapefn > blobs.mts 2> note
+    {
+        printf '[scene]\ndim = 3\nanalysis = quasi-static\n'
+        for label in 1 2 3; do
+            printf '[material %s]\nregion = label_%s\nE = 3000\nnu = 0.49\nrho = 1000\n' $label $label
+        done
+        printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n'
+        printf '[displacement pushed]\nfacets = pushed\ncomponents = 0, -0.00474, 0\n'
+        printf '[contact itself]\nfacets = *\nagainst = *\n[solver]\nmax_steps = 1500\n'
+    } > blobs.scene
+    mtled -v blobs.scene blobs.mts > u.dat 2> log
+    awk -F '\t' '$1 == "least J" { J = $2 } END { print J; exit !(J > 0.6) }' log
+}

@@ -307,13 +307,49 @@ static bool considers(void *context, int64_t f)
     return false;
 }
 
+/* Whether facet f and the point's have a corner in common. */
+static bool shares_corner(const struct opposite *opposite, const struct seeker *seeker, int64_t f)
+{
+    int dim = opposite->surface.dim;
+    for (int i = 0; i < dim * dim; i++) {
+        int64_t v = opposite->surface.facet[f * dim + i / dim];
+        if (opposite->rows.node[v] == seeker->corner[i % dim]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether the point was behind facet f at the last step. */
+static bool was_behind(const struct opposite *opposite, const struct seeker *seeker, int64_t f)
+{
+    static const int32_t corners[] = {0, 1, 2};
+    int dim = opposite->surface.dim;
+    double x[9] = {0.0}, normal[3], way[3];
+    for (int k = 0; k < dim; k++) {
+        int64_t v = opposite->surface.facet[f * dim + k];
+        struct average average = average_of_boundary(&opposite->rows, v);
+        average_take(&average, dim, seeker->last_u, x + k * dim);
+        add_scaled(dim, 1.0, opposite->rest + v * dim, x + k * dim);
+    }
+    face_area_vector(dim, x, corners, normal);
+    normalise(dim, normal);
+    vector_subtract(dim, seeker->last, x, way);
+    return vector_dot(dim, way, normal) < -seeker->began;
+}
+
 static bool admits(void *context, int64_t f, const double *away)
 {
     const struct search *search = context;
     int dim = search->opposite->surface.dim;
-    double depth = search->seeker->depth;
-    return vector_dot(dim, away, search->opposite->surface.normal + f * dim) > 0.0 ||
-           vector_dot(dim, away, away) < depth * depth;
+    const struct seeker *seeker = search->seeker;
+    double depth = seeker->depth;
+    if (vector_dot(dim, away, search->opposite->surface.normal + f * dim) > 0.0) {
+        return true;
+    }
+    return vector_dot(dim, away, away) < depth * depth &&
+           (seeker->last == NULL || !shares_corner(search->opposite, seeker, f) ||
+            !was_behind(search->opposite, seeker, f));
 }
 
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,

@@ -5,7 +5,9 @@
  * is continuous, and follows the field by the boundary's own quadrature. The closest point of it to a contact
  * point is sought among the facets that face the point: their normals are opposed, by more than 120 degrees,
  * and the point is behind them by no more than it may be. What faces it through the body is left out by the
- * state of rest: facets of the same body that were near there, each behind the other. */
+ * state of rest: facets of the same body that were near there, each behind the other. A facet that shares a
+ * corner with the point's own is never far from the point, whether that has gone through it or not: the point
+ * must have come from its front. */
 #ifndef SOLID_OPPOSITE_H
 #define SOLID_OPPOSITE_H
 
@@ -45,6 +47,10 @@ struct seeker {
     const double *normal;      /* outward, now */
     double width, depth;       /* of its facet; how far it may be behind another one, m */
     int32_t part;              /* its body */
+    const int32_t *corner;     /* dim: nodes of its facet */
+    const double *last;        /* where it was at the last step, m; NULL: behind a facet that faced it */
+    const double *last_u;      /* parameters at the last step, m */
+    double began;              /* how far behind a facet it was at rest, m */
 };
 /* *free_way: how far the point and facets that do not face it now may move against each other before any of
  * them, within reach, may face it, m. */
