@@ -7,7 +7,7 @@
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
 #   round, gmsh and the coarser mesh as well)
 #
-# Environment: UNIT of the geometry, which is no image, NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
+# Environment: UNIT of the geometry, which is no image, about NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # REFINE_GROUPS arguments for groups (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
 # ORDER of the error for fielderr (default 1), SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
@@ -159,11 +159,11 @@ turning() {
 
 # grade: the sizes, and graded.geo or the spacing, for the share of the error of the last good round.
 grade() {
-    local form=(-n "$budget" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
-    # The octree of voxels makes up to twice the nodes; the volumes that it keeps make up for chords.
-    [ -z "$image" ] || form=(-n "$(calc "int($budget / 2)")" -t)
+    local form=(-n "$(calc "int($budget * $asked_by_made)")" --sag "$(calc "$share * $estimate / $(turning)")" -u "$unit")
+    [ -z "$image" ] || form=("${form[@]:0:2}" -t) # the volumes that voxels keeps make up for chords
     sizefield -v -s "$share" ${least:+--least "$least"} "${form[@]}" -o "$work/$sizes" "$work/last.dat" 2> "$work/log" || lost sizefield
     smallest=$(awk -F '\t' '$1 == "least size" { print $2 }' "$work/log")
+    asked=$(awk -F '\t' '$1 == "nodes" { print $2 }' "$work/log")
     graded=yes
     if [ "$image" ]; then
         # The mean edge of a lattice's cells is .911 of its spacing.
@@ -193,6 +193,8 @@ attempt() {
 
 printf 'round\tnodes\tmean_mm\tmax_mm\tseconds\tall_seconds\n' | tee "$out/rounds.tsv"
 factor=$start least=${LEAST-} again=0 stuck=0
+# How many nodes sizes asked for, by how many were made of them: learnt in each round. The octree of voxels makes up to twice as many.
+asked='' asked_by_made=$([ "$image" ] && echo 0.5 || echo 1)
 for ((round = 1; round <= rounds; round++)); do
     if ! attempt; then
         if [ -z "$graded" ] || [[ $what != "the scene"* && $what != voxels ]] || ((again++ == 3)); then
@@ -206,6 +208,7 @@ for ((round = 1; round <= rounds; round++)); do
         continue
     fi
     nodes=$(quantity n) estimate=$(quantity mean)
+    [ -z "$asked" ] || asked_by_made=$(calc "$asked / $nodes")
     printf '%d\t%d\t%.6g\t%.6g\t%s\t%s\n' "$round" "$nodes" "$(calc "1000 * $estimate")" "$(calc "1000 * $(quantity max)")" \
         "$(seconds "$work/solve.time")" "$(seconds "$work"/*.time)" | tee -a "$out/rounds.tsv"
     keep
