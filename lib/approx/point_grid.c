@@ -1,11 +1,11 @@
 #include "approx/point_grid.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 static int level_of(double radius, double least)
 {
@@ -220,55 +220,6 @@ static enum status query_level(const struct point_grid *grid, const struct point
     return STATUS_OK;
 }
 
-/* Insertion sort of a few. */
-static void sort_few(int32_t *index, int64_t count)
-{
-    for (int64_t i = 1; i < count; i++) {
-        int32_t value = index[i];
-        int64_t at = i;
-        for (; at > 0 && index[at - 1] > value; at--) {
-            index[at] = index[at - 1];
-        }
-        index[at] = value;
-    }
-}
-
-static void merge(const int32_t *a, const int32_t *end_a, const int32_t *b, const int32_t *end_b,
-                  int32_t *merged)
-{
-    while (a < end_a && b < end_b) {
-        int32_t first = *a, second = *b;
-        bool from_a = first < second;
-        *merged++ = from_a ? first : second;
-        a += from_a;
-        b += !from_a;
-    }
-    memcpy(merged, a, (size_t)(end_a - a) * sizeof *a);
-    memcpy(merged + (end_a - a), b, (size_t)(end_b - b) * sizeof *b);
-}
-
-/* Sort index[count]: runs of 16, merged; index[count .. 2 count) is scratch. */
-static void sort_ascending(int32_t *index, int64_t count)
-{
-    int32_t *from = index, *to = index + count;
-    for (int64_t i = 0; i < count; i += 16) {
-        sort_few(index + i, count - i < 16 ? count - i : 16);
-    }
-    for (int64_t width = 16; width < count; width *= 2) {
-        for (int64_t i = 0; i < count; i += 2 * width) {
-            int64_t middle = i + width < count ? i + width : count,
-                    end = i + 2 * width < count ? i + 2 * width : count;
-            merge(from + i, from + middle, from + middle, from + end, to + i);
-        }
-        int32_t *swap = from;
-        from = to;
-        to = swap;
-    }
-    if (from != index) {
-        memcpy(index, from, (size_t)count * sizeof *index);
-    }
-}
-
 enum status point_grid_list_box(const struct point_grid *grid, const double *low, const double *high,
                                 double factor, struct index_list *list, struct error *error)
 {
@@ -285,8 +236,9 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
 {
     int64_t first = list->count;
     RETURN_IF_ERROR(point_grid_list_box(grid, low, high, factor, list, error));
-    RETURN_IF_ERROR(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
-    sort_ascending(list->index + first, list->count - first);
+    if (list->count > first) {
+        qsort(list->index + first, (size_t)(list->count - first), sizeof *list->index, compare_int32);
+    }
     return STATUS_OK;
 }
 
