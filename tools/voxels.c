@@ -137,9 +137,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
                 name, missing, unit);
         }
     }
-    free(volume);
-    free(voxels);
-    free(lost);
+    FREE_ALL(volume, voxels, lost);
 }
 
 /* How many connected bodies there are, when more than one. */
