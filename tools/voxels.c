@@ -68,7 +68,7 @@ static const char usage[] =
 #include "label_part.h"
 #include "label_sizes.h"
 #include "label_surface.h"
-#include "thin_note.h"
+#include "cell_report.h"
 
 #include "approx/cells.h"
 #include "approx/parts.h"

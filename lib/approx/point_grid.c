@@ -55,8 +55,9 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
     return total;
 }
 
+/* bin[node_count]: scratch. */
 static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
-                               struct error *error)
+                               int32_t *bin, struct error *error)
 {
     struct point_grid_level *level = &grid->level[number];
     int dim = grid->dim;
@@ -80,22 +81,11 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         return STATUS_OK;
     }
     int64_t bins = choose_bins(level, dim, upper, nodes);
-    RETURN_IF_ERROR(NEW_ARRAY(&level->start, bins + 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&level->node, nodes, error));
+    for (int64_t n = 0; n < grid->node_count; n++) {
+        bin[n] = level_of_node[n] == number ? (int32_t)bin_of(grid, level, grid->x + n * dim) : -1;
+    }
+    RETURN_IF_ERROR(lists_by_row(grid->node_count, 1, bin, bins, &level->start, &level->node, error));
     RETURN_IF_ERROR(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
-    for (int64_t n = 0; n < grid->node_count; n++) {
-        if (level_of_node[n] == number) {
-            level->start[bin_of(grid, level, grid->x + n * dim) + 2]++;
-        }
-    }
-    for (int64_t b = 0; b < bins; b++) {
-        level->start[b + 2] += level->start[b + 1];
-    }
-    for (int64_t n = 0; n < grid->node_count; n++) {
-        if (level_of_node[n] == number) {
-            level->node[level->start[bin_of(grid, level, grid->x + n * dim) + 1]++] = (int32_t)n;
-        }
-    }
     for (int64_t i = 0; i < nodes; i++) {
         double *place = level->place + i * (dim + 1);
         for (int a = 0; a < dim; a++) {
@@ -111,6 +101,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
 {
     enum status status;
     uint8_t *level_of_node = NULL;
+    int32_t *bin = NULL;
     double least = INFINITY;
     *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
@@ -121,6 +112,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         least = fmin(least, radius[n]);
     }
     TRY(NEW_ARRAY(&level_of_node, node_count, error));
+    TRY(NEW_ARRAY(&bin, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         level_of_node[n] = (uint8_t)level_of(radius[n], least);
         if (level_of_node[n] >= grid->level_count) {
@@ -128,10 +120,10 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
     }
     for (int l = 0; l < grid->level_count; l++) {
-        TRY(build_level(grid, l, level_of_node, error));
+        TRY(build_level(grid, l, level_of_node, bin, error));
     }
 done:
-    free(level_of_node);
+    FREE_ALL(level_of_node, bin);
     if (status != STATUS_OK) {
         point_grid_free(grid);
     }
