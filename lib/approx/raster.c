@@ -108,8 +108,7 @@ static void draw(const struct simplex *simplex, const struct cells *cells, int64
     }
 }
 
-void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
-                  int64_t *doubly)
+void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner, int64_t *doubly)
 {
     int64_t layers = size[cells->dim - 1], slabs = layers < SLABS_MOST ? layers : SLABS_MOST, twice = 0;
     for (int64_t v = 0; v < size[0] * size[1] * size[2]; v++) {

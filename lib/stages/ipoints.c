@@ -72,8 +72,8 @@ static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3],
 
 /* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
  * trapezium rule. */
-static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3],
-                                  struct points *points, struct error *error)
+static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3], struct points *points,
+                                  struct error *error)
 {
     int dim = nodes->dim;
     int64_t count = 0, n[3];

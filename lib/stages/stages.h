@@ -9,8 +9,8 @@
 
 /* How ipoints places integration points. */
 struct ipoints_options {
-    bool smoothed;    /* one point per cell, gradients smoothed over the cell */
-    int gauss_points; /* else: points per cell */
+    bool smoothed;      /* one point per cell, gradients smoothed over the cell */
+    int gauss_points;   /* else: points per cell */
     int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the nodes'
                            box; zeros behind the first: as that one along all axes */
 };

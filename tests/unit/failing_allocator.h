@@ -101,8 +101,8 @@ void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned 
 }
 #endif
 
-/* Let the first, the second, ... allocation fail, until none is left to fail. A run that succeeds all the same
- * is one of qsort, which does without memory when it gets none. */
+/* Let the first, the second, ... allocation fail, until none is left to fail. A run that succeeds all the
+ * same is one of qsort, which does without memory when it gets none. */
 static inline void fail_each(enum status (*try)(struct error *error), long least)
 {
     struct error error = {""};
