@@ -15,13 +15,12 @@ tidy() {
 
 # What is not asked for, and why: missingInclude: system headers need not be read. uninitvar, ctuuninitvar, ctunullpointer: wrong
 # where an array is filled in a loop or an error text by who is called; gcc and clang warn of these as well.
-# arrayIndexOutOfBoundsCond, assignBoolToPointer: one wrong finding each (tools/mts.c, lib/approx/mls.c), of calls that do not return and
-# of a choice between two function pointers.
+# arrayIndexOutOfBoundsCond: one wrong finding (tools/mts.c), of calls that do not return.
 cpp() {
     cppcheck --quiet --std=c11 --enable=warning,performance,portability -D_GNU_SOURCE -Ilib -Itools/common --error-exitcode=1 \
         --library=pipelines/cppcheck.cfg --template='{file}:{line}: {id}: {message}' --suppress=missingInclude \
         --suppress=uninitvar --suppress=ctuuninitvar --suppress=ctunullpointer --suppress=arrayIndexOutOfBoundsCond \
-        --suppress=assignBoolToPointer "${sources[@]}"
+        "${sources[@]}"
 }
 
 check() { # PROGRAM FUNCTION

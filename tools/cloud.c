@@ -43,7 +43,7 @@ static const char usage[] =
 
 #include "approx/cloud.h"
 #include "io/msh.h"
-#include "thin_note.h"
+#include "cell_report.h"
 #include "tool.h"
 
 #include <stdlib.h>

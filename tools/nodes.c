@@ -54,7 +54,6 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/msh.h"
-#include "thin_note.h"
 #include "tool.h"
 
 #include "base/box.h"

@@ -68,7 +68,7 @@ static const char usage[] =
 #include "label_part.h"
 #include "label_sizes.h"
 #include "label_surface.h"
-#include "thin_note.h"
+#include "cell_report.h"
 
 #include "approx/cells.h"
 #include "approx/parts.h"
@@ -137,9 +137,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
                 name, missing, unit);
         }
     }
-    free(volume);
-    free(voxels);
-    free(lost);
+    FREE_ALL(volume, voxels, lost);
 }
 
 /* How many connected bodies there are, when more than one. */

@@ -147,12 +147,6 @@ enum status cells_check(const struct cells *cells, struct error *error)
     return STATUS_OK;
 }
 
-/* A face with its sorted vertices, filed under the lowest. */
-struct filed_face {
-    int32_t key[2]; /* the other vertices, ascending (2D: one, and -1) */
-    int64_t source; /* cell * (dim + 1) + local face */
-};
-
 void face_key(int dim, const int32_t *node, int32_t key[3])
 {
     key[2] = -1;
@@ -165,61 +159,55 @@ void face_key(int dim, const int32_t *node, int32_t key[3])
     }
 }
 
-static void key_of_source(const struct cells *cells, int64_t source, int32_t key[3])
+/* A face by its nodes in ascending order. */
+struct keyed_face {
+    int32_t key[3];
+    int64_t face; /* or cell * (dim + 1) + local face */
+};
+
+static int compare_keys(const void *left, const void *right)
 {
-    int corners = cells->dim + 1;
-    int32_t node[3];
-    cell_face(cells, source / corners, opposite(cells->dim, source % corners), node);
-    face_key(cells->dim, node, key);
+    return compare_numbers(3, ((const struct keyed_face *)left)->key,
+                           ((const struct keyed_face *)right)->key);
 }
 
-static int same_face(const struct filed_face *a, const struct filed_face *b)
+static int compare_faces(const void *left, const void *right)
 {
-    return a->key[0] == b->key[0] && a->key[1] == b->key[1];
+    const struct keyed_face *a = left, *b = right;
+    int keys = compare_keys(a, b);
+    return keys != 0 ? keys : (a->face > b->face) - (a->face < b->face);
 }
 
 /* partner[source]: the source of the same face in the other cell, or -1. */
 static enum status match_faces(const struct cells *cells, int64_t *partner, struct error *error)
 {
     enum status status;
-    int dim = cells->dim;
-    int64_t total = cells->count * (dim + 1);
-    int64_t *start = NULL;
-    struct filed_face *filed = NULL;
-    TRY(NEW_ARRAY(&start, cells->node_count + 2, error));
-    TRY(NEW_ARRAY(&filed, total, error));
-    int32_t key[3];
+    int corners = cells->dim + 1;
+    int64_t total = cells->count * corners;
+    struct keyed_face *keyed = NULL;
+    TRY(NEW_ARRAY(&keyed, total, error));
     for (int64_t s = 0; s < total; s++) {
-        key_of_source(cells, s, key);
-        start[key[0] + 2]++;
-    }
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        start[n + 2] += start[n + 1];
-    }
-    for (int64_t s = 0; s < total; s++) {
-        key_of_source(cells, s, key);
-        filed[start[key[0] + 1]++] = (struct filed_face){.key = {key[1], key[2]}, .source = s};
+        int32_t node[3];
+        cell_face(cells, s / corners, opposite(cells->dim, s % corners), node);
+        face_key(cells->dim, node, keyed[s].key);
+        keyed[s].face = s;
         partner[s] = -1;
     }
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        for (int64_t i = start[n]; i < start[n + 1]; i++) {
-            for (int64_t k = i + 1; k < start[n + 1]; k++) {
-                if (!same_face(&filed[i], &filed[k])) {
-                    continue;
-                }
-                if (partner[filed[i].source] >= 0 || partner[filed[k].source] >= 0) {
-                    status =
-                        fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
-                             (long long)(filed[k].source / (dim + 1)));
-                    goto done;
-                }
-                partner[filed[i].source] = filed[k].source;
-                partner[filed[k].source] = filed[i].source;
-            }
+    qsort(keyed, (size_t)total, sizeof *keyed, compare_faces);
+    for (int64_t i = 1; i < total; i++) {
+        int64_t one = keyed[i - 1].face, other = keyed[i].face;
+        if (compare_keys(&keyed[i - 1], &keyed[i]) != 0) {
+            continue;
         }
+        if (partner[one] >= 0) {
+            TRY(fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
+                     (long long)(other / corners)));
+        }
+        partner[one] = other;
+        partner[other] = one;
     }
 done:
-    FREE_ALL(start, filed);
+    free(keyed);
     return status;
 }
 
@@ -267,18 +255,6 @@ done:
         faces_free(faces);
     }
     return status;
-}
-
-/* A face by its nodes in ascending order. */
-struct keyed_face {
-    int32_t key[3];
-    int64_t face;
-};
-
-static int compare_keys(const void *left, const void *right)
-{
-    return compare_numbers(3, ((const struct keyed_face *)left)->key,
-                           ((const struct keyed_face *)right)->key);
 }
 
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,

@@ -64,16 +64,13 @@ static double *work_reserve(struct mls_work *work, int64_t count)
         work->values = values;
         work->capacity = capacity;
     }
-    if (work->kernels == NULL) {
-        work->kernels = mls_kernels_select();
-    }
     return work->values;
 }
 
 enum status mls_evaluate(const struct mls *mls, const struct mls_support *support, struct mls_work *work,
                          double *phi, double *dphi, enum mls_verdict *verdict, struct error *error)
 {
-    int m = mls_basis_size(mls), space = mls->dim - 2;
+    int m = mls_basis_size(mls);
     *verdict = MLS_TOO_FEW;
     if (support->count < (mls->basis == BASIS_QUADRATIC ? m : mls->dim + 1)) {
         return STATUS_OK;
@@ -83,10 +80,8 @@ enum status mls_evaluate(const struct mls *mls, const struct mls_support *suppor
         return fail_memory(error, "moving least squares");
     }
     int64_t stride = work->capacity + MLS_PADDING;
-    mls_kernel *kernel =
-        mls->basis == BASIS_LINEAR ? work->kernels->linear[space] : work->kernels->quadratic[space];
     *verdict = MLS_GOOD;
-    if (!kernel(mls, support, scratch, stride, phi, dphi)) {
+    if (!mls_kernel(mls, support, scratch, stride, phi, dphi)) {
         *verdict = mls_orthogonal(mls, support, scratch, stride,
                                   phi != NULL ? phi : scratch + ROW_OF_VALUES * stride, dphi);
     }

@@ -53,8 +53,7 @@ const char *mls_verdict_text(enum mls_verdict verdict);
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct mls_work {
     double *values;
-    int64_t capacity;                  /* neighbours that `values` serves */
-    const struct mls_kernels *kernels; /* the code for this processor */
+    int64_t capacity; /* neighbours that `values` serves */
 };
 void mls_work_free(struct mls_work *work);
 

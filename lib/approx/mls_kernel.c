@@ -1,7 +1,6 @@
 #include "approx/mls_kernel.h"
 
 #include "approx/mls_vector.h"
-#include "base/processor.h"
 
 /* One point's neighbours in local scaled coordinates. */
 struct mls_point {
@@ -303,50 +302,16 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     return true;
 }
 
-/* The same for each instruction set; the best is chosen at run time. */
+/* What is known when compiling: dimension, number of monomials, whether there are images. */
+#define EVALUATE(dim, m)                                                                                     \
+    (support->image == NULL ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)       \
+                            : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi))
 
-#define KERNEL(set, shape, dim, m, attribute)                                                                \
-    attribute static bool shape##_##dim##_##set(const struct mls *mls, const struct mls_support *support,    \
-                                                double *scratch, int64_t stride, double *phi, double *dphi)  \
-    {                                                                                                        \
-        return support->image == NULL                                                                        \
-                   ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)                \
-                   : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi);                \
-    }
-
-#define KERNEL_SET(set, attribute)                                                                           \
-    KERNEL(set, linear, 2, 3, attribute)                                                                     \
-    KERNEL(set, linear, 3, 4, attribute)                                                                     \
-    KERNEL(set, quadratic, 2, 6, attribute)                                                                  \
-    KERNEL(set, quadratic, 3, 10, attribute)                                                                 \
-    static const struct mls_kernels set##_kernels = {                                                        \
-        #set, {linear_2_##set, linear_3_##set}, {quadratic_2_##set, quadratic_3_##set}};
-
-KERNEL_SET(plain, PLAIN_SET)
-
-#if defined(__x86_64__)
-KERNEL_SET(avx2, AVX2_SET)
-KERNEL_SET(avx512, AVX512_SET)
-#endif
-
-const struct mls_kernels *mls_kernels_named(const char *name)
+ALL_SETS bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
+                         int64_t stride, double *phi, double *dphi)
 {
-    static const struct mls_kernels *const sets[] = {
-#if defined(__x86_64__)
-        &avx512_kernels,
-        &avx2_kernels,
-#endif
-        &plain_kernels
-    };
-    for (size_t i = 0; i < sizeof sets / sizeof *sets; i++) {
-        if (strcmp(sets[i]->name, name) == 0 && processor_has(name)) {
-            return sets[i];
-        }
+    if (mls->basis == BASIS_LINEAR) {
+        return mls->dim == 2 ? EVALUATE(2, 3) : EVALUATE(3, 4);
     }
-    return NULL;
-}
-
-const struct mls_kernels *mls_kernels_select(void)
-{
-    return mls_kernels_named(processor_best_set());
+    return mls->dim == 2 ? EVALUATE(2, 6) : EVALUATE(3, 10);
 }

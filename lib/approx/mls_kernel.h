@@ -1,7 +1,6 @@
-/* Moving least squares by the normal equations, vector code written once and compiled for several instruction
- * sets; private to lib/approx.
+/* Moving least squares by the normal equations, in vectors of the compiler; private to lib/approx.
  *
- * Sums over the neighbours run in the same partial sums whatever the instruction set, and no multiplication
+ * Sums over the neighbours run in the same partial sums whatever the instructions, and no multiplication
  * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
  * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
  * left to the orthogonal factorisation of mls_orthogonal(). */
@@ -24,18 +23,7 @@ enum mls_row {
 
 /* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, where not NULL; false when that is
  * left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
-typedef bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
-                        int64_t stride, double *phi, double *dphi);
-
-/* One set of compiled kernels. */
-struct mls_kernels {
-    const char *name;
-    mls_kernel *linear[2], *quadratic[2]; /* in 2D, 3D */
-};
-
-/* The best set for this processor; or, for tests, the set of that name ("plain", "avx2", "avx512"), NULL when
- * the processor has it not. */
-const struct mls_kernels *mls_kernels_select(void);
-const struct mls_kernels *mls_kernels_named(const char *name);
+bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
+                double *phi, double *dphi);
 
 #endif

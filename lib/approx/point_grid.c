@@ -1,11 +1,11 @@
 #include "approx/point_grid.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 static int level_of(double radius, double least)
 {
@@ -55,8 +55,9 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
     return total;
 }
 
+/* bin[node_count]: scratch. */
 static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
-                               struct error *error)
+                               int32_t *bin, struct error *error)
 {
     struct point_grid_level *level = &grid->level[number];
     int dim = grid->dim;
@@ -80,22 +81,11 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
         return STATUS_OK;
     }
     int64_t bins = choose_bins(level, dim, upper, nodes);
-    RETURN_IF_ERROR(NEW_ARRAY(&level->start, bins + 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&level->node, nodes, error));
+    for (int64_t n = 0; n < grid->node_count; n++) {
+        bin[n] = level_of_node[n] == number ? (int32_t)bin_of(grid, level, grid->x + n * dim) : -1;
+    }
+    RETURN_IF_ERROR(lists_by_row(grid->node_count, 1, bin, bins, &level->start, &level->node, error));
     RETURN_IF_ERROR(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
-    for (int64_t n = 0; n < grid->node_count; n++) {
-        if (level_of_node[n] == number) {
-            level->start[bin_of(grid, level, grid->x + n * dim) + 2]++;
-        }
-    }
-    for (int64_t b = 0; b < bins; b++) {
-        level->start[b + 2] += level->start[b + 1];
-    }
-    for (int64_t n = 0; n < grid->node_count; n++) {
-        if (level_of_node[n] == number) {
-            level->node[level->start[bin_of(grid, level, grid->x + n * dim) + 1]++] = (int32_t)n;
-        }
-    }
     for (int64_t i = 0; i < nodes; i++) {
         double *place = level->place + i * (dim + 1);
         for (int a = 0; a < dim; a++) {
@@ -111,6 +101,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
 {
     enum status status;
     uint8_t *level_of_node = NULL;
+    int32_t *bin = NULL;
     double least = INFINITY;
     *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
@@ -121,6 +112,7 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         least = fmin(least, radius[n]);
     }
     TRY(NEW_ARRAY(&level_of_node, node_count, error));
+    TRY(NEW_ARRAY(&bin, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         level_of_node[n] = (uint8_t)level_of(radius[n], least);
         if (level_of_node[n] >= grid->level_count) {
@@ -128,10 +120,10 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
     }
     for (int l = 0; l < grid->level_count; l++) {
-        TRY(build_level(grid, l, level_of_node, error));
+        TRY(build_level(grid, l, level_of_node, bin, error));
     }
 done:
-    free(level_of_node);
+    FREE_ALL(level_of_node, bin);
     if (status != STATUS_OK) {
         point_grid_free(grid);
     }
@@ -220,55 +212,6 @@ static enum status query_level(const struct point_grid *grid, const struct point
     return STATUS_OK;
 }
 
-/* Insertion sort of a few. */
-static void sort_few(int32_t *index, int64_t count)
-{
-    for (int64_t i = 1; i < count; i++) {
-        int32_t value = index[i];
-        int64_t at = i;
-        for (; at > 0 && index[at - 1] > value; at--) {
-            index[at] = index[at - 1];
-        }
-        index[at] = value;
-    }
-}
-
-static void merge(const int32_t *a, const int32_t *end_a, const int32_t *b, const int32_t *end_b,
-                  int32_t *merged)
-{
-    while (a < end_a && b < end_b) {
-        int32_t first = *a, second = *b;
-        bool from_a = first < second;
-        *merged++ = from_a ? first : second;
-        a += from_a;
-        b += !from_a;
-    }
-    memcpy(merged, a, (size_t)(end_a - a) * sizeof *a);
-    memcpy(merged + (end_a - a), b, (size_t)(end_b - b) * sizeof *b);
-}
-
-/* Sort index[count]: runs of 16, merged; index[count .. 2 count) is scratch. */
-static void sort_ascending(int32_t *index, int64_t count)
-{
-    int32_t *from = index, *to = index + count;
-    for (int64_t i = 0; i < count; i += 16) {
-        sort_few(index + i, count - i < 16 ? count - i : 16);
-    }
-    for (int64_t width = 16; width < count; width *= 2) {
-        for (int64_t i = 0; i < count; i += 2 * width) {
-            int64_t middle = i + width < count ? i + width : count,
-                    end = i + 2 * width < count ? i + 2 * width : count;
-            merge(from + i, from + middle, from + middle, from + end, to + i);
-        }
-        int32_t *swap = from;
-        from = to;
-        to = swap;
-    }
-    if (from != index) {
-        memcpy(index, from, (size_t)count * sizeof *index);
-    }
-}
-
 enum status point_grid_list_box(const struct point_grid *grid, const double *low, const double *high,
                                 double factor, struct index_list *list, struct error *error)
 {
@@ -285,8 +228,9 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
 {
     int64_t first = list->count;
     RETURN_IF_ERROR(point_grid_list_box(grid, low, high, factor, list, error));
-    RETURN_IF_ERROR(index_list_reserve(list, list->count - first, error)); /* scratch for sorting */
-    sort_ascending(list->index + first, list->count - first);
+    if (list->count > first) {
+        qsort(list->index + first, (size_t)(list->count - first), sizeof *list->index, compare_int32);
+    }
     return STATUS_OK;
 }
 

@@ -1,16 +1,14 @@
 #include "approx/raster.h"
 
-#include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Barycentric coordinates down to the negative of this are within: what lies on a face is in one of the two.
  */
 static const double within = 1e-9;
 
-enum { SLABS_MOST = 64 };
+enum { SLABS_MOST = 16 }; /* of the last axis, which threads share */
 
 /* A cell in the grid: barycentric coordinate a of a point y is at[a] + slope[a] . y. */
 struct simplex {
@@ -110,60 +108,23 @@ static void draw(const struct simplex *simplex, const struct cells *cells, int64
     }
 }
 
-/* The cells that reach into each slab of the last axis (CSR), ascending. */
-static enum status list_by_slab(const struct cells *cells, int64_t size, int64_t slabs, int64_t *ptr,
-                                int32_t **idx, struct error *error)
-{
-    *idx = NULL;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t c = 0; c < cells->count; c++) {
-            int64_t low, high;
-            range(cells, c, cells->dim - 1, size, &low, &high);
-            for (int64_t s = low * slabs / size; low <= high && s <= high * slabs / size; s++) {
-                if (pass == 0) {
-                    ptr[s + 1]++;
-                } else {
-                    (*idx)[ptr[s]++] = (int32_t)c;
-                }
-            }
-        }
-        if (pass == 0) {
-            for (int64_t s = 0; s < slabs; s++) {
-                ptr[s + 1] += ptr[s];
-            }
-            RETURN_IF_ERROR(NEW_ARRAY(idx, ptr[slabs], error));
-        }
-    }
-    for (int64_t s = slabs; s > 0; s--) { /* each has moved to the beginning of the next */
-        ptr[s] = ptr[s - 1];
-    }
-    ptr[0] = 0;
-    return STATUS_OK;
-}
-
-enum status raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
-                         int64_t *doubly, struct error *error)
+void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner, int64_t *doubly)
 {
     int64_t layers = size[cells->dim - 1], slabs = layers < SLABS_MOST ? layers : SLABS_MOST, twice = 0;
-    int64_t ptr[SLABS_MOST + 1] = {0};
-    int32_t *idx = NULL;
-    enum status status = STATUS_OK;
-    TRY(list_by_slab(cells, layers, slabs, ptr, &idx, error));
     for (int64_t v = 0; v < size[0] * size[1] * size[2]; v++) {
         owner[v] = -1;
     }
 #pragma omp parallel for schedule(dynamic) reduction(+ : twice)
     for (int64_t s = 0; s < slabs; s++) {
         int64_t begin = (s * layers + slabs - 1) / slabs, end = ((s + 1) * layers + slabs - 1) / slabs;
-        for (int64_t i = ptr[s]; i < ptr[s + 1]; i++) {
+        for (int64_t c = 0; c < cells->count; c++) {
             struct simplex simplex;
-            if (place_cell(cells, idx[i], sign, &simplex)) {
-                draw(&simplex, cells, idx[i], size, begin, end, owner, &twice);
+            int64_t low, high;
+            range(cells, c, cells->dim - 1, layers, &low, &high);
+            if (low < end && high >= begin && place_cell(cells, c, sign, &simplex)) {
+                draw(&simplex, cells, c, size, begin, end, owner, &twice);
             }
         }
     }
     *doubly = twice;
-done:
-    free(idx);
-    return status;
 }

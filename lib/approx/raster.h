@@ -10,7 +10,7 @@
  * where the map to the grid mirrors, sound cells have -1; others are folded. *doubly: grid points that more
  * than one of them holds, beyond their faces. Threads share the work; the result does not depend on their
  * number. */
-MUST_CHECK enum status raster_cells(const struct cells *cells, int sign, const int64_t size[3],
-                                    int32_t *owner, int64_t *doubly, struct error *error);
+void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
+                  int64_t *doubly);
 
 #endif

@@ -88,7 +88,7 @@ enum status stuffing_lost(const struct labels *labels, const bool *keep, const s
         }
     }
     cells.x = x;
-    TRY(raster_cells(&cells, sign_of(labels, &grid), grid.size, owner, &doubly, error));
+    raster_cells(&cells, sign_of(labels, &grid), grid.size, owner, &doubly);
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = labels->label[v], there = owner[v] >= 0 ? stuffing->label[owner[v]] : -1;
         if (there != (keep[label] ? label : -1)) {

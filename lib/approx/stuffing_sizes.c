@@ -52,7 +52,7 @@ enum status sizes_wish(const struct stuffing_options *options, int levels, const
         x[i] = (options->sized->x[i] - low[i % 3]) / edge;
     }
     scaled.x = x;
-    TRY(raster_cells(&scaled, 1, count, owner, &doubly, error));
+    raster_cells(&scaled, 1, count, owner, &doubly);
 #pragma omp parallel for schedule(static) reduction(+ : within, beyond)
     for (int64_t c = 0; c < total; c++) {
         const int64_t cube[3] = {c % count[0], c / count[0] % count[1], c / count[0] / count[1]};

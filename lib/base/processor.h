@@ -8,11 +8,8 @@
  * other name. */
 bool processor_has(const char *set);
 
-/* A part of such kernels; and the attribute of one for each set. */
+/* A part of such kernels. */
 #define KERNEL_INLINE static inline __attribute__((always_inline))
-#define PLAIN_SET
-#define AVX2_SET __attribute__((target("avx2")))
-#define AVX512_SET __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2")))
 
 /* A function that is compiled for each of these; the processor's own is chosen when the program starts. */
 #if defined(__x86_64__)

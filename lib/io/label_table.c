@@ -156,7 +156,6 @@ void label_table_free(struct label_table *table)
     for (int32_t n = 0; n < table->name_count; n++) {
         free(table->name[n].text);
     }
-    free(table->name);
-    free(table->range);
+    FREE_ALL(table->name, table->range);
     *table = (struct label_table){0};
 }

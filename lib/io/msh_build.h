@@ -85,7 +85,7 @@ int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_
 /* ---- msh_faces.c: the faces (edges in 2D) of a mesh of simplices, to be found by their nodes ---- */
 
 struct msh_face {
-    int32_t rest[2]; /* its nodes but the lowest, ascending; in 2D the second is -1 */
+    int32_t node[3]; /* ascending; in 2D the third is -1 */
     int32_t cell;
     int8_t opposite; /* which node of the cell is not on it */
     bool odd;        /* the outward order of the nodes is an odd permutation of the ascending one */
@@ -93,9 +93,9 @@ struct msh_face {
 
 struct msh_faces {
     int dim;
-    const int32_t *cells;  /* the caller's, cell_count x (dim + 1), positively oriented */
-    int64_t *ptr;          /* node_count + 1: faces by their lowest node */
-    struct msh_face *face; /* cell_count x (dim + 1); those of the same nodes stand side by side */
+    const int32_t *cells; /* the caller's, cell_count x (dim + 1), positively oriented */
+    int64_t count;
+    struct msh_face *face; /* count, ascending */
 };
 
 /* Where a mesh is no mesh: two cells on the same side of a face, or three cells on one. */
@@ -103,8 +103,8 @@ struct msh_overlap {
     int32_t cell[2]; /* -1 when there is none */
 };
 
-MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t node_count,
-                                      int64_t cell_count, const int32_t cells[], struct msh_overlap *overlap,
+MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count,
+                                      const int32_t cells[], struct msh_overlap *overlap,
                                       struct error *error);
 void msh_faces_free(struct msh_faces *faces);
 

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* The face opposite to node i of a positively oriented simplex, oriented outward. */
 static const int8_t outward2[3][2] = {{1, 2}, {2, 0}, {0, 1}};
@@ -31,101 +32,74 @@ static bool sort_nodes(int dim, int32_t node[])
     return odd;
 }
 
+static bool same_nodes(const struct msh_face *a, const struct msh_face *b)
+{
+    return compare_numbers(3, a->node, b->node) == 0;
+}
+
 static int compare_faces(const void *left, const void *right)
 {
     const struct msh_face *a = left;
     const struct msh_face *b = right;
-    int nodes = compare_numbers(2, a->rest, b->rest);
+    int nodes = compare_numbers(3, a->node, b->node);
     return nodes != 0 ? nodes : compare_numbers(1, &a->cell, &b->cell);
 }
 
-static bool same_nodes(const struct msh_face *a, const struct msh_face *b)
-{
-    return a->rest[0] == b->rest[0] && a->rest[1] == b->rest[1];
-}
-
-/* Visit every face of every cell: count it (fill = false) or store it under its lowest node. */
-static void visit_faces(struct msh_faces *faces, int64_t cell_count, int64_t at[], bool fill)
-{
-    int dim = faces->dim;
-    for (int64_t c = 0; c < cell_count; c++) {
-        for (int i = 0; i <= dim; i++) {
-            int32_t node[3] = {-1, -1, -1};
-            face_of(dim, &faces->cells[c * (dim + 1)], i, node);
-            bool odd = sort_nodes(dim, node);
-            if (fill) {
-                faces->face[at[node[0]]] = (struct msh_face){{node[1], node[2]}, (int32_t)c, (int8_t)i, odd};
-            }
-            at[node[0]]++;
-        }
-    }
-}
-
-static void find_overlap(const struct msh_faces *faces, int64_t node_count, struct msh_overlap *overlap)
+static void find_overlap(const struct msh_faces *faces, struct msh_overlap *overlap)
 {
     *overlap = (struct msh_overlap){{-1, -1}};
-    for (int64_t n = 0; n < node_count; n++) {
-        for (int64_t f = faces->ptr[n] + 1; f < faces->ptr[n + 1]; f++) {
-            const struct msh_face *face = &faces->face[f];
-            bool third = f >= faces->ptr[n] + 2 && same_nodes(face, face - 2);
-            if (same_nodes(face, face - 1) && (face->odd == face[-1].odd || third)) {
-                *overlap = (struct msh_overlap){{face[-1].cell, face->cell}};
-                return;
-            }
+    for (int64_t f = 1; f < faces->count; f++) {
+        const struct msh_face *face = &faces->face[f];
+        bool third = f >= 2 && same_nodes(face, face - 2);
+        if (same_nodes(face, face - 1) && (face->odd == face[-1].odd || third)) {
+            *overlap = (struct msh_overlap){{face[-1].cell, face->cell}};
+            return;
         }
     }
 }
 
-enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t node_count, int64_t cell_count,
-                           const int32_t cells[], struct msh_overlap *overlap, struct error *error)
+enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count, const int32_t cells[],
+                           struct msh_overlap *overlap, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int64_t *at = NULL;
-    *faces = (struct msh_faces){.dim = dim, .cells = cells};
-    TRY(NEW_ARRAY(&faces->ptr, node_count + 1, error));
-    TRY(NEW_ARRAY(&faces->face, cell_count * (dim + 1), error));
-    TRY(NEW_ARRAY(&at, node_count, error));
-    visit_faces(faces, cell_count, faces->ptr + 1, false);
-    for (int64_t n = 0; n < node_count; n++) {
-        faces->ptr[n + 1] += faces->ptr[n];
-        at[n] = faces->ptr[n];
+    *faces = (struct msh_faces){.dim = dim, .cells = cells, .count = cell_count * (dim + 1)};
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->face, faces->count, error));
+    for (int64_t f = 0; f < faces->count; f++) {
+        struct msh_face *face = &faces->face[f];
+        *face = (struct msh_face){
+            .node = {-1, -1, -1}, .cell = (int32_t)(f / (dim + 1)), .opposite = (int8_t)(f % (dim + 1))};
+        face_of(dim, &cells[f / (dim + 1) * (dim + 1)], face->opposite, face->node);
+        face->odd = sort_nodes(dim, face->node);
     }
-    visit_faces(faces, cell_count, at, true);
-    for (int64_t n = 0; n < node_count; n++) {
-        qsort(&faces->face[faces->ptr[n]], (size_t)(faces->ptr[n + 1] - faces->ptr[n]), sizeof *faces->face,
-              compare_faces);
-    }
-    find_overlap(faces, node_count, overlap);
-done:
-    free(at);
-    if (status != STATUS_OK) {
-        msh_faces_free(faces);
-    }
-    return status;
+    qsort(faces->face, (size_t)faces->count, sizeof *faces->face, compare_faces);
+    find_overlap(faces, overlap);
+    return STATUS_OK;
 }
 
 void msh_faces_free(struct msh_faces *faces)
 {
-    FREE_ALL(faces->ptr, faces->face);
+    free(faces->face);
     *faces = (struct msh_faces){0};
 }
 
 int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int *count)
 {
-    int32_t key[3] = {-1, -1, -1};
-    for (int k = 0; k < faces->dim; k++) {
-        key[k] = node[k];
-    }
-    (void)sort_nodes(faces->dim, key);
-    int64_t first = -1;
-    *count = 0;
-    for (int64_t f = faces->ptr[key[0]]; f < faces->ptr[key[0] + 1]; f++) {
-        if (faces->face[f].rest[0] == key[1] && faces->face[f].rest[1] == key[2]) {
-            first = first < 0 ? f : first;
-            ++*count;
+    struct msh_face wanted = {.node = {-1, -1, -1}, .cell = -1};
+    memcpy(wanted.node, node, (size_t)faces->dim * sizeof *node);
+    (void)sort_nodes(faces->dim, wanted.node);
+    int64_t low = 0, high = faces->count;
+    while (low < high) { /* the first face that does not come before the one wanted */
+        int64_t middle = low + (high - low) / 2;
+        if (compare_faces(&faces->face[middle], &wanted) < 0) {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
     }
-    return first;
+    *count = 0;
+    while (low + *count < faces->count && same_nodes(&faces->face[low + *count], &wanted)) {
+        ++*count;
+    }
+    return *count > 0 ? low : -1;
 }
 
 void msh_face_nodes(const struct msh_faces *faces, int64_t face, int32_t node[])

@@ -240,8 +240,7 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     struct mesh *mesh = draft->mesh;
     struct gathering g = {.draft = draft};
     struct msh_overlap overlap;
-    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->node_count, mesh->cell_count, mesh->cells, &overlap,
-                       draft->error));
+    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->cell_count, mesh->cells, &overlap, draft->error));
     if (overlap.cell[0] >= 0) {
         status = fail_overlap(draft, &overlap);
         goto done;

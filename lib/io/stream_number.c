@@ -42,129 +42,77 @@ const char *number_parse_integer(const char *at, const char *end, int64_t least,
     return at;
 }
 
-/* A number in text: digits * 10^power; exact unless there are more than 19 digits. */
-struct decimal {
-    const char *begin, *end;
-    uint64_t digits;
-    int64_t power;
-    bool negative, exact, special; /* special: nan or inf */
-};
-
-/* nan or inf with or without a sign, in any case. */
-static bool scan_special(const char *first, const char *end, struct decimal *decimal)
+/* The end of nan or inf, in any case; NULL: neither. */
+static const char *skip_special(const char *first, const char *end)
 {
-    decimal->special = true;
-    decimal->end = first + 3;
-    return end - first >= 3 && ends_number(first + 3, end) &&
-           (strncasecmp(first, "nan", 3) == 0 || strncasecmp(first, "inf", 3) == 0);
+    bool special = end - first >= 3 && ends_number(first + 3, end) &&
+                   (strncasecmp(first, "nan", 3) == 0 || strncasecmp(first, "inf", 3) == 0);
+    return special ? first + 3 : NULL;
 }
 
-/* Take apart the number at `at`; false when there is none. (strtod would accept blanks before it, hexadecimal
- * numbers, "infinity", "nan(...)".) */
-static bool scan_decimal(const char *at, const char *end, struct decimal *decimal)
+static const char *skip_digits(const char *at, const char *end)
 {
-    int64_t count = 0; /* of digits, without leading zeros */
-    bool any = false, in_fraction = false;
-    const char *first = skip_sign(at, end), *c = first;
-    *decimal = (struct decimal){.begin = at, .negative = first > at && *at == '-'};
-    for (; c < end && (is_digit(*c) || (*c == '.' && !in_fraction)); c++) {
-        if (*c == '.') {
-            in_fraction = true;
-            continue;
-        }
-        decimal->digits = 10 * decimal->digits + (uint64_t)(*c - '0');
-        decimal->power -= in_fraction;
-        count += count > 0 || *c != '0';
-        any = true;
+    while (at < end && is_digit(*at)) {
+        at++;
     }
-    if (!any) {
-        return scan_special(first, end, decimal);
-    }
-    decimal->exact = count <= 19;
-    if (c < end && (*c == 'e' || *c == 'E')) {
-        const char *sign = c + 1, *digits = skip_sign(sign, end);
-        int64_t exponent = 0;
-        for (c = digits; c < end && is_digit(*c); c++) {
-            exponent = exponent < 100000 ? 10 * exponent + (*c - '0') : exponent;
-        }
-        if (c == digits) {
-            return false;
-        }
-        decimal->power += *sign == '-' ? -exponent : exponent;
-    }
-    decimal->end = c;
-    return ends_number(c, end) && c - at <= NUMBER_LIMIT;
+    return at;
 }
 
-__extension__ typedef unsigned __int128 uint128;
-
-static uint64_t power_of_five(int64_t power)
+/* The end of the decimal number that begins here, behind its sign; NULL where there is none. (strtod would
+ * accept blanks before it, hexadecimal numbers, "infinity", "nan(...)".) */
+static const char *skip_decimal(const char *first, const char *end)
 {
-    uint64_t result = 1, square = 5;
-    for (; power > 0; power /= 2) {
-        result *= power % 2 == 1 ? square : 1;
-        square *= square;
+    const char *at = skip_digits(first, end);
+    int64_t digits = at - first;
+    if (at < end && *at == '.') {
+        const char *fraction = at + 1;
+        at = skip_digits(fraction, end);
+        digits += at - fraction;
     }
-    return result;
+    if (digits > 0 && at < end && (*at == 'e' || *at == 'E')) {
+        const char *exponent = skip_sign(at + 1, end);
+        at = skip_digits(exponent, end);
+        digits = at - exponent;
+    }
+    return digits > 0 && ends_number(at, end) ? at : NULL;
 }
 
-/* Correctly rounded, by whole numbers: 10^p = 5^p 2^p, and 5^27 has 63 bits. False where that does not do. A
- * field in text is read in half the time that strtod takes. */
-static bool convert_short(const struct decimal *decimal, double *value)
+/* Copy the number at `at` as a text that ends; *special: it is nan or inf. Its end, or NULL: none. */
+static const char *copy_number(const char *at, const char *end, char text[NUMBER_LIMIT + 1], bool *special)
 {
-    enum { MOST_POWER = 27 };
-    int64_t power = decimal->power;
-    if (!decimal->exact || power < -MOST_POWER || power > MOST_POWER) {
-        return false;
+    const char *first = skip_sign(at, end), *last = skip_special(first, end);
+    *special = last != NULL;
+    last = *special ? last : skip_decimal(first, end);
+    if (last == NULL || last - at > NUMBER_LIMIT) {
+        return NULL;
     }
-    uint128 number = decimal->digits;
-    int exponent = (int)power;
-    if (power >= 0) {
-        number *= power_of_five(power);
-    } else if (number > 0) {
-        uint64_t divisor = power_of_five(-power);
-        int shift = 63 + __builtin_clzll(decimal->digits);
-        number <<= shift;
-        /* The quotient has 63 bits or more: the last one may stand for all that follow. */
-        number = number / divisor | (number % divisor != 0);
-        exponent -= shift;
-    }
-    *value = ldexp((double)number, exponent);
-    *value = decimal->negative ? -*value : *value;
-    return true;
-}
-
-/* The number's text, ended by a zero, for strtod. */
-static const char *decimal_text(const struct decimal *decimal, char text[NUMBER_LIMIT + 1])
-{
-    size_t length = (size_t)(decimal->end - decimal->begin);
-    memcpy(text, decimal->begin, length);
-    text[length] = '\0';
-    return text;
+    memcpy(text, at, (size_t)(last - at));
+    text[last - at] = '\0';
+    return last;
 }
 
 const char *number_parse_double(const char *at, const char *end, double *value)
 {
     char text[NUMBER_LIMIT + 1];
-    struct decimal decimal;
-    if (!scan_decimal(at, end, &decimal)) {
+    bool special;
+    const char *last = copy_number(at, end, text, &special);
+    if (last == NULL) {
         return NULL;
     }
-    if (decimal.special || !convert_short(&decimal, value)) {
-        *value = strtod(decimal_text(&decimal, text), NULL);
-    }
-    return decimal.special || isfinite(*value) ? decimal.end : NULL;
+    *value = strtod(text, NULL);
+    return special || isfinite(*value) ? last : NULL;
 }
 
 const char *number_parse_float(const char *at, const char *end, float *value)
 {
     char text[NUMBER_LIMIT + 1];
-    struct decimal decimal;
-    if (!scan_decimal(at, end, &decimal)) {
+    bool special;
+    const char *last = copy_number(at, end, text, &special);
+    if (last == NULL) {
         return NULL;
     }
-    *value = strtof(decimal_text(&decimal, text), NULL);
-    return decimal.special || isfinite(*value) ? decimal.end : NULL;
+    *value = strtof(text, NULL);
+    return special || isfinite(*value) ? last : NULL;
 }
 
 size_t number_format_integer(char *text, int64_t value)

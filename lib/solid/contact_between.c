@@ -20,15 +20,8 @@ void contact_between_free(struct contact *contact)
     struct contact_between *between = contact->between;
     if (between != NULL) {
         opposite_free(&between->opposite);
-        free(between->part);
-        free(between->begin);
-        free(between->before);
-        free(between->checked_way);
-        free(between->checked_free);
-        free(between->taken_facet);
-        free(between->taken_weight);
-        free(between->now);
-        free(between->view);
+        FREE_ALL(between->part, between->begin, between->before, between->checked_way, between->checked_free,
+                 between->taken_facet, between->taken_weight, between->now, between->view);
     }
     free(between);
     contact->between = NULL;

@@ -76,10 +76,7 @@ static enum status find_inside(const struct contact *contact, const struct facet
     }
 done:
     rigid_free(&facets);
-    free(corners);
-    free(place);
-    free(spacing);
-    free(outside);
+    FREE_ALL(corners, place, spacing, outside);
     return status;
 }
 
@@ -120,9 +117,6 @@ enum status contact_patch_find(const struct contact *contact, const struct facet
         status = find_inside(contact, set, cells, patch, error);
     }
 done:
-    free(marks.force);
-    free(marks.presses);
-    free(marks.surrounded);
-    free(marks.near);
+    FREE_ALL(marks.force, marks.presses, marks.surrounded, marks.near);
     return status;
 }

@@ -67,8 +67,8 @@
         .neo_hookean = neo_hookean_##set##_##dim,                                                            \
         .bounds = bounds_##set##_##dim};
 
-KERNEL_SET(plain, 2, PLAIN_SET)
-KERNEL_SET(plain, 3, PLAIN_SET)
+KERNEL_SET(plain, 2, )
+KERNEL_SET(plain, 3, )
 
 #if defined(__x86_64__)
 /* Unlike others, these may fuse multiplications. */

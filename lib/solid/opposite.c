@@ -33,8 +33,7 @@ enum status opposite_parts(const struct cells *cells, int32_t *part, struct erro
         seen[node] = true;
     }
 done:
-    free(of_cell);
-    free(seen);
+    FREE_ALL(of_cell, seen);
     return status;
 }
 

@@ -109,8 +109,7 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
         }
     }
 done:
-    free(conditions);
-    free(solved);
+    FREE_ALL(conditions, solved);
     return status;
 }
 

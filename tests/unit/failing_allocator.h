@@ -101,25 +101,25 @@ void GOMP_parallel(void (*work)(void *), void *data, unsigned threads, unsigned 
 }
 #endif
 
-/* Let the first, the second, ... allocation fail, until none is left to fail. */
+/* Let the first, the second, ... allocation fail, until none is left to fail. A run that succeeds all the
+ * same is one of qsort, which does without memory when it gets none. */
 static inline void fail_each(enum status (*try)(struct error *error), long least)
 {
     struct error error = {""};
-    enum status status = STATUS_SYSTEM;
-    long count = 0;
-    for (; status == STATUS_SYSTEM; count++) {
+    long failed = 0, count = 0;
+    for (bool denied = true; denied; count++) {
         before_failure = count;
         alive = 0;
         watched = true;
-        status = try(&error);
+        enum status status = try(&error);
         watched = false;
+        denied = before_failure < 0;
         assert_int_equal(alive, 0);
-        if (status == STATUS_SYSTEM) {
-            assert_non_null(strstr(error.text, "out of memory"));
-        }
+        assert_true(status == STATUS_OK ||
+                    (status == STATUS_SYSTEM && strstr(error.text, "out of memory") != NULL));
+        failed += status == STATUS_SYSTEM;
     }
-    assert_int_equal(status, STATUS_OK);
-    assert_true(count > least);
+    assert_true(failed > least);
 }
 
 #endif

@@ -2,7 +2,6 @@
  * left allocated. */
 #include "approx/cloud.h"
 #include "approx/motion.h"
-#include "approx/raster.h"
 #include "image_fixture.h"
 #include "io/image.h"
 
@@ -49,13 +48,7 @@ static double *u;
 static enum status move(struct error *error)
 {
     struct motion motion = {0};
-    int32_t owner[64];
-    int64_t doubly;
-    static const int64_t size[3] = {4, 4, 4};
     enum status status = motion_build(&cells, u, false, NULL, &motion, error);
-    if (status == STATUS_OK) {
-        status = raster_cells(&cells, 1, size, owner, &doubly, error);
-    }
     motion_free(&motion);
     return status;
 }

@@ -49,32 +49,12 @@ static enum status try_label_table(struct error *error)
     return status;
 }
 
-/* Not fail_each: qsort does without memory when it gets none. */
 TEST(cells)
 {
-    enum { ENOUGH = 1000000 };
     struct error error = {""};
-    long failed = 0;
     omp_set_num_threads(1);
     GOOD(try_stuffing(&error)); /* OpenMP has what it keeps */
-    before_failure = ENOUGH;
-    watched = true;
-    enum status status = try_stuffing(&error);
-    watched = false;
-    assert_int_equal(status, STATUS_OK);
-    long count = ENOUGH - before_failure;
-    for (long i = 0; i < count; i++) {
-        before_failure = i;
-        alive = 0;
-        watched = true;
-        status = try_stuffing(&error);
-        watched = false;
-        assert_int_equal(alive, 0);
-        assert_true(status == STATUS_OK ||
-                    (status == STATUS_SYSTEM && strstr(error.text, "out of memory") != NULL));
-        failed += status == STATUS_SYSTEM;
-    }
-    assert_true(failed > 40 && failed >= count - 4);
+    fail_each(try_stuffing, 40);
 }
 
 TEST(tables)

@@ -5,6 +5,7 @@
 #include "approx/cells.h"
 #include "approx/quality.h"
 #include "base/box.h"
+#include "tool.h"
 
 /* The most cells that are reported one by one. */
 #define CELL_REPORT_MOST 10
@@ -27,5 +28,9 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 
 /* "0 0 0 to 0.1 0.1 0.2 m" */
 const char *cell_report_box(const struct box *box, char text[128]);
+
+/* Note where a tenth of the boundary or more is on parts about one cell thick. Exits with a message where
+ * memory fails. */
+void tool_note_thin(const struct tool *tool, const struct cells *cells);
 
 #endif

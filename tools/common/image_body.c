@@ -116,7 +116,7 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
     int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
     TOOL_TRY(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error));
     placed.x = place;
-    TOOL_TRY(tool, raster_cells(&placed, sign, size, owner, doubly, &error));
+    raster_cells(&placed, sign, size, owner, doubly);
     free(place);
     return owner;
 }

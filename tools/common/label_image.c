@@ -353,11 +353,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
 
 void label_image_free(struct label_image *image)
 {
-    free(image->voxel);
-    free(image->keep);
-    free(image->volume);
-    free(image->region);
-    free(image->part_of);
+    FREE_ALL(image->voxel, image->keep, image->volume, image->region, image->part_of);
     for (int32_t p = 0; p < image->part_count; p++) {
         free(image->part[p]);
     }

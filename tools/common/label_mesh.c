@@ -154,9 +154,7 @@ static enum status make_sets(const struct label_image *image, const struct stuff
     }
     mesh->set_ptr[mesh->node_sets.count] = kept;
 done:
-    free(across);
-    free(region);
-    free(member);
+    FREE_ALL(across, region, member);
     return status;
 }
 

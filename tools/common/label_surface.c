@@ -150,10 +150,7 @@ static void print_surface(const struct tool *tool, FILE *file, const struct stuf
     } else {
         print_curves(file, stuffing, options, place, next);
     }
-    free(mean);
-    free(least);
-    free(place);
-    free(next);
+    FREE_ALL(mean, least, place, next);
 }
 
 void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,

@@ -12,60 +12,50 @@ const char *tool_value(const struct tool *tool, const char *option)
     return options_find(&tool->options, option)->value;
 }
 
+/* Parse the value of the option, where it is given. */
+#define PARSE_GIVEN(parse, ...)                                                                              \
+    do {                                                                                                     \
+        char what[32];                                                                                       \
+        const struct option *found = options_find(&tool->options, option);                                   \
+        if (found->given) {                                                                                  \
+            TOOL_TRY(tool, parse(found->value, option_text(found, what), __VA_ARGS__, &error));              \
+        }                                                                                                    \
+    } while (0)
+
 double tool_number(const struct tool *tool, const char *option, double least, double most, double otherwise)
 {
-    char what[32];
-    const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
-    if (found->given) {
-        TOOL_TRY(tool, parse_double(found->value, option_text(found, what), least, most, &value, &error));
-    }
+    PARSE_GIVEN(parse_double, least, most, &value);
     return value;
 }
 
 int64_t tool_integer(const struct tool *tool, const char *option, int64_t least, int64_t most,
                      int64_t otherwise)
 {
-    char what[32];
-    const struct option *found = options_find(&tool->options, option);
     int64_t value = otherwise;
-    if (found->given) {
-        TOOL_TRY(tool, parse_integer(found->value, option_text(found, what), least, most, &value, &error));
-    }
+    PARSE_GIVEN(parse_integer, least, most, &value);
     return value;
 }
 
 double tool_length(const struct tool *tool, const char *option, double otherwise)
 {
-    char what[32];
-    const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
-    if (found->given) {
-        TOOL_TRY(tool, parse_length(found->value, option_text(found, what), &value, &error));
-    }
+    PARSE_GIVEN(parse_length, &value);
     return value;
 }
 
 double tool_length_unit(const struct tool *tool, const char *option, double otherwise)
 {
-    char what[32];
-    const struct option *found = options_find(&tool->options, option);
     double value = otherwise;
-    if (found->given) {
-        TOOL_TRY(tool, parse_length_unit(found->value, option_text(found, what), &value, &error));
-    }
+    PARSE_GIVEN(parse_length_unit, &value);
     return value;
 }
 
 int tool_choice(const struct tool *tool, const char *option, const char *const choices[], int count,
                 int otherwise)
 {
-    char what[32];
-    const struct option *found = options_find(&tool->options, option);
     int choice = otherwise;
-    if (found->given) {
-        TOOL_TRY(tool, parse_choice(found->value, option_text(found, what), choices, count, &choice, &error));
-    }
+    PARSE_GIVEN(parse_choice, choices, count, &choice);
     return choice;
 }
 
