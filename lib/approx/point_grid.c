@@ -377,8 +377,7 @@ static enum status query_touching(const struct point_grid *grid, const double *x
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                              struct index_list *list, struct error *error)
 {
-    if (factor <= 1.0 && grid->level[0].touch != NULL) {
-        return query_touching(grid, x, factor, list, error);
-    }
-    return point_grid_query_box(grid, x, x, factor, list, error);
+    return factor <= 1.0 && grid->level[0].touch != NULL
+               ? query_touching(grid, x, factor, list, error)
+               : point_grid_query_box(grid, x, x, factor, list, error);
 }

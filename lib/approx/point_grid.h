@@ -37,8 +37,7 @@ MUST_CHECK enum status point_grid_build(struct point_grid *grid, int dim, int64_
                                         const double *radius, struct error *error);
 void point_grid_free(struct point_grid *grid);
 
-/* List for each bin which supports touch it: pays where there are more queries of points, by a factor of at
- * most 1, than nodes. */
+/* List which supports touch each bin: for many queries of points, by a factor of at most 1. */
 MUST_CHECK enum status point_grid_list_touching(struct point_grid *grid, struct error *error);
 
 /* A growing list of node indices. */

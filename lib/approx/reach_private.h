@@ -13,9 +13,8 @@ struct pair_list {
     int64_t count, row_capacity, capacity;
     int32_t *row, *value;
 };
-/* Room for `more` pairs. */
+/* Make room for `more` pairs; add one where there is room. */
 MUST_CHECK enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error);
-/* Add one where there is room. */
 static inline void pair_list_add(struct pair_list *pairs, int32_t row, int32_t value)
 {
     pairs->row[pairs->count] = row;
