@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int level_of(double radius, double least)
 {
@@ -133,9 +134,73 @@ done:
 void point_grid_free(struct point_grid *grid)
 {
     for (int l = 0; l < grid->level_count; l++) {
-        FREE_ALL(grid->level[l].start, grid->level[l].node, grid->level[l].place);
+        const struct point_grid_level *level = &grid->level[l];
+        FREE_ALL(level->start, level->node, level->place, level->touch_start, level->touch);
     }
     *grid = (struct point_grid){0};
+}
+
+/* The square of how far a place along an axis is from a bin, in bins. */
+static inline double gap2(int64_t bin, double at)
+{
+    double gap = fmax(fmax((double)bin - at, at - (double)(bin + 1)), 0.0);
+    return gap * gap;
+}
+
+/* Count, or with a list file, the bins that the support at a place of a level touches. */
+static void file_bins(const struct point_grid_level *level, int dim, int32_t slot, int64_t *start,
+                      int32_t *list)
+{
+    const double *place = level->place + (int64_t)slot * (dim + 1);
+    double at[3] = {0.0, 0.0, 0.0}, radius = place[dim] * level->per_length * (1.0 + 1e-9) + 1e-9;
+    int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+    for (int a = 0; a < dim; a++) {
+        at[a] = (place[a] - level->origin[a]) * level->per_length;
+        from[a] = at[a] > radius ? (int64_t)(at[a] - radius) : 0;
+        to[a] = at[a] + radius < (double)level->bins[a] ? (int64_t)(at[a] + radius) : level->bins[a] - 1;
+    }
+    for (int64_t k = from[2]; k <= to[2]; k++) {
+        for (int64_t j = from[1]; j <= to[1]; j++) {
+            double rest = radius * radius - gap2(k, at[2]) - gap2(j, at[1]);
+            int64_t *row = start + (k * level->bins[1] + j) * level->bins[0];
+            for (int64_t i = from[0]; i <= to[0]; i++) {
+                if (gap2(i, at[0]) <= rest && list == NULL) {
+                    row[i + 2]++;
+                } else if (gap2(i, at[0]) <= rest) {
+                    list[row[i + 1]++] = slot;
+                }
+            }
+        }
+    }
+}
+
+enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
+    for (int l = 0; l < grid->level_count; l++) {
+        struct point_grid_level *level = &grid->level[l];
+        int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
+        free(slot);
+        TRY(NEW_ARRAY(&slot, grid->node_count, error));
+        TRY(NEW_ARRAY(&level->touch_start, bins + 2, error));
+        for (int32_t i = 0; level->start != NULL && i < level->start[bins]; i++) {
+            slot[level->node[i]] = i + 1;
+            file_bins(level, grid->dim, i, level->touch_start, NULL);
+        }
+        for (int64_t b = 0; b < bins; b++) {
+            level->touch_start[b + 2] += level->touch_start[b + 1];
+        }
+        TRY(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
+        for (int64_t n = 0; n < grid->node_count; n++) {
+            if (slot[n] > 0) {
+                file_bins(level, grid->dim, slot[n] - 1, level->touch_start, level->touch);
+            }
+        }
+    }
+done:
+    free(slot);
+    return status;
 }
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
@@ -143,52 +208,52 @@ enum status index_list_reserve(struct index_list *list, int64_t count, struct er
     return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
-/* Append those of the nodes [first, last) of a level whose supports reach the box (or the point: low ==
- * high).
- */
+/* Append those of the places [first, last) of a level whose supports reach the box; or, with a list of
+ * places, of slot[first .. last) those whose supports contain the point low. */
 static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
-                                                            bool point, int64_t first, int64_t last,
+                                                            const int32_t *slot, int64_t first, int64_t last,
                                                             const double *low, const double *high,
                                                             double factor, struct index_list *list)
 {
     int32_t *index = list->index + list->count;
     int64_t found = 0;
     for (int64_t i = first; i < last; i++) {
-        const double *place = level->place + i * (dim + 1);
+        int64_t at = slot != NULL ? slot[i] : i;
+        const double *place = level->place + at * (dim + 1);
         double radius = place[dim] * factor, distance2 = 0.0;
         for (int a = 0; a < dim; a++) {
             double difference = place[a] - low[a];
-            if (!point) {
+            if (slot == NULL) {
                 double below = -difference, above = place[a] - high[a];
                 difference = (below > 0.0 ? below : 0.0) + (above > 0.0 ? above : 0.0);
             }
             distance2 += difference * difference;
         }
-        index[found] = level->node[i];
+        index[found] = (int32_t)at;
         found += distance2 < radius * radius;
     }
     list->count += found;
 }
 
 /* The same for each kind. */
-static void query_any_run(const struct point_grid_level *level, int dim, int64_t first, int64_t last,
-                          const double *low, const double *high, double factor, struct index_list *list)
+static void query_any_run(const struct point_grid_level *level, int dim, const int32_t *slot, int64_t first,
+                          int64_t last, const double *low, const double *high, double factor,
+                          struct index_list *list)
 {
-    bool point = low == high;
-    if (dim == 2 && point) {
-        query_run(level, 2, true, first, last, low, high, factor, list);
+    if (slot != NULL && dim == 2) {
+        query_run(level, 2, slot, first, last, low, high, factor, list);
+    } else if (slot != NULL) {
+        query_run(level, 3, slot, first, last, low, high, factor, list);
     } else if (dim == 2) {
-        query_run(level, 2, false, first, last, low, high, factor, list);
-    } else if (point) {
-        query_run(level, 3, true, first, last, low, high, factor, list);
+        query_run(level, 2, NULL, first, last, low, high, factor, list);
     } else {
-        query_run(level, 3, false, first, last, low, high, factor, list);
+        query_run(level, 3, NULL, first, last, low, high, factor, list);
     }
 }
 
-static enum status query_level(const struct point_grid *grid, const struct point_grid_level *level,
-                               const double *low, const double *high, double factor, struct index_list *list,
-                               struct error *error)
+enum status point_grid_list_places(const struct point_grid *grid, const struct point_grid_level *level,
+                                   const double *low, const double *high, double factor,
+                                   struct index_list *list, struct error *error)
 {
     int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
     double reach = level->largest_radius * factor * (1.0 + 1e-9); /* rounding at the edges of bins */
@@ -206,30 +271,65 @@ static enum status query_level(const struct point_grid *grid, const struct point
             int64_t row = (k * level->bins[1] + j) * level->bins[0];
             int64_t first = level->start[row + from[0]], last = level->start[row + to[0] + 1];
             RETURN_IF_ERROR(index_list_reserve(list, last - first, error));
-            query_any_run(level, grid->dim, first, last, low, high, factor, list);
+            query_any_run(level, grid->dim, NULL, first, last, low, high, factor, list);
         }
     }
     return STATUS_OK;
 }
 
-enum status point_grid_list_box(const struct point_grid *grid, const double *low, const double *high,
-                                double factor, struct index_list *list, struct error *error)
+/* Two ascending lists as one. */
+static void merge(const int32_t *a, const int32_t *end_a, const int32_t *b, const int32_t *end_b,
+                  int32_t *merged)
 {
-    for (int l = 0; l < grid->level_count; l++) {
-        if (grid->level[l].start != NULL) {
-            RETURN_IF_ERROR(query_level(grid, &grid->level[l], low, high, factor, list, error));
-        }
+    while (a < end_a && b < end_b) {
+        int32_t first = *a, second = *b;
+        bool from_a = first < second;
+        *merged++ = from_a ? first : second;
+        a += from_a;
+        b += !from_a;
     }
-    return STATUS_OK;
+    memcpy(merged, a, (size_t)(end_a - a) * sizeof *a);
+    memcpy(merged + (end_a - a), b, (size_t)(end_b - b) * sizeof *b);
 }
 
 enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
                                  double factor, struct index_list *list, struct error *error)
 {
     int64_t first = list->count;
-    RETURN_IF_ERROR(point_grid_list_box(grid, low, high, factor, list, error));
+    for (int l = 0; l < grid->level_count; l++) {
+        int64_t before = list->count;
+        if (grid->level[l].start != NULL) {
+            RETURN_IF_ERROR(point_grid_list_places(grid, &grid->level[l], low, high, factor, list, error));
+        }
+        for (int64_t i = before; i < list->count; i++) {
+            list->index[i] = grid->level[l].node[list->index[i]];
+        }
+    }
     if (list->count > first) {
         qsort(list->index + first, (size_t)(list->count - first), sizeof *list->index, compare_int32);
+    }
+    return STATUS_OK;
+}
+
+/* The same for a point, by what touches its bins. */
+static enum status query_touching(const struct point_grid *grid, const double *x, double factor,
+                                  struct index_list *list, struct error *error)
+{
+    int64_t first = list->count;
+    for (int l = 0; l < grid->level_count; l++) {
+        const struct point_grid_level *level = &grid->level[l];
+        int64_t before = list->count, bin = level->start != NULL ? bin_of(grid, level, x) : 0;
+        int64_t from = level->touch_start[bin], to = level->touch_start[bin + 1];
+        RETURN_IF_ERROR(index_list_reserve(list, before - first + 2 * (to - from), error));
+        query_any_run(level, grid->dim, level->touch, from, to, x, x, factor, list);
+        int32_t *index = list->index + first, *own = list->index + before, *end = list->index + list->count;
+        for (int32_t *i = own; i < end; i++) {
+            *i = level->node[*i];
+        }
+        if (own > index && end > own) {
+            merge(index, own, own, end, end);
+            memcpy(index, end, (size_t)(end - index) * sizeof *index);
+        }
     }
     return STATUS_OK;
 }
@@ -237,5 +337,7 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
 enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                              struct index_list *list, struct error *error)
 {
-    return point_grid_query_box(grid, x, x, factor, list, error);
+    return factor <= 1.0 && grid->level[0].touch != NULL
+               ? query_touching(grid, x, factor, list, error)
+               : point_grid_query_box(grid, x, x, factor, list, error);
 }

@@ -11,19 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status pair_list_add(struct pair_list *pairs, int32_t row, int32_t value, struct error *error)
+enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error)
 {
-    RETURN_IF_ERROR(GROW_ARRAY(&pairs->row, pairs->count + 1, &pairs->row_capacity, error));
-    RETURN_IF_ERROR(GROW_ARRAY(&pairs->value, pairs->count + 1, &pairs->capacity, error));
-    pairs->row[pairs->count] = row;
-    pairs->value[pairs->count++] = value;
-    return STATUS_OK;
+    RETURN_IF_ERROR(GROW_ARRAY(&pairs->row, pairs->count + more, &pairs->row_capacity, error));
+    return GROW_ARRAY(&pairs->value, pairs->count + more, &pairs->capacity, error);
 }
 
 enum status pair_list_append(struct pair_list *pairs, const struct pair_list *more, struct error *error)
 {
+    RETURN_IF_ERROR(pair_list_reserve(pairs, more->count, error));
     for (int64_t i = 0; i < more->count; i++) {
-        RETURN_IF_ERROR(pair_list_add(pairs, more->row[i], more->value[i], error));
+        pair_list_add(pairs, more->row[i], more->value[i]);
     }
     return STATUS_OK;
 }
@@ -194,8 +192,9 @@ static enum status find_corners(const struct faces *faces, struct reach *reach, 
         reach->corner[a] = true;
         if (b >= 0) {
             reach->corner[b] = true;
-            TRY(pair_list_add(&edges, a, b, error));
-            TRY(pair_list_add(&edges, b, a, error));
+            TRY(pair_list_reserve(&edges, 2, error));
+            pair_list_add(&edges, a, b);
+            pair_list_add(&edges, b, a);
         }
     }
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
@@ -230,11 +229,13 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
         TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
         TRY(reach_begin(reach, &nodes, n, x, work, error));
         TRY(reach_mark_shadows(reach, &shadows, n, work, &unused, error));
+        TRY(pair_list_reserve(&seen, near.count, error));
+        TRY(pair_list_reserve(&hidden, near.count, error));
         for (int64_t i = 0; i < near.count; i++) {
             if (reach_is_hidden(work, near.index[i])) {
-                TRY(pair_list_add(&hidden, (int32_t)n, near.index[i], error));
+                pair_list_add(&hidden, (int32_t)n, near.index[i]);
             } else if (reach->corner[n] && near.index[i] != n) {
-                TRY(pair_list_add(&seen, near.index[i], (int32_t)n, error));
+                pair_list_add(&seen, near.index[i], (int32_t)n);
             }
         }
     }

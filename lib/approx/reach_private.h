@@ -13,8 +13,13 @@ struct pair_list {
     int64_t count, row_capacity, capacity;
     int32_t *row, *value;
 };
-MUST_CHECK enum status pair_list_add(struct pair_list *pairs, int32_t row, int32_t value,
-                                     struct error *error);
+/* Make room for `more` pairs; add one where there is room. */
+MUST_CHECK enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error);
+static inline void pair_list_add(struct pair_list *pairs, int32_t row, int32_t value)
+{
+    pairs->row[pairs->count] = row;
+    pairs->value[pairs->count++] = value;
+}
 /* Take up those of another. */
 MUST_CHECK enum status pair_list_append(struct pair_list *pairs, const struct pair_list *more,
                                         struct error *error);

@@ -103,21 +103,21 @@ static enum status list_points(const struct reach *reach, const struct shaded *p
     double radius = reach->grid->radius[node], tolerance = REACH_ON_PLANE * radius;
     double of_y = reach_height_above(dim, facet, y);
     struct box box = box_of_shadow(reach, facet, node, of_y > tolerance);
+    const struct point_grid_level *level = &points->grid.level[0];
     near->count = 0;
-    RETURN_IF_ERROR(point_grid_list_box(&points->grid, box.low, box.high, 1e-6, near, error));
+    RETURN_IF_ERROR(point_grid_list_places(&points->grid, level, box.low, box.high, 1e-6, near, error));
+    RETURN_IF_ERROR(pair_list_reserve(pairs, near->count, error));
     for (int64_t i = 0; i < near->count; i++) {
-        const double *x = points->grid.x + (int64_t)near->index[i] * dim;
+        const double *x = level->place + (int64_t)near->index[i] * (dim + 1);
+        int32_t point = level->node[near->index[i]];
         double of_x = reach_height_above(dim, facet, x);
-        if (points->body_of != NULL && points->body_of[near->index[i]] != points->body) {
-            continue;
-        }
-        if (of_x > tolerance || !(vector_distance2(dim, y, x) < radius * radius)) {
+        if (of_x > tolerance || !(vector_distance2(dim, y, x) < radius * radius) ||
+            (points->body_of != NULL && points->body_of[point] != points->body)) {
             continue;
         }
         enum passage passage = passage_of(dim, facet, tolerance, x, of_x, false, y, of_y);
         if (passage != PASSES_NOT) {
-            RETURN_IF_ERROR(
-                pair_list_add(pairs, near->index[i], passage == PASSES ? ~shadow : shadow, error));
+            pair_list_add(pairs, point, passage == PASSES ? ~shadow : shadow);
         }
     }
     return STATUS_OK;

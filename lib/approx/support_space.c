@@ -101,6 +101,7 @@ enum status support_space_build(const struct support_options *options, const str
         }
         TRY(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
                              side->node != NULL ? side->radius : radius, error));
+        TRY(point_grid_list_touching(&side->grid, error));
         if (space->by_cells) {
             TRY(reach_build(&own, &side->grid, &side->reach, error));
         }

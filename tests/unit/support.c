@@ -13,18 +13,22 @@ TEST(grid_against_brute_force)
     for (int dim = 2; dim <= 3; dim++) {
         enum { NODES = 400, POINTS = 150 };
         double x[NODES * 3], radius[NODES], point[3];
-        for (int kind = 0; kind < 2; kind++) { /* constant radii, graded radii */
+        for (int kind = 0; kind < 4;
+             kind++) { /* constant radii, graded radii; both with lists of what touches bins */
             for (int i = 0; i < NODES * dim; i++) {
                 x[i] = 5.0 + gsl_rng_uniform(random);
             }
             memcpy(x + dim, x, (size_t)dim * sizeof *x);
             for (int n = 0; n < NODES; n++) {
-                radius[n] = kind == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
+                radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
             }
             struct point_grid grid;
             struct index_list list = {0};
             struct error error;
             GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
+            if (kind >= 2) {
+                GOOD(point_grid_list_touching(&grid, &error));
+            }
             for (int p = 0; p < POINTS; p++) {
                 for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
                     point[a] = p < 20 ? x[p * dim + a] : 4.0 + 3.0 * gsl_rng_uniform(random);
