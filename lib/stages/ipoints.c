@@ -15,15 +15,8 @@ struct ipoints_options ipoints_defaults(void)
     return (struct ipoints_options){.smoothed = true};
 }
 
-/* Integration points, their weights, and the cell of each. */
-struct points {
-    int64_t count;
-    double *x, *weight;
-    int32_t *cell;
-};
-
 /* Room for so many points. */
-static enum status new_points(int64_t count, int dim, struct points *points, struct error *error)
+static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&points->weight, count, error));
@@ -33,7 +26,7 @@ static enum status new_points(int64_t count, int dim, struct points *points, str
 }
 
 /* One point for each smoothed cell, or those of a rule. */
-static enum status cell_points(const struct cells *cells, int per_cell, struct points *points,
+static enum status cell_points(const struct cells *cells, int per_cell, struct adaptive_points *points,
                                struct error *error)
 {
     struct quadrature_rule rule;
@@ -72,8 +65,8 @@ static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3],
 
 /* A lattice of points, at least 2 along each axis, over the box of the nodes, x fastest; weights of the
  * trapezium rule. */
-static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3], struct points *points,
-                                  struct error *error)
+static enum status lattice_points(const struct cells *nodes, const int64_t wanted[3],
+                                  struct adaptive_points *points, struct error *error)
 {
     int dim = nodes->dim;
     int64_t count = 0, n[3];
@@ -98,8 +91,40 @@ static enum status lattice_points(const struct cells *nodes, const int64_t wante
     return STATUS_OK;
 }
 
-static enum status put_points(struct stream *stream, int dim, const char *rule, struct points *points,
-                              struct error *error)
+/* What the shape functions of adaptive integration are made from: the settings and radii recorded in the
+ * stream, unless others were asked for. */
+static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
+                                  const struct cells *cells, double *radius, struct error *error)
+{
+    const struct section *recorded = stream_find(stream, "support.radius");
+    if (recorded == NULL || options->given_radius) {
+        return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
+    }
+    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
+    if (recorded->rows != cells->node_count) {
+        return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
+                    (long long)recorded->rows, (long long)cells->node_count);
+    }
+    memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
+    return STATUS_OK;
+}
+
+static enum status adaptive_cell_points(const struct stream *stream, const struct ipoints_options *options,
+                                        const struct cells *cells, struct adaptive_points *points,
+                                        struct error *error)
+{
+    enum status status;
+    double *radius = NULL;
+    TRY(NEW_ARRAY(&radius, cells->node_count, error));
+    TRY(adaptive_radii(stream, options, cells, radius, error));
+    TRY(adaptive_points_build(&options->refinement, cells, radius, points, error));
+done:
+    free(radius);
+    return status;
+}
+
+static enum status put_points(struct stream *stream, int dim, const char *rule,
+                              struct adaptive_points *points, struct error *error)
 {
     char vector[64], attributes[96];
     int64_t count = points->count;
@@ -138,19 +163,25 @@ done:
     return status;
 }
 
-enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, struct error *error)
+enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,
+                          struct error *error)
 {
     enum status status = STATUS_OK;
     struct cells cells;
-    struct points points = {0};
+    struct adaptive_points points = {0};
     bool lattice = options->lattice[0] > 0;
     int per_cell = options->smoothed ? 1 : options->gauss_points;
     char rule[32];
+    *unresolved = 0;
     TRY(lattice ? stream_nodes(stream, &cells.dim, &cells.node_count, &cells.x, error)
                 : stream_cells(stream, true, &cells, error));
     if (lattice) {
         snprintf(rule, sizeof rule, "lattice");
         TRY(lattice_points(&cells, options->lattice, &points, error));
+    } else if (options->adaptive) {
+        snprintf(rule, sizeof rule, "adaptive");
+        TRY(adaptive_cell_points(stream, options, &cells, &points, error));
+        *unresolved = points.unresolved;
     } else {
         snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
         TRY(cell_points(&cells, per_cell, &points, error));
@@ -162,6 +193,6 @@ enum status stage_ipoints(struct stream *stream, const struct ipoints_options *o
         TRY(put_faces(stream, &cells, !options->smoothed, error));
     }
 done:
-    FREE_ALL(points.x, points.weight, points.cell);
+    adaptive_points_free(&points);
     return status;
 }

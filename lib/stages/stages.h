@@ -5,20 +5,26 @@
 
 #include "stages/views.h"
 
+#include "approx/adaptive.h"
 #include "approx/support.h"
 
 /* How ipoints places integration points. */
 struct ipoints_options {
-    bool smoothed;      /* one point per cell, gradients smoothed over the cell */
-    int gauss_points;   /* else: points per cell */
+    bool smoothed;    /* one point per cell, gradients smoothed over the cell */
+    int gauss_points; /* else: points per cell */
+    bool adaptive;    /* else: cells subdivided; `refinement` says how */
+    struct adaptive_options refinement;
+    bool given_radius; /* refinement.support's radius or factor was asked for: else the stream's radii, if any
+                        */
     int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the nodes'
                            box; zeros behind the first: as that one along all axes */
 };
 struct ipoints_options ipoints_defaults(void);
 
-/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). */
+/* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts
+ * the cells that are too coarse even at the last level of adaptive integration. */
 MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options,
-                                     struct error *error);
+                                     int64_t *unresolved, struct error *error);
 
 /* radius[node_count] as support would choose them: constant, or a factor times the local spacing, which is
  * that of the cells where there are any. */

@@ -1,5 +1,6 @@
 /* Fault 25: whichever allocation fails, lib/approx reports it with STATUS_SYSTEM and leaves nothing
  * allocated. See failing_allocator.h. */
+#include "approx/adaptive.h"
 #include "approx/cloud.h"
 #include "approx/field_compare.h"
 #include "approx/field_error.h"
@@ -131,6 +132,28 @@ done:
     return status;
 }
 
+/* Adaptive points with a subdivision or two. */
+static enum status try_adaptive(struct error *error)
+{
+    enum status status;
+    struct cloud_options wanted = {
+        .kind = CLOUD_JITTERED, .dim = 2, .count = {3, 3}, .high = {1.0, 1.0}, .jitter = 0.2};
+    struct adaptive_options options = adaptive_defaults(2);
+    struct adaptive_points points = {0};
+    struct cloud cloud = {0};
+    double radius[9];
+    TRY(cloud_make(&wanted, &cloud, error));
+    for (int n = 0; n < 9; n++) {
+        radius[n] = 1.5;
+    }
+    struct cells cells = {2, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    TRY(adaptive_points_build(&options, &cells, radius, &points, error));
+done:
+    adaptive_points_free(&points);
+    cloud_free(&cloud);
+    return status;
+}
+
 /* Two fields on clouds that differ: spacings, matching, interpolation, statistics. */
 static enum status try_compare(struct error *error)
 {
@@ -196,6 +219,13 @@ TEST(sides)
     struct error error;
     GOOD(try_sides(&error));
     fail_each(try_sides, 60);
+}
+
+TEST(adaptive)
+{
+    struct error error;
+    GOOD(try_adaptive(&error));
+    fail_each(try_adaptive, 30);
 }
 
 TEST(comparisons)

@@ -1,0 +1,79 @@
+# Adaptive integration by ipoints -a.
+
+load common.bash
+
+setup() {
+    enter
+    cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
+}
+
+points() { mts print points.x | wc -l; }
+
+@test "wrong command lines are refused with status 2, before the input is read" {
+    for arguments in "-a" "-a 0" "-a -1" "-a nan" "-a 0.1 -c" "-a 0.1 --lattice 3,3" "-a 0.1 --levels 11" "-a 0.1 --levels -1" \
+        "--levels 3" "-k 2" "-R 8mm" "-b mls1" "--mu 1" "-g 3 -w regularised" "-a 0.1 -k 2 -R 8mm" "-a 0.1 -b mls3" "-a 0.1 -k 0"; do
+        run -2 --separate-stderr ipoints $arguments < /dev/null
+        [[ "$stderr" == "ipoints: "* ]]
+        [[ "$stderr" != *"standard input"* ]]
+    done
+    run -2 --separate-stderr ipoints -a 0.1 -g 5 square.mts
+    [[ "$stderr" == *"no rule of 5 points"* ]]
+    [ -z "$output" ]
+}
+
+@test "the points fill the body, more of them the smaller the tolerance" {
+    before=0
+    for tolerance in 3 0.3 0.1; do
+        ipoints -a $tolerance -k 2.4 square.mts > points.mts
+        mts check points.mts
+        mts print points.weight points.mts | awk '{ s += $1 } END { exit !(s > 0.00999999999 && s < 0.01000000001) }'
+        mts list points.mts | grep 'points.x.*rule=adaptive'
+        count=$(points < points.mts)
+        [ "$count" -gt "$before" ]
+        before=$count
+    done
+    cells=$(mts print cells square.mts | wc -l)
+    [ "$(ipoints -a 3 square.mts | points)" -eq $((3 * cells)) ]
+    [ "$(ipoints -a 3 -g 1 square.mts | points)" -ge "$cells" ]
+    [ "$(ipoints -a 1e-9 --levels 0 -g 6 square.mts 2> note | points)" -eq $((6 * cells)) ]
+    grep "^ipoints: $cells cells change by more than the tolerance even at level 0$" note
+}
+
+@test "the shape functions are those recorded in the stream, or those asked for" {
+    ipoints -g 3 square.mts | support -k 2.4 -b mls1 -w regularised > lists.mts
+    ipoints -a 0.1 -k 2.4 -b mls1 -w regularised square.mts | mts print points.x > asked
+    ipoints -a 0.1 lists.mts | mts print points.x | cmp - asked
+    run ! cmp -s asked <(ipoints -a 0.1 -k 2.4 square.mts | mts print points.x)
+    ipoints -a 0.1 -b mmls2 -w quartic -k 2.4 lists.mts | mts print points.x |
+        cmp - <(ipoints -a 0.1 -k 2.4 square.mts | mts print points.x)
+    run ! mts print support.radius <(ipoints -a 0.1 lists.mts)
+    ipoints -a 0.1 -R 30mm square.mts | mts print points.x | cmp - <(ipoints -a 0.1 -R 0.03 square.mts | mts print points.x)
+}
+
+@test "file and standard input, and any number of threads, give the same bytes" {
+    for threads in 1 2 3; do
+        OMP_NUM_THREADS=$threads ipoints -a 0.1 -k 2.4 square.mts > $threads.mts
+        cmp 1.mts $threads.mts
+    done
+    ipoints -a 0.1 -k 2.4 < square.mts | cmp - 1.mts
+}
+
+@test "the later stages follow" {
+    ipoints -a 0.1 -k 2.4 square.mts | support -k 2.4 | shapefn > table.mts
+    mts check table.mts
+    mts list table.mts | grep shape.dphi
+}
+
+@test "in 3D" {
+    cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 > cube.mts
+    ipoints -a 0.2 -k 2 -v cube.mts 2> note > points.mts
+    grep -E '^ipoints: [0-9]+ points$' note
+    mts check points.mts
+    mts print points.weight points.mts | awk '{ s += $1 } END { exit !(s > 0.000999999999 && s < 0.00100000001) }'
+}
+
+@test "an unfit support is a verdict that names the point" {
+    run -1 --separate-stderr ipoints -a 0.1 -b mls2 -k 0.2 <(cloud -d 2 -k regular -n 3 --box 0,1,0,1)
+    [[ "$stderr" == *"no good support"* ]]
+    [ -z "$output" ]
+}

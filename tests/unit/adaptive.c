@@ -1,0 +1,272 @@
+/* Adaptive integration: the points fill the body, integrate what the rule integrates, come deep only where
+ * the products of gradients demand it, and converge to brute subdivision; sorted lists. */
+#include "approx_fixture.h"
+
+#include "approx/adaptive.h"
+#include "approx/cloud.h"
+#include "approx/quadrature.h"
+#include "approx/sorted.h"
+
+/* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
+struct body {
+    struct cloud cloud;
+    struct cells cells;
+    double *radius;
+    struct adaptive_options options;
+};
+
+static struct body body_of(int dim, int64_t per_axis)
+{
+    struct cloud_options wanted = {
+        .kind = CLOUD_JITTERED, .dim = dim, .jitter = dim == 2 ? 0.3 : 0.12, .seed = 3};
+    struct body body = {.options = adaptive_defaults(dim)};
+    struct error error;
+    for (int a = 0; a < dim; a++) {
+        wanted.count[a] = per_axis;
+        wanted.low[a] = 1.0;
+        wanted.high[a] = 1.1;
+    }
+    GOOD(cloud_make(&wanted, &body.cloud, &error));
+    body.cells =
+        (struct cells){dim, body.cloud.node_count, body.cloud.x, body.cloud.cell_count, body.cloud.cells};
+    double *spacing = zeros(body.cells.node_count, sizeof *spacing);
+    body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
+    GOOD(cells_node_spacing(&body.cells, spacing, &error));
+    body.options.support.factor = 2.4; /* smooth: where supports are widened, gradients jump */
+    GOOD(support_radii(&body.options.support, body.cells.node_count, spacing, body.radius, &error));
+    return body;
+}
+
+static void body_free(struct body *body)
+{
+    cloud_free(&body->cloud);
+    free(body->radius);
+}
+
+static struct adaptive_points integrate(const struct body *body, double tolerance, int levels)
+{
+    struct adaptive_options options = body->options;
+    struct adaptive_points points;
+    struct error error;
+    options.tolerance = tolerance;
+    options.levels = levels;
+    GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
+    return points;
+}
+
+TEST(lists)
+{
+    static const int32_t a[] = {1, 4, 5, 9}, b[] = {0, 4, 9, 12, 13}, both[] = {0, 1, 4, 5, 9, 12, 13};
+    static const int32_t places_of_b[] = {0, 2, 4, 5, 6};
+    int32_t united[9], place[5];
+    assert_int_equal(sorted_union(a, 4, b, 5, united), 7);
+    assert_memory_equal(united, both, sizeof both);
+    assert_int_equal(sorted_union(a, 0, b, 5, united), 5);
+    assert_memory_equal(united, b, sizeof b);
+    assert_int_equal(sorted_union(a, 4, b, 0, united), 4);
+    assert_memory_equal(united, a, sizeof a);
+    sorted_places(b, 5, both, place);
+    assert_memory_equal(place, places_of_b, sizeof places_of_b);
+}
+
+/* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */
+TEST(fill_and_exactness)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        struct body body = body_of(dim, dim == 2 ? 6 : 3);
+        struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
+        double quadratic = 0.0, total = 0.0;
+        int64_t at = 0;
+        for (int64_t c = 0; c < body.cells.count; c++) {
+            double volume = 0.0, first[3] = {0}, centroid[3];
+            for (; at < points.count && points.cell[at] == c; at++) {
+                const double *x = points.x + at * dim;
+                assert_true(points.weight[at] > 0.0);
+                volume += points.weight[at];
+                total += points.weight[at];
+                quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
+                for (int a = 0; a < dim; a++) {
+                    first[a] += points.weight[at] * x[a];
+                }
+            }
+            double exact = cell_volume(&body.cells, c);
+            at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");
+            cell_centroid(&body.cells, c, centroid);
+            for (int a = 0; a < dim; a++) {
+                at_most(fabs(first[a] / exact - centroid[a]), 1e-13, "first moment of a cell");
+            }
+        }
+        assert_int_equal(at, points.count);
+        at_most(fabs(total / pow(0.1, dim) - 1.0), 1e-12, "volume");
+        /* integrals of x y and z^2 over the box [0, .1]^dim */
+        double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
+        at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
+        adaptive_points_free(&points);
+        body_free(&body);
+    }
+}
+
+/* K_ij = sum_q w_q grad phi_i . grad phi_j of all nodes, dense, times the size to the power 2 - dim. */
+static double *stiffness(const struct body *body, int64_t count, const double *x, const double *weight)
+{
+    int dim = body->cells.dim;
+    int64_t n = body->cells.node_count;
+    double *K = zeros(n * n, sizeof *K);
+    struct point_grid grid;
+    struct support_lists found;
+    struct error error;
+    GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
+    GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
+    double *phi = zeros(found.ptr[count], sizeof *phi);
+    double *dphi = zeros(found.ptr[count] * dim, sizeof *dphi);
+    struct neighbours view = support_view(&found);
+    GOOD(shape_table(&body->options.support.mls, body->cells.x, body->radius, &view, x, "points.x", phi, dphi,
+                     &error));
+    for (int64_t p = 0; p < count; p++) {
+        for (int64_t i = found.ptr[p]; i < found.ptr[p + 1]; i++) {
+            for (int64_t k = found.ptr[p]; k < found.ptr[p + 1]; k++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    sum += dphi[i * dim + a] * dphi[k * dim + a];
+                }
+                K[found.idx[i] * n + found.idx[k]] += weight[p] * sum * pow(0.1, 2 - dim);
+            }
+        }
+    }
+    support_free(&found);
+    point_grid_free(&grid);
+    return K;
+}
+
+static double apart(int64_t n, const double *A, const double *B)
+{
+    double sum = 0.0, norm = 0.0;
+    for (int64_t i = 0; i < n * n; i++) {
+        sum += (A[i] - B[i]) * (A[i] - B[i]);
+        norm += B[i] * B[i];
+    }
+    return sqrt(sum / norm);
+}
+
+/* All cells `levels` times subdivided: a tolerance that nothing meets. */
+static struct adaptive_points brute(const struct body *body, int levels)
+{
+    struct adaptive_points points = integrate(body, 1e-300, levels);
+    int64_t children = body->cells.dim == 2 ? 4 : 8, expected = body->cells.count * body->options.rule_points;
+    for (int level = 0; level < levels; level++) {
+        expected *= children;
+    }
+    assert_int_equal(points.count, expected);
+    assert_int_equal(points.unresolved, body->cells.count);
+    for (int64_t p = 0; p < points.count; p++) {
+        assert_int_equal(points.level[p], levels);
+    }
+    return points;
+}
+
+/* The whole body's K is within the tolerance of that of brute subdivision, with fewer points the looser. */
+TEST(convergence)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        struct body body = body_of(dim, dim == 2 ? 6 : 3);
+        int64_t n = body.cells.node_count, before = 0;
+        int deepest = dim == 2 ? 3 : 2;
+        struct adaptive_points finest = brute(&body, deepest);
+        double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
+        double error_before = INFINITY;
+        for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
+            struct adaptive_points points = integrate(&body, tolerance, deepest);
+            double *K = stiffness(&body, points.count, points.x, points.weight);
+            double error = apart(n, K, reference);
+            print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance,
+                          (int)points.count, (int)finest.count, error);
+            at_most(error, tolerance, "K against brute subdivision");
+            assert_true(error <= error_before);
+            assert_true(points.count >= before && points.count < finest.count / 2);
+            assert_int_equal(points.unresolved, 0);
+            before = points.count;
+            error_before = error;
+            adaptive_points_free(&points);
+        }
+        adaptive_points_free(&finest);
+        body_free(&body);
+    }
+}
+
+/* A loose tolerance leaves the rule as it is on a fine cloud; one node whose support ends within its cells
+ * calls for more there. */
+TEST(depth_where_needed)
+{
+    struct body body = body_of(2, 8);
+    struct adaptive_points loose = integrate(&body, 2.0, 5);
+    assert_int_equal(loose.count, body.cells.count * 3);
+    struct adaptive_points before = integrate(&body, 0.15, 4);
+    /* A weak node in the middle whose small support bends the gradients of its neighbours' cells only. */
+    int64_t middle = 8 * 4 + 4;
+    body.radius[middle] *= 0.2;
+    struct adaptive_points after = integrate(&body, 0.15, 4);
+    double near = 0.0, far = 0.0;
+    int64_t near_count = 0, far_count = 0;
+    for (int64_t p = 0; p < after.count; p++) {
+        double distance = hypot(after.x[2 * p] - body.cells.x[2 * middle],
+                                after.x[2 * p + 1] - body.cells.x[2 * middle + 1]);
+        if (distance < 0.1 / 7) {
+            near += after.level[p];
+            near_count++;
+        } else if (distance > 0.3 / 7) {
+            far += after.level[p];
+            far_count++;
+        }
+    }
+    print_message("# mean level near %.2f, far %.2f, points %d, %d\n", near / (double)near_count,
+                  far / (double)far_count, (int)before.count, (int)after.count);
+    assert_true(after.count > before.count);
+    assert_true(near / (double)near_count > 2.0 * far / (double)far_count);
+    adaptive_points_free(&loose);
+    adaptive_points_free(&before);
+    adaptive_points_free(&after);
+    body_free(&body);
+}
+
+TEST(threads)
+{
+    int before = omp_get_max_threads();
+    for (int dim = 2; dim <= 3; dim++) {
+        struct body body = body_of(dim, dim == 2 ? 9 : 3);
+        omp_set_num_threads(1);
+        struct adaptive_points one = integrate(&body, 0.1, 3);
+        omp_set_num_threads(3);
+        struct adaptive_points three = integrate(&body, 0.1, 3);
+        assert_int_equal(one.count, three.count);
+        assert_memory_equal(one.x, three.x, (size_t)(one.count * dim) * sizeof(double));
+        assert_memory_equal(one.weight, three.weight, (size_t)one.count * sizeof(double));
+        assert_memory_equal(one.cell, three.cell, (size_t)one.count * sizeof(int32_t));
+        assert_memory_equal(one.level, three.level, (size_t)one.count * sizeof(int32_t));
+        adaptive_points_free(&one);
+        adaptive_points_free(&three);
+        body_free(&body);
+    }
+    omp_set_num_threads(before);
+}
+
+TEST(failures)
+{
+    struct body body = body_of(2, 4);
+    struct adaptive_options options = body.options;
+    struct adaptive_points points;
+    struct error error;
+    options.rule_points = 5;
+    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
+          "no rule of 5 points");
+    options = body.options;
+    options.support.mls.basis = BASIS_QUADRATIC;
+    options.support.widen = false;
+    for (int64_t n = 0; n < body.cells.node_count; n++) {
+        body.radius[n] *= 0.6;
+    }
+    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_VERDICT, "mls2");
+    assert_null(points.x);
+    body_free(&body);
+}
+
+RUN_TESTS(NULL, NULL)
