@@ -118,6 +118,11 @@ lid() {
     printf '%s\n' '0 0' '0.4 1' '0.8 -1' '1 -1' > there.tsv
     mtled lid.scene block.mts 2> said > u.dat
     [ ! -s said ]
+    # Whoever asks for its force is told why there is none.
+    printf '%s\n' '[output]' 'reactions = yes' >> lid.scene
+    run --separate-stderr mtled lid.scene block.mts
+    [ "$status" -eq 0 ]
+    [ "$stderr" = 'mtled: lid.scene: [contact lid]: pressed on the way, and does not in the end: did the body slip off it? frames ([output]) show when' ]
 }
 
 @test "contacts that give way: a verdict with its cause; in time a note" {

@@ -229,6 +229,14 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
                   "place?",
                   run->scene->path, name);
     }
+    if (contact->pressed && patch->force == 0.0 && !run->model->assembly.in_time &&
+        wants_forces(&run->scene->output)) {
+        tool_note(
+            run->tool,
+            "%s: [contact %s]: pressed on the way, and does not in the end: did the body slip off it? frames "
+            "([output]) show when",
+            run->scene->path, name);
+    }
     if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
         point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
         tool_note(run->tool,
