@@ -46,7 +46,7 @@ cook.least := 1mm
 brain.least := 0.2mm
 cube.least := 1mm
 brain3d.least := 1mm
-cube.budget := 5000
+cube.budget := 8000
 brain3d.budget := 16000
 # The whole brain beside its surfaces (brain3d.mk), without the skull, which mixed elements in 3D do not know.
 brain3d.mesh := brain3d
