@@ -1,4 +1,4 @@
-# make adaptive: what an estimate of the discretisation error is worth on 39 runs with known answers, and error against nodes and time on meshes refined evenly and where the estimate says so
+# make adaptive: what an estimate of the discretisation error is worth on runs with known answers, and error against nodes and time on meshes refined evenly and where the estimate says so
 #
 # Effectivity: estimated over true mean error at the nodes, for the meshes of make convergence, each beside one of twice the size
 # (effectivity.tsv). Refinement: blocks, Cook's membrane, the brain section, the cube, a thick cylinder (smooth) and the whole brain (without its
