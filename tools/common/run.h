@@ -80,8 +80,8 @@ void run_contacts_missing(struct run *run);
  * across, and those that never pressed. */
 void run_contacts_judge(struct run *run, double slack, double share);
 
-/* Notes displacements that are prescribed whole on patches of less than three facets across (2D: two), where the
- * scene asks for forces: these are then too large. */
+/* Notes displacements that are prescribed whole on patches of less than three facets across (2D: two), where
+ * the scene asks for forces: these are then too large. */
 void run_displacements_judge(const struct run *run);
 
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */
