@@ -108,7 +108,9 @@ static void share_unity(struct coarse_space *coarse)
         for (int64_t c = 0; c < coarse->centre_count; c++) {
             sum += coarse->share[n][c] = weight_at(coarse, coarse->share[n][c]);
         }
-        coarse->share[n] /= sum;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            coarse->share[n][c] /= sum;
+        }
     }
 }
 
@@ -158,17 +160,23 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
 
 /* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
 typedef of_centres coarse_amounts[4][3];
-typedef double eight_centres __attribute__((vector_size(64)));
+
+/* Numbers of eight centres, in one register of the widest processors: longer vectors go through memory. */
+enum { EIGHT = 8 };
+typedef double eight_centres __attribute__((vector_size(8 * EIGHT), aligned(8), may_alias));
 typedef double four_centres __attribute__((vector_size(32)));
 typedef double two_centres __attribute__((vector_size(16)));
 
-/* The coarse fields of each centre at a node, but for the radius. The dimension is known when compiling, here
- * and below. */
-KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int64_t node, of_centres value[4])
+#define EIGHT_OF(from) (*(const eight_centres *)(from))
+
+/* The coarse fields at a node of eight centres, from `first` on, but for the radius. The dimension is known
+ * when compiling, here and below. */
+KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int first, int64_t node,
+                             eight_centres value[4])
 {
-    value[0] = coarse->share[node];
+    value[0] = EIGHT_OF(coarse->share[node] + first);
     for (int a = 0; a < dim; a++) {
-        value[a + 1] = value[0] * (coarse->X[node * dim + a] - coarse->centre[a]);
+        value[a + 1] = value[0] * (coarse->X[node * dim + a] - EIGHT_OF(coarse->centre[a] + first));
     }
 }
 
@@ -176,25 +184,28 @@ KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int64_t
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
                            const double *weight, const double *v, coarse_amounts sum)
 {
-    of_centres all[4][3] = {{{0.0}}}, value[4];
-    for (int64_t n = begin; n < end; n++) {
-        double scale = weight != NULL ? weight[n] : 1.0;
-        monomials(coarse, dim, n, value);
-        for (int a = 0; a < dim; a++) {
-            double scaled = scale * v[n * dim + a];
-            for (int m = 0; m <= dim; m++) {
-                all[m][a] += value[m] * scaled;
+    for (int first = 0; first < coarse->centre_count; first += EIGHT) {
+        eight_centres all[4][3] = {{{0.0}}}, value[4];
+        for (int64_t n = begin; n < end; n++) {
+            double scale = weight != NULL ? weight[n] : 1.0;
+            monomials(coarse, dim, first, n, value);
+            for (int a = 0; a < dim; a++) {
+                double scaled = scale * v[n * dim + a];
+                for (int m = 0; m <= dim; m++) {
+                    all[m][a] += value[m] * scaled;
+                }
             }
         }
+        for (int i = 0; i < (dim + 1) * dim; i++) {
+            memcpy(sum[i / dim][i % dim] + first, &all[i / dim][i % dim], sizeof all[0][0]);
+        }
     }
-    memcpy(sum, all, sizeof all);
 }
 
 /* By halves: in a fixed order, which costs few instructions. */
-KERNEL_INLINE double total(const of_centres *value)
+KERNEL_INLINE double total(const eight_centres *value)
 {
-    eight_centres half = __builtin_shufflevector(*value, *value, 0, 1, 2, 3, 4, 5, 6, 7) +
-                         __builtin_shufflevector(*value, *value, 8, 9, 10, 11, 12, 13, 14, 15);
+    eight_centres half = *value;
     four_centres quarter =
         __builtin_shufflevector(half, half, 0, 1, 2, 3) + __builtin_shufflevector(half, half, 4, 5, 6, 7);
     two_centres eighth =
@@ -206,16 +217,20 @@ KERNEL_INLINE double total(const of_centres *value)
 KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
                        const coarse_amounts amount, double *u)
 {
-    of_centres kept[4][3], value[4];
-    memcpy(kept, amount, sizeof kept);
     for (int64_t n = begin; n < end; n++) {
-        monomials(coarse, dim, n, value);
-        for (int a = 0; a < dim; a++) {
-            of_centres sum = value[0] * kept[0][a];
-            for (int m = 1; m <= dim; m++) {
-                sum += value[m] * kept[m][a];
+        eight_centres sum[3] = {{0.0}}, value[4];
+        for (int first = 0; first < coarse->centre_count; first += EIGHT) {
+            monomials(coarse, dim, first, n, value);
+            for (int a = 0; a < dim; a++) {
+                eight_centres part = value[0] * EIGHT_OF(amount[0][a] + first);
+                for (int m = 1; m <= dim; m++) {
+                    part += value[m] * EIGHT_OF(amount[m][a] + first);
+                }
+                sum[a] += part;
             }
-            u[n * dim + a] += total(&sum);
+        }
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] += total(&sum[a]);
         }
     }
 }
@@ -252,12 +267,12 @@ void coarse_space_restrict(const struct coarse_space *coarse, const double *weig
     }
     for (int m = 0; m <= dim; m++) {
         for (int a = 0; a < dim; a++) {
-            of_centres sum = partial[0][m][a];
-            for (int64_t c = 1; c < chunks.count; c++) {
-                sum += partial[c][m][a];
-            }
             for (int64_t c = 0; c < coarse->centre_count; c++) {
-                amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum[c] : sum[c] / coarse->radius;
+                double sum = partial[0][m][a][c];
+                for (int64_t k = 1; k < chunks.count; k++) {
+                    sum += partial[k][m][a][c];
+                }
+                amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum : sum / coarse->radius;
             }
         }
     }

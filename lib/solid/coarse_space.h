@@ -17,7 +17,7 @@ enum { COARSE_MOST_CENTRES = 16 };
 enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 
 /* A number for each centre; 0 behind the last. */
-typedef double of_centres __attribute__((vector_size(8 * COARSE_MOST_CENTRES)));
+typedef double of_centres[COARSE_MOST_CENTRES];
 
 /* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
  * from there over the radius. */
