@@ -1,5 +1,6 @@
 #include "approx/point_grid.h"
 
+#include "approx/sorted.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -277,21 +278,6 @@ enum status point_grid_list_places(const struct point_grid *grid, const struct p
     return STATUS_OK;
 }
 
-/* Two ascending lists as one. */
-static void merge(const int32_t *a, const int32_t *end_a, const int32_t *b, const int32_t *end_b,
-                  int32_t *merged)
-{
-    while (a < end_a && b < end_b) {
-        int32_t first = *a, second = *b;
-        bool from_a = first < second;
-        *merged++ = from_a ? first : second;
-        a += from_a;
-        b += !from_a;
-    }
-    memcpy(merged, a, (size_t)(end_a - a) * sizeof *a);
-    memcpy(merged + (end_a - a), b, (size_t)(end_b - b) * sizeof *b);
-}
-
 enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
                                  double factor, struct index_list *list, struct error *error)
 {
@@ -327,7 +313,7 @@ static enum status query_touching(const struct point_grid *grid, const double *x
             *i = level->node[*i];
         }
         if (own > index && end > own) {
-            merge(index, own, own, end, end);
+            (void)sorted_union(index, own - index, own, end - own, end); /* no node is of two levels */
             memcpy(index, end, (size_t)(end - index) * sizeof *index);
         }
     }
