@@ -30,6 +30,14 @@ void average_take(const struct average *average, int dim, const double *u, doubl
     }
 }
 
+void average_place(const struct average *average, int dim, const double *rest, const double *u, double *place)
+{
+    average_take(average, dim, u, place);
+    for (int a = 0; a < dim; a++) {
+        place[a] += rest[a];
+    }
+}
+
 static inline void spread(const struct average *average, int dim, const double *amount, double *u)
 {
     for (int64_t i = 0; i < average->length; i++) {

@@ -19,6 +19,10 @@ struct average average_of_boundary(const struct boundary_averages *averages, int
 /* mean[dim] = sum_j phi_j u_j of u[node_count * dim]. */
 void average_take(const struct average *average, int dim, const double *u, double *mean);
 
+/* place[dim] = rest + sum_j phi_j u_j, m: where a point at rest[dim] is that moves with the average. */
+void average_place(const struct average *average, int dim, const double *rest, const double *u,
+                   double *place);
+
 /* The transpose: u_j += phi_j amount[dim]. */
 void average_spread(const struct average *average, int dim, const double *amount, double *u);
 

@@ -30,11 +30,9 @@ double contact_most_depth(const struct contact *contact, int64_t p)
     return 0.5 * contact_width(contact, p);
 }
 
-/* sum_j Phi_pj v_j for node values v */
-static void take_mean(const struct contact *contact, int64_t p, const double *v, double x[3])
+double contact_round_off(const struct contact *contact, int64_t p)
 {
-    struct average average = average_of_boundary(contact->points, p);
-    average_take(&average, contact->dim, v, x);
+    return round_off * contact_width(contact, p);
 }
 
 /* Cosine between the body's outward normal at point p and the surface's normal. Where they can touch it is
@@ -189,7 +187,7 @@ static bool was_in_front(const struct contact *contact, int64_t p, const double 
     for (int c = 0; c < contact->dim; c++) {
         height += (contact->checked_x[p * contact->dim + c] - x[c]) * closest->normal[c];
     }
-    return height >= -round_off * contact_width(contact, p);
+    return height >= -contact_round_off(contact, p);
 }
 
 /* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
@@ -242,10 +240,8 @@ static void measure_points(struct contact *contact, int64_t begin, int64_t end, 
     for (int64_t p = begin; p < end; p++) {
         struct contact_view *view = &contact->view[p];
         double x[3], *normal = contact->normal + p * dim;
-        take_mean(contact, p, u, x);
-        for (int c = 0; c < dim; c++) {
-            x[c] += contact->rest[p * dim + c];
-        }
+        struct average average = average_of_boundary(contact->points, p);
+        average_place(&average, dim, contact->rest + p * dim, u, x);
         rigid_place_to_rest(&contact->place, dim, x, view->x);
         for (int c = 0; c < dim; c++) {
             view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];

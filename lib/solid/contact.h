@@ -101,6 +101,9 @@ MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffnes
 double contact_width(const struct contact *contact, int64_t p);
 double contact_most_depth(const struct contact *contact, int64_t p);
 
+/* Depths of point p below this are none, m. */
+double contact_round_off(const struct contact *contact, int64_t p);
+
 /* Force on point p at the last evaluation, N (2D: N/m). */
 void contact_point_force(const struct contact *contact, int64_t p, double force[3]);
 

@@ -11,8 +11,6 @@
 /* Facets further away from a point than so many of its widths are not opposite to it; for gaps that are told.
  * In two dimensions the mass of a relaxation counts all that have something opposite. */
 static const double reach_widths_2d = 1.0, reach_widths_3d = 0.5, told_widths = 10.0;
-/* Depths below this part of a point's width are round-off. */
-static const double round_off = 1e-6;
 enum { FACETS_FOR_THREAD = 300 }; /* see chunks_of */
 
 void contact_between_free(struct contact *contact)
@@ -71,9 +69,8 @@ static void place_facet(struct contact *contact, int64_t f, const double *u)
     for (int64_t p = f * points; p < (f + 1) * points; p++) {
         struct contact_view *view = &contact->view[p];
         struct average average = average_of_boundary(contact->points, p);
-        average_take(&average, dim, u, view->x);
+        average_place(&average, dim, contact->rest + p * dim, u, view->x);
         for (int c = 0; c < dim; c++) {
-            view->x[c] += contact->rest[p * dim + c];
             view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
         }
     }
@@ -109,10 +106,6 @@ static struct rigid_contact find_place(const struct contact *contact, int64_t p,
                                        double reach, double *free_way)
 {
     const struct contact_between *between = contact->between;
-    double last[3];
-    struct average average = average_of_boundary(contact->points, p);
-    average_take(&average, contact->dim, between->before, last);
-    add_scaled(contact->dim, 1.0, contact->rest + p * contact->dim, last);
     struct seeker seeker = {.x = contact->view[p].sought,
                             .rest = contact->points->position + p * contact->dim,
                             .rest_normal = contact->points->normal + p * contact->dim,
@@ -120,9 +113,9 @@ static struct rigid_contact find_place(const struct contact *contact, int64_t p,
                             .width = contact_width(contact, p),
                             .depth = contact_most_depth(contact, p) + held_way(contact, p),
                             .corner = contact->points->node + p - p % between->per_facet,
-                            .last = contact->checked_distance[p] < 0.0 ? NULL : last,
-                            .last_u = between->before,
-                            .began = -between->begin[p] + round_off * contact_width(contact, p),
+                            .average = average_of_boundary(contact->points, p),
+                            .last_u = contact->checked_distance[p] < 0.0 ? NULL : between->before,
+                            .began = -between->begin[p] + contact_round_off(contact, p),
                             .part = between->part[p]};
     struct rigid_contact closest = opposite_closest(&between->opposite, &seeker, reach, free_way);
     *free_way -= held_way(contact, p);

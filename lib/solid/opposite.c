@@ -253,9 +253,7 @@ void opposite_move(struct opposite *opposite, const double *u)
     for (int64_t c = 0; c < vertices.count; c++) {
         for (int64_t v = chunks_begin(&vertices, c); v < chunks_begin(&vertices, c + 1); v++) {
             struct average average = average_of_boundary(&opposite->rows, v);
-            double *x = surface->vertex + v * dim;
-            average_take(&average, dim, u, x);
-            add_scaled(dim, 1.0, opposite->rest + v * dim, x);
+            average_place(&average, dim, opposite->rest + v * dim, u, surface->vertex + v * dim);
         }
     }
     refit(opposite);
@@ -324,16 +322,16 @@ static bool was_behind(const struct opposite *opposite, const struct seeker *see
 {
     static const int32_t corners[] = {0, 1, 2};
     int dim = opposite->surface.dim;
-    double x[9] = {0.0}, normal[3], way[3];
+    double x[9] = {0.0}, last[3] = {0.0}, normal[3], way[3];
     for (int k = 0; k < dim; k++) {
         int64_t v = opposite->surface.facet[f * dim + k];
         struct average average = average_of_boundary(&opposite->rows, v);
-        average_take(&average, dim, seeker->last_u, x + k * dim);
-        add_scaled(dim, 1.0, opposite->rest + v * dim, x + k * dim);
+        average_place(&average, dim, opposite->rest + v * dim, seeker->last_u, x + k * dim);
     }
     face_area_vector(dim, x, corners, normal);
     normalise(dim, normal);
-    vector_subtract(dim, seeker->last, x, way);
+    average_place(&seeker->average, dim, seeker->rest, seeker->last_u, last);
+    vector_subtract(dim, last, x, way);
     return vector_dot(dim, way, normal) < -seeker->began;
 }
 
@@ -347,7 +345,7 @@ static bool admits(void *context, int64_t f, const double *away)
         return true;
     }
     return vector_dot(dim, away, away) < depth * depth &&
-           (seeker->last == NULL || !shares_corner(search->opposite, seeker, f) ||
+           (seeker->last_u == NULL || !shares_corner(search->opposite, seeker, f) ||
             !was_behind(search->opposite, seeker, f));
 }
 

@@ -48,8 +48,8 @@ struct seeker {
     double width, depth;       /* of its facet; how far it may be behind another one, m */
     int32_t part;              /* its body */
     const int32_t *corner;     /* dim: nodes of its facet */
-    const double *last;        /* where it was at the last step, m; NULL: behind a facet that faced it */
-    const double *last_u;      /* parameters at the last step, m */
+    struct average average;    /* that moves it from rest */
+    const double *last_u;      /* parameters at the last step, m; NULL: it was behind a facet that faced it */
     double began;              /* how far behind a facet it was at rest, m */
 };
 /* *free_way: how far the point and facets that do not face it now may move against each other before any of

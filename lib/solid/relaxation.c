@@ -262,7 +262,9 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         r->converged_checks = 0;
     }
     relaxation_note_best(r);
-    if (r->largest_move > most_sizes * r->body_size + system_longest_way(r->system)) {
+    double own_way =
+        r->largest_move - most_sizes * r->body_size; /* beyond what is prescribed, if that is far */
+    if (own_way > 0.0 && own_way > system_longest_way(r->system)) {
         *outcome = RELAXATION_AWAY;
         return true;
     }

@@ -164,10 +164,7 @@ static void corner_position(const struct solid_system *system, const struct boun
 {
     int dim = system->dim;
     struct average average = average_of_boundary(averages, a);
-    average_take(&average, dim, u, x);
-    for (int i = 0; i < dim; i++) {
-        x[i] += system->X[(int64_t)averages->node[a] * dim + i];
-    }
+    average_place(&average, dim, system->X + (int64_t)averages->node[a] * dim, u, x);
 }
 
 /* The pressure at quadrature point p of the deformed facets. */
