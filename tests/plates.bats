@@ -111,6 +111,18 @@ crushed() {
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
 
+@test "a block that goes through the plane that its side slides on is a verdict" {
+    # Pressed by half a side in plane strain wrinkles; it has rolled round the rim of the support, which is in nobody's way.
+    { block quasi-static | sed 's/0.45/0.49/'
+        printf '[displacement planes]\nfacets = xmin, ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.05\n'; } > slide.scene
+    refused 1 'slide.scene: the body folds from 0.' mtled slide.scene block.mts
+    [[ $stderr == *" of the load on: ymax at (0.0"*", 0.1) is turned over, through the plane that it slides on: let a rigid surface in place of that support stop it, "* ]]
+    # Up to the stretch at which a plane side creases, .65, that is homogeneous: in closed form 215.611 N/m at .7.
+    sed 's/-0.05/-0.03\n[output]\nreactions = yes/' slide.scene > slide30.scene
+    mtled slide30.scene block.mts > u.dat
+    awk -v f="$(reaction 2 2)" 'BEGIN { d = f / -215.61051 - 1; exit !(d < 1e-6 && -d < 1e-6) }'
+}
+
 @test "bodies that interpenetrate at rest are refused with the place, unless the scene allows it" {
     # two(CORNER, SIZE): a square of .1 and another one
     two() {

@@ -294,6 +294,19 @@ END
     mtled whole.scene pair.mts > u.dat
 }
 
+@test "blocks of equal width that slide off each other, one let touch the other alone: the remedy is to let all of it touch" {
+    stack
+    sed -i 's/, 14}/, 7}/g; s/, 9}/, 4.5}/g' stack.geo
+    gmsh_body 2 fine < stack.geo
+    stack_scene | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.05/' > part.scene
+    refused 1 'part.scene: the body folds from 0.' mtled part.scene fine.mts
+    [[ $stderr == *": let all of it touch (facets = *, against = *), press less, "* ]]
+    # One that does not come to rest says so as well.
+    sed -i 's/-0.05/-0.03/' part.scene
+    refused 1 'part.scene: step ' mtled part.scene fine.mts
+    [[ $stderr == *"; the body folds "*": let all of it touch (facets = *, against = *)" ]]
+}
+
 @test "the lips of a ring meet corner on corner, and slip past each other" {
     gmsh_body 2 ring << 'END'
 SetFactory("OpenCASCADE");

@@ -204,20 +204,35 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
     }
 }
 
-enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
+/* Faces of conditions that prescribe at least so many directions; with `sliding` of those along normals
+ * alone. */
+static enum status find_faces(const struct assembly *input, int least, bool sliding, bool **held,
+                              struct error *error)
 {
     enum status status;
     int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
     TRY(NEW_ARRAY(held, input->boundary.count, error));
     TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
-        if (prescription_directions(&input->conditions[i], input->cells.dim) >= least) {
-            mark_faces(input, &input->conditions[i].facets, i + 1, stamp, *held);
+        const struct condition *condition = &input->conditions[i];
+        if (prescription_directions(condition, input->cells.dim) >= least &&
+            (!sliding || condition->kind == CONDITION_NORMAL)) {
+            mark_faces(input, &condition->facets, i + 1, stamp, *held);
         }
     }
 done:
     free(stamp);
     return status;
+}
+
+enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
+{
+    return find_faces(input, least, false, held, error);
+}
+
+enum status assembly_sliding_faces(const struct assembly *input, bool **slides, struct error *error)
+{
+    return find_faces(input, 1, true, slides, error);
 }
 
 double assembly_penalty_modulus(const struct solid_system *system, double factor)

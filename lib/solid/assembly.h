@@ -135,6 +135,11 @@ bool assembly_holds_averages(const struct assembly *input);
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
+/* slides[boundary.count]: whether such a condition prescribes the displacement along the normal alone, so
+ * that the face stays on its plane. The caller's to free. */
+MUST_CHECK enum status assembly_sliding_faces(const struct assembly *input, bool **slides,
+                                              struct error *error);
+
 /* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
  * it does not grow with the bulk modulus; the largest of the body's materials. */
 double assembly_penalty_modulus(const struct solid_system *system, double factor);

@@ -9,6 +9,8 @@
  * those that meet have passed through each other when the angles of the cells around the place where they
  * meet add up to more than a full turn.
  *
+ * A facet that slides on its plane turns by half a turn only with a body that goes through the plane.
+ *
  * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
  * support. The model admits it, a real plate would not. */
 #ifndef SOLID_FOLDS_H
@@ -29,6 +31,8 @@ enum fold_kind {
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
+    FOLD_REVERSED, /* a facet that slides on its plane shows its back there: the body went through the plane
+                    */
     FOLD_FLAT,   /* cells are inverted, but by less than that; slivers invert within the error of the field */
     FOLD_SUPPORT /* a free facet at the rim of a plane support has gone through its plane */
 };
@@ -52,6 +56,7 @@ struct fold_input {
     const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
     const bool
         *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
+    const bool *slides; /* facet_count: whether only its displacement along its normal is; NULL: none */
     const struct ranks *ranks; /* processes that look together, each at a share; NULL: one */
 };
 

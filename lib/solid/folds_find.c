@@ -19,6 +19,7 @@ static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
 static const double turned_share = 0.1; /* see is_turned_over */
 static const double held_share = 0.5;   /* see are_deep; contact_most_depth */
+static const double reversed = -0.5; /* cosine between the normals of a facet now and at rest: 120 degrees */
 
 static const double *at(const struct folds *folds, int32_t node)
 {
@@ -338,6 +339,26 @@ static struct fold look_at_boxes(const struct folds *folds, int64_t begin, int64
     return fold;
 }
 
+/* Sliding facets that show their backs. */
+static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+{
+    const struct fold_input *input = &folds->input;
+    struct fold fold = none;
+    int dim = input->dim;
+    (void)stopped;
+    for (int64_t f = begin; f < end; f++) {
+        double now[3], rest[3];
+        fold_area_vector(dim, folds->y, input->facet + f * dim, now);
+        fold_area_vector(dim, input->x, input->facet + f * dim, rest);
+        double size = vector_length(dim, now) * vector_length(dim, rest);
+        if (input->slides[f] && vector_dot(dim, now, rest) < reversed * size && fold.count++ == 0) {
+            name_facets(folds, f, -1, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_REVERSED : FOLD_NONE;
+    return fold;
+}
+
 void folds_fill_planes(struct folds *folds, const double *y)
 {
     int dim = folds->input.dim;
@@ -394,6 +415,9 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }
+    }
+    if (fold.kind == FOLD_NONE && folds->input.slides != NULL) {
+        fold = look(folds, folds->input.facet_count, look_at_sliding, stopped);
     }
     return fold.kind != FOLD_NONE ? fold : cells;
 }

@@ -79,30 +79,35 @@ TEST(linear_field_by_table)
     }
 }
 
-/* Only the faces within one condition are held; those of a corner between two are not. */
+/* Only the faces within one condition are held; those of a corner between two are not. One of the conditions
+ * lets them slide. */
 TEST(held_faces)
 {
     struct lattice l;
     struct error error;
     int32_t *low, *high;
-    bool *held;
+    bool *held, *slides;
     int64_t count = 0;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
-    const struct condition conditions[] = {{.facets = side_facets(&l, 1u << 2, &low)},
-                                           {.facets = side_facets(&l, 1u << 3, &high)}};
+    const struct condition conditions[] = {
+        {.facets = side_facets(&l, 1u << 2, &low), .kind = CONDITION_NORMAL},
+        {.facets = side_facets(&l, 1u << 3, &high)}};
     l.assembly.conditions = conditions;
     l.assembly.condition_count = 2;
     GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
+    GOOD(assembly_sliding_faces(&l.assembly, &slides, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
         const double *a = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
                      *b = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
         bool flat = a[1] == b[1] && (a[1] < 1e-9 || a[1] > 0.1 - 1e-9);
         assert_int_equal(held[f], flat);
+        assert_int_equal(slides[f], flat && a[1] < 1e-9);
         count += held[f];
     }
     assert_int_equal(count, 8);
     free(held);
+    free(slides);
     free(low);
     free(high);
     lattice_free(&l);

@@ -323,6 +323,29 @@ TEST(inverted)
     }
 }
 
+/* Turned by an angle; in 3D also tilted by twice that. Facets that slide on their plane may not be turned
+ * there by more than 120 degrees; others may. */
+TEST(reversed)
+{
+    static struct shape shape;
+    static const double angle[] = {1.0, 2.0, 2.9};
+    double y[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 5, 2);
+        for (int i = 0; i < 6; i++) {
+            shape.folds.input.slides = i < 3 ? shape.held : NULL;
+            turn(&shape, angle[i % 3], 1.2, y);
+            struct fold fold = found(&shape, y);
+            assert_int_equal(fold.kind, i == 2 ? FOLD_REVERSED : FOLD_NONE);
+            if (i == 2) {
+                assert_int_equal(fold.count, dim == 2 ? 5 : 10);
+                assert_true(shape.held[fold.facet[0]] && fold.facet[1] == -1);
+            }
+        }
+        folds_free(&shape.folds);
+    }
+}
+
 /* The side's lowest nodes go below the plane of the support under the body, unless something presses on them.
  */
 TEST(through_the_plane)

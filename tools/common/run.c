@@ -65,7 +65,9 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
         run_folds_describe(run, FOLDED, folds, sizeof folds);
     }
     /* One line, whatever the names in it contain. */
-    fail(&reason, status, "%s%s%s", text, folds[0] != '\0' ? "; " : "", folds);
+    bool in_part = folds[0] != '\0' && run_folds_touch_in_part(run);
+    fail(&reason, status, "%s%s%s%s", text, folds[0] != '\0' ? "; " : "", folds,
+         in_part ? ": let all of it touch (facets = *, against = *)" : "");
     tool_note(run->tool, "%s", reason.text);
     (void)process_fails_alone(); /* the others wait while the first one writes */
     if (output->frames > 0 || output->interval > 0.0) {

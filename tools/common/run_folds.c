@@ -22,7 +22,9 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .facet = input->boundary.node,
                               .ranks = process_ranks()};
     RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
+    RETURN_IF_ERROR(assembly_sliding_faces(input, &folds->slides, error));
     body.held = folds->held;
+    body.slides = folds->slides;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->touched, cells->node_count, error));
@@ -91,7 +93,7 @@ void run_folds_begin(struct run *run)
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    FREE_ALL(run->folds.held, run->folds.field, run->folds.node_first, run->folds.stopped,
+    FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
              run->folds.touched);
 }
 
@@ -251,6 +253,11 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
         snprintf(text, size, "the body folds %s: cell %lld at %s is within another one", when,
                  (long long)fold->cell, place);
         return;
+    case FOLD_REVERSED:
+        snprintf(text, size,
+                 "the body folds %s: %s at %s is turned over, through the plane that it slides on", when, one,
+                 place);
+        return;
     case FOLD_FLAT:
         snprintf(text, size,
                  "%s, cells are inverted between their nodes, by less than a tenth of their size: %lld, "
@@ -311,13 +318,21 @@ bool run_folds_let_touch(struct run *run)
     return true;
 }
 
+bool run_folds_touch_in_part(const struct run *run)
+{
+    bool whole, is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
+    return is_through && count_touching(run->scene, &whole) > 0 && !whole;
+}
+
 void run_folds_judge(struct run *run)
 {
     char text[400];
     run_folds_describe(run, FOLDED, text, sizeof text);
     const char *remedy = "press less, refine there";
-    bool whole;
-    if (is_crossed(run) && count_touching(run->scene, &whole) > 0 && !whole) {
+    if (spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED) {
+        remedy = "let a rigid surface in place of that support stop it, press less";
+    }
+    if (run_folds_touch_in_part(run)) {
         remedy = "let all of it touch (facets = *, against = *), press less, refine there";
     }
     if (is_through_support(run)) {

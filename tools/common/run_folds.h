@@ -23,7 +23,8 @@ enum { FOLDED, NOTED, FOLD_SPELLS };
 
 struct run_folds {
     struct folds folds;
-    bool *held;              /* whether the displacement is prescribed at each face of the boundary */
+    bool *held, *slides;     /* whether the displacement is prescribed at each face of the boundary; along its
+                                normal alone */
     double *field;           /* scratch: node_count * dim */
     int64_t *node_first;     /* the nodes at which each process evaluates it */
     bool *stopped, *touched; /* scratch: node_count */
@@ -44,6 +45,10 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 
 /* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
 void run_folds_describe(const struct run *run, int which, char *text, size_t size);
+
+/* Whether parts of the boundary have passed through each other though the scene lets some touch: it should
+ * let all. */
+bool run_folds_touch_in_part(const struct run *run);
 
 /* Forget what was seen. */
 void run_folds_forget(struct run *run);
