@@ -180,6 +180,16 @@ buckled() {
     done
 }
 
+@test "a body that buckles is told where the scene has contacts as well, that do not act" {
+    buckled 5 0.495 1e-5 '[contact all]\nfacets = *\nagainst = *'
+    sed -i '/^\[output/d' buckled.scene
+    refused 1 'buckled.scene: the body folds at the whole load: it buckles or wrinkles' mtled buckled.scene cube.mts
+    buckled 5 0.5 1e-5 '[contact all]\nfacets = *\nagainst = *'
+    sed -i '/^\[output/d' buckled.scene
+    mtled buckled.scene cube.mts > u.dat 2> said
+    [ ! -s said ]
+}
+
 @test "what was seen of a body that buckles outlasts an interruption" {
     buckled 5 0.495 1e-8 'folds = allowed'
     mtled buckled.scene cube.mts > whole.dat 2> said
@@ -252,6 +262,26 @@ END
     [ "$status" -eq 0 ] || mtled -c run.ckpt -o u.dat fold.scene fine.mts 2> note
     [ "$(grep 'folds' note)" = "$(cat said)" ]
     cmp <(bare whole.dat) <(bare u.dat)
+}
+
+@test "a block between plates that its sides may touch: the closed form up to the stretch at which sides crease, and below it less than that" {
+    # Sides roll onto the plates, as half of a crease does, from .65 on (Hong, Zhao and Suo 2009).
+    printf -- '-1 0\n2 0\n' > bottom.tsv
+    for case in '0.03 215.61051' '0.05 706.76168'; do
+        read -r push exact <<< "$case"
+        { block quasi-static | sed 's/0.45/0.49/' && printf '[displacement x]\nfacets = xmin\nnormal = 0\n' &&
+            printf '[contact bottom]\nfacets = ymin, xmax\nrigid = bottom.tsv\nunit = m\nside = left\n' &&
+            lid "translation = 0, -$push" 'curve = smooth' | sed 's/= ymax/= ymax, xmax/' && output; } > plates.scene
+        for n in 13 19; do
+            cloud -d 2 -k regular -n $n --box 0,0.1,0,0.1 | shapefn > block.mts 2> note
+            mtled plates.scene block.mts > u.dat
+            echo "$push $exact $(reaction 3 2) $(rows energy u.dat | awk '{ print $1 }')" >> forces
+        done
+    done
+    cat forces
+    # The creased state has less energy than the homogeneous one of the stretch .5, 10.828645 J/m.
+    awk '{ f[NR] = -$3 / $2; w[NR] = $4 } END { d = f[3] / f[4] - 1
+        exit !(NR == 4 && f[1] > 0.999 && f[1] < 1.001 && f[2] > 0.999 && f[2] < 1.001 && d < 0.01 && -d < 0.01 && f[4] < 0.94 && w[3] < 10.6 && w[4] < 10.6) }' forces
 }
 
 @test "a disc that a plate presses to 70 %: the force is the same on two meshes" {

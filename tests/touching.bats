@@ -294,6 +294,21 @@ END
     mtled whole.scene pair.mts > u.dat
 }
 
+@test "two blocks pressed by half: with their sides held apart the closed form; with these free sides crease, which is told" {
+    stack
+    stack_scene | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.05/' > half.scene
+    { cat half.scene; printf '[displacement right]\nfacets = xmax\nnormal = 0.0912291335\n'; } > held.scene
+    mtled held.scene stack.mts > u.dat
+    rows reactions u.dat | awk 'NR == 1 { d = $2 / 706.76168 - 1; print $2; exit !(d < 1e-3 && -d < 1e-3) }'
+    for push in 0.04 0.05; do
+        sed "s/-0.05/-$push/; s/= low/= */; s/= up/= */" half.scene > free.scene
+        run -0 --separate-stderr mtled free.scene stack.mts
+        [[ $stderr == 'mtled: free.scene: '*' of the load on, xmax at (0.1, 0.0'*') has creased: there are other states, '* ||
+            $stderr == 'mtled: free.scene: at the whole load, xmax at (0.1, 0.0'*') has creased: there are other states, '* ]]
+        [ "$(wc -l <<< "$stderr")" -eq 1 ]
+    done
+}
+
 @test "blocks of equal width that slide off each other, one let touch the other alone: the remedy is to let all of it touch" {
     stack
     sed -i 's/, 14}/, 7}/g; s/, 9}/, 4.5}/g' stack.geo

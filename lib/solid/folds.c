@@ -105,7 +105,10 @@ static enum status build_rings(struct folds *folds, const struct fold_ring *side
     RETURN_IF_ERROR(NEW_ARRAY(&folds->rings, count, error));
     for (int64_t i = 0; i < count; i++) {
         if (i == 0 || compare_rings(&sides[i - 1], &sides[i]) != 0) {
-            folds->rings[folds->ring_count++] = sides[i];
+            folds->rings[folds->ring_count] = sides[i];
+            folds->rings[folds->ring_count++].other = -1;
+        } else {
+            folds->rings[folds->ring_count - 1].other = sides[i].facet;
         }
     }
     return list_cells(folds, error);

@@ -33,8 +33,9 @@ enum fold_kind {
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
     FOLD_REVERSED, /* a facet that slides on its plane shows its back there: the body went through the plane
                     */
-    FOLD_FLAT,   /* cells are inverted, but by less than that; slivers invert within the error of the field */
-    FOLD_SUPPORT /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_FLAT, /* cells are inverted, but by less than that; slivers invert within the error of the field */
+    FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_CLOSED   /* a side has creased: facets that meet there face each other */
 };
 
 struct fold {
@@ -63,7 +64,8 @@ struct fold_input {
 /* A node (2D) or an edge (3D) of the boundary, where facets meet. */
 struct fold_ring {
     int32_t node[2]; /* ascending; in 2D the second is -1 */
-    int64_t facet;   /* one of those that meet there */
+    int64_t facet;   /* one of those that meet there, */
+    int64_t other;   /* and another one; -1: none */
 };
 
 /* A free facet that shares a node or an edge with a plane support and is turned back from its plane by more
@@ -133,5 +135,9 @@ MUST_CHECK enum status folds_find_overlaps(struct folds *folds, const double *u,
  * size and a twentieth of the facet's, as conditions hold averages and no nodes. Nodes that are `stopped` do
  * not count. FOLD_NONE or FOLD_SUPPORT. */
 struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped);
+
+/* Look for facets that meet at less than 60 degrees at rest and face each other now, by 120 degrees or more:
+ * a side that is compressed too far along itself creases. FOLD_NONE or FOLD_CLOSED. */
+struct fold folds_find_closed(struct folds *folds, const double *u);
 
 #endif

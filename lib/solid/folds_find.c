@@ -17,8 +17,9 @@ static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1
 
 /* See folds_find_beyond, are_deep. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
-static const double turned_share = 0.1; /* see is_turned_over */
-static const double held_share = 0.5;   /* see are_deep; contact_most_depth */
+static const double turned_share = 0.1;                     /* see is_turned_over */
+static const double open_turn = 1.047, closed_turn = 2.094; /* see folds_find_closed: 60 and 120 degrees */
+static const double held_share = 0.5;                       /* see are_deep; contact_most_depth */
 static const double reversed = -0.5; /* cosine between the normals of a facet now and at rest: 120 degrees */
 
 static const double *at(const struct folds *folds, int32_t node)
@@ -436,5 +437,30 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
         }
     }
     fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;
+    return fold;
+}
+
+/* The angle between the normals of two facets. */
+static double turn_between(const struct fold_input *input, const double *y, int64_t f, int64_t g)
+{
+    double one[3], other[3];
+    int dim = input->dim;
+    fold_area_vector(dim, y, input->facet + f * dim, one);
+    fold_area_vector(dim, y, input->facet + g * dim, other);
+    return acos(vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other)));
+}
+
+struct fold folds_find_closed(struct folds *folds, const double *u)
+{
+    struct fold fold = none;
+    folds_take_positions(folds, u);
+    for (int64_t i = 0; i < folds->ring_count; i++) {
+        int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
+        if (g >= 0 && turn_between(&folds->input, folds->y, f, g) > closed_turn &&
+            turn_between(&folds->input, folds->input.x, f, g) < open_turn && fold.count++ == 0) {
+            name_facets(folds, f, g, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_CLOSED : FOLD_NONE;
     return fold;
 }

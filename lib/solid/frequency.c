@@ -328,10 +328,17 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
             mode[i] += share[k] * l.before[i];
         }
     }
-    l = lanczos_at(system, p, u, residual, mode, scratch);
-    (void)lanczos_begin(&l);
-    lanczos_step(&l, 0, diagonal, off_diagonal);
-    stability->least = diagonal[0] < least_told * spectrum->largest ? diagonal[0] / spectrum->largest : 0.0;
+    stability->least = -INFINITY;
+    for (int way = 0; way < 2; way++) { /* a contact that opens or closes does so one way */
+        l = lanczos_at(system, p, u, residual, mode, scratch);
+        (void)lanczos_begin(&l);
+        lanczos_step(&l, 0, diagonal, off_diagonal);
+        stability->least = fmax(stability->least, diagonal[0] / spectrum->largest);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] = -mode[i];
+        }
+    }
+    stability->least = stability->least < least_told ? stability->least : 0.0;
     stability->node = most_moved(system->dim, system->node_count, mode);
 done:
     FREE_ALL(diagonal, off_diagonal, share, pivot, mode);

@@ -35,7 +35,8 @@ MUST_CHECK enum status system_spectrum(struct solid_system *system, struct preco
 
 /* Whether u is stable, by a spectrum that was found from this start. A negative eigenvalue is certain only by
  * its mode, which costs the same iterations twice more: `least` is then the Rayleigh quotient of the mode,
- * which no round-off of the iteration makes negative. scratch as before. */
+ * which no round-off of the iteration makes negative, the larger one of both ways, as a contact that opens or
+ * closes there makes it so along one of them at the most. scratch as before. */
 MUST_CHECK enum status system_unstable_mode(struct solid_system *system,
                                             struct preconditioner *preconditioner, const double *u,
                                             const double *residual, const struct spectrum *spectrum,

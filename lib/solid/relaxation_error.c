@@ -103,14 +103,14 @@ void relaxation_damp_at_most(struct relaxation *r, double low2)
 }
 
 /* Whether the state u, of which that is the spectrum, is stable. Stiffness is known to about the error of the
- * state, by the largest; and at a contact that opens or closes it means nothing. False on failure. */
+ * state, by the largest. False on failure. */
 static bool note_stability(struct relaxation *r, const double *u, const struct spectrum *spectrum,
                            struct error *error)
 {
     struct stability *stability = &r->system->stability;
     r->failure = system_unstable_mode(r->system, &r->preconditioner, u, r->residual, spectrum, r->velocity,
                                       r->scratch, stability, error);
-    if (stability->least > -r->report->error || r->system->contact_count > 0) {
+    if (stability->least > -r->report->error) {
         stability->least = fmax(stability->least, 0.0);
     }
     return r->failure == STATUS_OK;

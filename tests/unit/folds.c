@@ -346,6 +346,33 @@ TEST(reversed)
     }
 }
 
+/* A node of the upper side is drawn into the body, until the facets beside it face each other; at the body's
+ * own corners facets of its upper and left sides may. */
+TEST(closed)
+{
+    static struct shape shape;
+    double u[MOST_NODES * 3];
+    for (int dim = 2; dim <= 3; dim++) {
+        make_grid(&shape, dim, 6, 2);
+        for (int i = 0; i < 3; i++) {
+            memset(u, 0, sizeof u);
+            for (int64_t k = 0; k < shape.nodes; k++) {
+                double x = shape.x[k * dim], y = shape.x[k * dim + 1];
+                double way = fabs(x - 0.5) < 1e-9 && y > 0.9 ? 1.0 : 0.0;
+                u[k * dim + 1] = i < 2 ? -way * (i == 0 ? 0.2 : 0.4) : 0.0;
+                u[k * dim] = i == 2 && x < 1e-9 && y > 0.9 ? -0.5 : 0.0;
+            }
+            struct fold fold = folds_find_closed(&shape.folds, u);
+            assert_int_equal(fold.kind, i == 1 ? FOLD_CLOSED : FOLD_NONE);
+            if (i == 1) {
+                assert_int_equal(fold.count, 1);
+                NEAR_TO(fold.place[1], 1.0, 1e-12);
+            }
+        }
+        folds_free(&shape.folds);
+    }
+}
+
 /* The side's lowest nodes go below the plane of the support under the body, unless something presses on them.
  */
 TEST(through_the_plane)

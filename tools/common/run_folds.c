@@ -169,7 +169,10 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct fold none = {.kind = FOLD_NONE};
     struct fold beyond = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
     note(folds, FOLDED, fold.kind == FOLD_FLAT ? &none : &fold, time, counts);
-    note(folds, NOTED, beyond.kind == FOLD_NONE && fold.kind == FOLD_FLAT ? &fold : &beyond, time, counts);
+    if (beyond.kind == FOLD_NONE) {
+        beyond = fold.kind == FOLD_FLAT ? fold : folds_find_closed(&folds->folds, folds->field);
+    }
+    note(folds, NOTED, &beyond, time, counts);
 }
 
 /* A spell. */
@@ -267,6 +270,12 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     case FOLD_SUPPORT:
         snprintf(text, size, "%s, %s at %s is beyond the plane of %s, where nothing in the scene stops it",
                  when, one, place, other);
+        return;
+    case FOLD_CLOSED:
+        snprintf(text, size,
+                 "%s, %s at %s has creased: there are other states, with more or fewer creases, whose forces "
+                 "differ by some percent",
+                 when, one, place);
         return;
     case FOLD_NONE:
     default:

@@ -34,12 +34,22 @@ void run_stability_free(struct run *run)
     free(run->stability.near);
 }
 
+/* Whether some contact has pressed: its augmentations, and points that come and go, begin another problem. */
+static bool has_touched(const struct solid_system *system)
+{
+    bool touched = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        touched = touched || system->contacts[c].pressed;
+    }
+    return touched;
+}
+
 void run_stability_follow(struct run *run, const struct progress *progress)
 {
     struct run_stability *stability = &run->stability;
     const struct solid_system *system = &run->model->system;
     int64_t last = (stability->looks + RUN_STABILITY_LOOKS - 1) % RUN_STABILITY_LOOKS;
-    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || system->contact_count > 0) {
+    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || has_touched(system)) {
         return;
     }
     if (progress->time != stability->load || !isfinite(progress->move)) {

@@ -13,8 +13,8 @@ struct run;
 enum { RUN_STABILITY_LOOKS = 4 };
 
 struct run_stability {
-    /* The state nearest to equilibrium since the load is held; of bodies without contacts, where each
-     * augmentation begins another problem. */
+    /* The state nearest to equilibrium since the load is held; while no contact has
+     * pressed. */
     double load;                      /* that is held */
     double move[RUN_STABILITY_LOOKS]; /* of the last looks, m: in turn */
     int64_t looks;                    /* since then */
