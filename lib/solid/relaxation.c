@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const int64_t keep_interval = 200;               /* steps between states to go back to */
+static const int64_t keep_interval = 50;                /* steps between states to go back to */
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
-static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
+static const double steps_per_spacing = 12.0, steps_per_size = 400.0;
 static const int64_t least_ramp = 100;
 /* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
@@ -180,14 +180,17 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     r->load_rate = r->top_rate;
     go_back(r, &r->older);
     memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
-    relaxation_keep_state(r);
-    relaxation_keep_check(r);
-    relaxation_keep_check(r);
+    for (int i = 0; i < 2; i++) { /* what was kept since that state leads to the inversion */
+        relaxation_keep_state(r);
+        relaxation_keep_check(r);
+    }
     memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
     r->residual_at = r->u;
     if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
+    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u); /* the way back is no move of the body */
+    memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
     system_relaxation_mass(r->system, false, r->scratch);
     r->mass_change = 0.0;
     r->last_mass_check = r->next_mass_check = r->checks;
