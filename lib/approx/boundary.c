@@ -139,22 +139,21 @@ static enum status collect_parts(const struct face_table *table, const struct fa
                                  const int64_t *face_of, bool split, struct boundary_sides *sides,
                                  struct corner *corners, int64_t *parts, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int64_t *group = NULL, count = 2 * set->count * table->dim;
+    SCRATCH int64_t *group = NULL;
+    int64_t count = 2 * set->count * table->dim;
     boundary_collect_corners(table, set, face_of, split, corners, parts);
     if (sides != NULL) {
         sides->node_average_count = *parts;
-        TRY(NEW_ARRAY(&group, set->count, error));
-        TRY(boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
-        TRY(NEW_ARRAY(&sides->group, *parts, error));
-        TRY(NEW_ARRAY(&sides->flat, *parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&group, set->count, error));
+        RETURN_IF_ERROR(
+            boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&sides->group, *parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&sides->flat, *parts, error));
         for (int64_t i = 0; i < count; i++) {
             sides->group[corners[i].part] = group[corners[i].facet];
         }
     }
-done:
-    free(group);
-    return status;
+    return STATUS_OK;
 }
 
 /* All kinds of averages; node_lists == NULL: boundary averages. */

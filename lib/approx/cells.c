@@ -181,11 +181,10 @@ static int compare_faces(const void *left, const void *right)
 /* partner[source]: the source of the same face in the other cell, or -1. */
 static enum status match_faces(const struct cells *cells, int64_t *partner, struct error *error)
 {
-    enum status status;
     int corners = cells->dim + 1;
     int64_t total = cells->count * corners;
-    struct keyed_face *keyed = NULL;
-    TRY(NEW_ARRAY(&keyed, total, error));
+    SCRATCH struct keyed_face *keyed = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&keyed, total, error));
     for (int64_t s = 0; s < total; s++) {
         int32_t node[3];
         cell_face(cells, s / corners, opposite(cells->dim, s % corners), node);
@@ -200,15 +199,13 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
             continue;
         }
         if (partner[one] >= 0) {
-            TRY(fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
-                     (long long)(other / corners)));
+            return fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
+                        (long long)(other / corners));
         }
         partner[one] = other;
         partner[other] = one;
     }
-done:
-    free(keyed);
-    return status;
+    return STATUS_OK;
 }
 
 /* Append the face at slot s of the cells, beyond which is that cell or none. */
@@ -282,18 +279,15 @@ enum status faces_find(const struct faces *faces, int64_t count, const int32_t *
 
 enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
 {
-    enum status status;
     int corners = cells->dim + 1;
-    int64_t *partner = NULL;
-    TRY(NEW_ARRAY(&partner, cells->count * corners, error));
-    TRY(match_faces(cells, partner, error));
+    SCRATCH int64_t *partner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells->count * corners, error));
+    RETURN_IF_ERROR(match_faces(cells, partner, error));
     for (int64_t s = 0; s < cells->count * corners; s++) {
         across[s / corners * corners + opposite(cells->dim, s % corners)] =
             partner[s] < 0 ? -1 : (int32_t)(partner[s] / corners);
     }
-done:
-    free(partner);
-    return status;
+    return STATUS_OK;
 }
 
 void faces_free(struct faces *faces)
@@ -304,10 +298,9 @@ void faces_free(struct faces *faces)
 
 enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    int64_t *visits = NULL;
-    TRY(NEW_ARRAY(&visits, cells->node_count, error));
+    SCRATCH int64_t *visits = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&visits, cells->node_count, error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = 0.0;
     }
@@ -328,7 +321,5 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = visits[n] > 0 ? spacing[n] / (double)visits[n] : 0.0;
     }
-done:
-    free(visits);
-    return status;
+    return STATUS_OK;
 }

@@ -247,13 +247,12 @@ static int side_of(const struct cloud_options *options, const int32_t face[])
 
 static enum status make_facets(const struct cloud_options *options, struct cloud *cloud, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = options->dim;
     struct cells cells = {dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
-    struct faces faces = {0};
-    TRY(faces_build(&cells, true, &faces, error));
-    TRY(NEW_ARRAY(&cloud->facets, faces.count * dim, error));
-    TRY(NEW_ARRAY(&cloud->facet_set, faces.count, error));
+    FREED_BY(faces_free) struct faces faces = {0};
+    RETURN_IF_ERROR(faces_build(&cells, true, &faces, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->facets, faces.count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->facet_set, faces.count, error));
     for (int side = 0; side < 2 * dim; side++) {
         for (int64_t f = 0; f < faces.count; f++) {
             if (side_of(options, &faces.node[f * dim]) == side) {
@@ -263,9 +262,7 @@ static enum status make_facets(const struct cloud_options *options, struct cloud
             }
         }
     }
-done:
-    faces_free(&faces);
-    return status;
+    return STATUS_OK;
 }
 
 enum status cloud_make(const struct cloud_options *options, struct cloud *cloud, struct error *error)

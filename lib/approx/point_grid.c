@@ -132,6 +132,12 @@ done:
     return status;
 }
 
+void index_list_free(struct index_list *list)
+{
+    free(list->index);
+    *list = (struct index_list){0};
+}
+
 void point_grid_free(struct point_grid *grid)
 {
     for (int l = 0; l < grid->level_count; l++) {
@@ -177,14 +183,13 @@ static void file_bins(const struct point_grid_level *level, int dim, int32_t slo
 
 enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
+    SCRATCH int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
     for (int l = 0; l < grid->level_count; l++) {
         struct point_grid_level *level = &grid->level[l];
         int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
         free(slot);
-        TRY(NEW_ARRAY(&slot, grid->node_count, error));
-        TRY(NEW_ARRAY(&level->touch_start, bins + 2, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&slot, grid->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch_start, bins + 2, error));
         for (int32_t i = 0; level->start != NULL && i < level->start[bins]; i++) {
             slot[level->node[i]] = i + 1;
             file_bins(level, grid->dim, i, level->touch_start, NULL);
@@ -192,16 +197,14 @@ enum status point_grid_list_touching(struct point_grid *grid, struct error *erro
         for (int64_t b = 0; b < bins; b++) {
             level->touch_start[b + 2] += level->touch_start[b + 1];
         }
-        TRY(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
         for (int64_t n = 0; n < grid->node_count; n++) {
             if (slot[n] > 0) {
                 file_bins(level, grid->dim, slot[n] - 1, level->touch_start, level->touch);
             }
         }
     }
-done:
-    free(slot);
-    return status;
+    return STATUS_OK;
 }
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)

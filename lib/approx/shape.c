@@ -188,12 +188,11 @@ static int64_t merge_row(const struct neighbours *lists, const struct faces *fac
 static enum status average_rows(const struct tabulation *table, const struct faces *faces, int64_t first,
                                 int64_t last, struct face_averages *averages, struct error *error)
 {
-    enum status status;
     const int64_t *ptr = table->lists->ptr;
     int64_t point = face_row_point(faces, first), pair = ptr[point];
-    double *phi = NULL;
-    TRY(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
-    TRY(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
+    SCRATCH double *phi = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
+    RETURN_IF_ERROR(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
     for (int64_t r = first; r < last; r++) {
         int64_t at = averages->ptr[r];
         (void)merge_row(table->lists, faces, r, phi + (ptr[face_row_point(faces, r)] - pair),
@@ -204,9 +203,7 @@ static enum status average_rows(const struct tabulation *table, const struct fac
         memcpy(averages->boundary_phi + pair, phi,
                (size_t)(ptr[face_row_point(faces, end)] - pair) * sizeof *phi);
     }
-done:
-    free(phi);
-    return status;
+    return STATUS_OK;
 }
 
 enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,

@@ -26,11 +26,11 @@ done:
 
 enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)
 {
-    enum status status;
-    int64_t entries = matrix->ptr[matrix->row_count], *next = NULL;
+    int64_t entries = matrix->ptr[matrix->row_count];
+    SCRATCH int64_t *next = NULL;
     *transposed = (struct sparse){0};
-    TRY(NEW_ARRAY(&next, matrix->column_count + 1, error));
-    TRY(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&next, matrix->column_count + 1, error));
+    RETURN_IF_ERROR(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
     for (int64_t i = 0; i < entries; i++) {
         transposed->ptr[matrix->idx[i] + 1]++;
     }
@@ -45,9 +45,7 @@ enum status sparse_transpose(const struct sparse *matrix, struct sparse *transpo
             transposed->value[at] = matrix->value[i];
         }
     }
-done:
-    free(next);
-    return status;
+    return STATUS_OK;
 }
 
 void sparse_free(struct sparse *matrix)

@@ -206,18 +206,14 @@ done:
 enum status checkpoint_remove(const char *file, struct error *error)
 {
     static const char *const endings[] = {".new", ".old", ""};
-    enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        char *name;
-        TRY(sibling_name(file, endings[i], &name, error));
+        SCRATCH char *name = NULL;
+        RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));
         if (unlink(name) != 0 && errno != ENOENT) {
-            status = fail_file(name, error);
+            return fail_file(name, error);
         }
-        free(name);
-        TRY(status);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Read one file; *exists tells whether it is there. */

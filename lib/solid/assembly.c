@@ -50,17 +50,16 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
 
 static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
 {
-    enum status status;
     struct material_list *materials = &input->materials;
-    int32_t *vertex = NULL;
-    double *coordinate = NULL;
-    bool *at_edge = NULL;
+    SCRATCH int32_t *vertex = NULL;
+    SCRATCH double *coordinate = NULL;
+    SCRATCH bool *at_edge = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        TRY(assembly_soften_ends(input, materials, error));
-        TRY(assembly_edge_nodes(input, &at_edge, error));
+        RETURN_IF_ERROR(assembly_soften_ends(input, materials, error));
+        RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {
-        TRY(list_vertices(input, &vertex, &coordinate, error));
+        RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
     }
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
@@ -92,10 +91,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .at_edge = at_edge,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
-    TRY(body_build(&body, &system->body, error));
-done:
-    FREE_ALL(vertex, coordinate, at_edge);
-    return status;
+    return body_build(&body, &system->body, error);
 }
 
 /* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
@@ -206,18 +202,15 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
 
 enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
 {
-    enum status status;
-    int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
-    TRY(NEW_ARRAY(held, input->boundary.count, error));
-    TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
+    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
+    RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
         if (prescription_directions(&input->conditions[i], input->cells.dim) >= least) {
             mark_faces(input, &input->conditions[i].facets, i + 1, stamp, *held);
         }
     }
-done:
-    free(stamp);
-    return status;
+    return STATUS_OK;
 }
 
 double assembly_penalty_modulus(const struct solid_system *system, double factor)

@@ -166,16 +166,15 @@ done:
 enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
                                        struct error *error)
 {
-    enum status status = STATUS_OK;
     struct sparse *fetched = &averages->fetched;
     struct average_table *faces = &averages->given[0];
     const int64_t *ptr = matrix->ptr;
     int64_t at = 0, begin = 0;
-    bool *kept = NULL;
+    SCRATCH bool *kept = NULL;
     if (fetched->ptr == NULL) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&kept, fetched->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept, fetched->row_count, error));
     for (int64_t r = 0; r < fetched->row_count; r++) {
         kept[faces->order[r]] = ptr[r] == ptr[r + 1];
     }
@@ -186,13 +185,11 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
         begin = end;
         fetched->ptr[f + 1] = at += length;
     }
-    TRY(RESIZE_ARRAY(&fetched->idx, at + 1, error));
-    TRY(RESIZE_ARRAY(&fetched->value, at + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->idx, at + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->value, at + 1, error));
     faces->idx = fetched->idx;
     faces->phi = fetched->value;
-done:
-    free(kept);
-    return status;
+    return STATUS_OK;
 }
 
 void field_averages_free(struct field_averages *averages)

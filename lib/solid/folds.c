@@ -78,25 +78,23 @@ static void part_nodes(const struct fold_input *input, int64_t part, int32_t nod
 /* The cells around each ring. */
 static enum status list_cells(struct folds *folds, struct error *error)
 {
-    enum status status;
     int corners = folds->input.dim + 1;
     int64_t count = folds->input.cell_count * (corners == 3 ? 3 : 6);
-    int32_t *ring = NULL, *part = NULL, node[4];
-    TRY(NEW_ARRAY(&ring, count, error));
+    SCRATCH int32_t *ring = NULL, *part = NULL;
+    int32_t node[4];
+    RETURN_IF_ERROR(NEW_ARRAY(&ring, count, error));
     for (int64_t i = 0; i < count; i++) {
         part_nodes(&folds->input, i, node);
         ring[i] = find_ring(folds, node);
     }
-    TRY(lists_by_row(count, 1, ring, folds->ring_count, &folds->ring_ptr, &part, error));
+    RETURN_IF_ERROR(lists_by_row(count, 1, ring, folds->ring_count, &folds->ring_ptr, &part, error));
     count = folds->ring_ptr[folds->ring_count];
-    TRY(NEW_ARRAY(&folds->ring_cell, count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->ring_cell, count * corners, error));
     for (int64_t i = 0; i < count; i++) {
         part_nodes(&folds->input, part[i], node);
         memcpy(folds->ring_cell + i * corners, node, (size_t)corners * sizeof *node);
     }
-done:
-    FREE_ALL(ring, part);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status build_rings(struct folds *folds, const struct fold_ring *sides, struct error *error)

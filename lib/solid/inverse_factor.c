@@ -70,19 +70,15 @@ static enum status add_rows(const struct solid_system *system, int64_t first, in
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
 {
-    enum status status;
-    bool *wanted = NULL;
-    TRY(NEW_ARRAY(&wanted, system->node_count, error));
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, system->node_count, error));
     for (int64_t p = first; p < last; p++) {
         for (int64_t k = 0; k < length[p]; k++) {
             wanted[rows->idx[p * MOST_ENTRIES + k]] = true;
         }
     }
-    TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
-                                         : lower_add(wanted, lower, error));
-done:
-    free(wanted);
-    return status;
+    return system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
+                                            : lower_add(wanted, lower, error);
 }
 
 /* Rows of the nodes from `first` to before `last` in the body's order, the one at place p at
@@ -90,16 +86,15 @@ done:
 static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last,
                              struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
-    enum status status;
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
-    struct placed *near = NULL;
+    SCRATCH struct placed *near = NULL;
     int64_t most = 0;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
     }
-    TRY(NEW_ARRAY(&near, most * chunks.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&near, most * chunks.count, error));
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
@@ -107,15 +102,13 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
                 choose(system, lower, (int32_t)node[p], near + c * most, rows->idx + p * MOST_ENTRIES);
         }
     }
-    TRY(add_rows(system, first, last, rows, length, lower, error));
+    RETURN_IF_ERROR(add_rows(system, first, last, rows, length, lower, error));
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t p = first; p < last; p++) {
         int64_t at = p * MOST_ENTRIES;
         solve_row(lower, length[p], rows->idx + at, rows->value + at);
     }
-done:
-    free(near);
-    return status;
+    return STATUS_OK;
 }
 
 /* All own rows, by stretches of so many nodes, for which alone S is there. What a node without stiffness has

@@ -26,14 +26,13 @@ static int64_t centre_count(const struct solid_system *system)
 /* L^-T Z of the scalar coarse fields, by rows. */
 static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
 {
-    enum status status;
     const struct ranks *ranks = p->factor.ranks;
     int64_t nodes = p->node_count, *first = NULL;
     int field[COARSE_MOST_AT_NODE];
     double value[COARSE_MOST_AT_NODE];
-    TRY(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
+    RETURN_IF_ERROR(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
     first = p->field_first;
-    TRY(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
         int count = coarse_space_at_node(&p->coarse, n, field, value);
         for (int k = 0; k < count; k++) {
@@ -46,8 +45,7 @@ static enum status transform_fields(struct preconditioner *p, int threads, struc
         inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
     }
     ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)

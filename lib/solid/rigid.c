@@ -33,13 +33,12 @@ static enum status check_corners(const struct rigid_surface *surface, const doub
 static enum status find_coincident(const struct rigid_surface *surface, const double *corners, int64_t *same,
                                    struct error *error)
 {
-    enum status status;
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
     double near = merge_tolerance * surface->extent;
-    struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
-    TRY(NEW_ARRAY(&placed, count, error));
+    SCRATCH struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
+    RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
     for (int64_t c = 0; c < count; c++) {
         placed[c] = (struct placed){vector_dot(dim, direction, corners + c * dim), c};
     }
@@ -55,24 +54,21 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
             }
         }
     }
-done:
-    free(placed);
-    return status;
+    return STATUS_OK;
 }
 
 /* Vertices in the order of their first corner, and the facets' indices into them. */
 static enum status number_vertices(struct rigid_surface *surface, const double *corners, struct error *error)
 {
-    enum status status;
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
-    int64_t *same = NULL;
-    int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
-    TRY(NEW_ARRAY(&same, count, error));
-    TRY(NEW_ARRAY(&number, count, error));
-    TRY(NEW_ARRAY(&surface->vertex, count * dim, error));
-    TRY(NEW_ARRAY(&surface->facet, count, error));
-    TRY(find_coincident(surface, corners, same, error));
+    SCRATCH int64_t *same = NULL;
+    SCRATCH int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&same, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&number, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, count, error));
+    RETURN_IF_ERROR(find_coincident(surface, corners, same, error));
     for (int64_t c = 0; c < count; c++) {
         if (number[same[c]] == 0) {
             memcpy(surface->vertex + surface->vertex_count * dim, corners + c * dim,
@@ -81,9 +77,7 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
         }
         surface->facet[c] = number[same[c]] - 1;
     }
-done:
-    FREE_ALL(same, number);
-    return status;
+    return STATUS_OK;
 }
 
 /* Normal, not unit, of facet f; *size2 is the square of its longest edge. */

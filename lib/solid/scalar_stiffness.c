@@ -76,15 +76,14 @@ static struct average fields_of(const struct scalar_stiffness *stiffness, const 
 
 static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = stiffness->system;
-    struct sparse by_bond = {0};
+    FREED_BY(sparse_free) struct sparse by_bond = {0};
     double unused;
     int64_t entries = 0, at = 0;
     for (int64_t b = 0; b < stiffness->bond_count; b++) {
         entries += bond_at(system, b, &unused).length;
     }
-    TRY(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
+    RETURN_IF_ERROR(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
     for (int64_t b = 0; b < stiffness->bond_count; b++) {
         struct average bond = bond_at(system, b, &stiffness->bond_stiffness[b]);
         for (int64_t i = 0; i < bond.length; i++, at++) {
@@ -93,10 +92,7 @@ static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *
         }
         by_bond.ptr[b + 1] = at;
     }
-    TRY(sparse_transpose(&by_bond, &stiffness->bonds, error));
-done:
-    sparse_free(&by_bond);
-    return status;
+    return sparse_transpose(&by_bond, &stiffness->bonds, error);
 }
 
 enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,

@@ -47,9 +47,9 @@ static void check_groups(const struct cut_body *whole)
     TOOL_TRY(tool, stream_facets(whole->stream, has(whole, "facets", "facets.set"), cells, &facets, &error));
     TOOL_TRY(tool, stream_sets(whole->stream, has(whole, "sets.ptr", "sets.idx"), cells->node_count, &sets,
                                &error));
-    names_free(&regions.names);
-    names_free(&facets.names);
-    names_free(&sets.names);
+    cell_regions_free(&regions);
+    named_facets_free(&facets);
+    named_sets_free(&sets);
 }
 
 /* Take out what cannot be cut, and keep what the rest was. */

@@ -203,23 +203,20 @@ static void view_lists(const struct rejoin *rejoin, const char *name, struct joi
 
 enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct joined_lists lists = {.prefix = "face", .rows = ROWS_OF_FACES};
-    TRY(NEW_ARRAY(&lists.of, rejoin->part_count, error));
+    FREED_BY(lists_free) struct joined_lists lists = {.prefix = "face", .rows = ROWS_OF_FACES};
+    RETURN_IF_ERROR(NEW_ARRAY(&lists.of, rejoin->part_count, error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         const struct section *values = stream_find(&part->stream, "face.phi");
         if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
             continue; /* every process finds that out for itself */
         }
-        TRY(view_part(rejoin, k, &lists, error));
+        RETURN_IF_ERROR(view_part(rejoin, k, &lists, error));
         if (!part->elsewhere && values->rows != lists.of[k].ptr[lists.of[k].count]) {
-            TRY(fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file));
+            return fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file);
         }
     }
-done:
-    lists_free(&lists);
-    return status;
+    return STATUS_OK;
 }
 
 /* The pairs around corners of each list of a part, as lists of their own: of[k].idx is not set. */

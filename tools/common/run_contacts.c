@@ -271,15 +271,14 @@ void run_contacts_judge(struct run *run, double slack, double share)
  * with all nodes inside. */
 static enum status find_core(const struct run *run, bool **core, struct error *error)
 {
-    enum status status;
     const struct assembly *input = &run->model->assembly;
     const struct faces *boundary = &input->boundary;
     int dim = run->scene->dim;
     int64_t node_count = input->cells.node_count;
-    bool *held = NULL, *inside = NULL;
-    TRY(assembly_held_faces(input, 1, &held, error));
-    TRY(NEW_ARRAY(&inside, node_count, error));
-    TRY(NEW_ARRAY(core, node_count, error));
+    SCRATCH bool *held = NULL, *inside = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&inside, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(core, node_count, error));
     memset(inside, true, (size_t)node_count * sizeof *inside);
     for (int64_t i = 0; i < boundary->count * dim; i++) {
         inside[boundary->node[i]] = inside[boundary->node[i]] && held[i / dim];
@@ -291,9 +290,7 @@ static enum status find_core(const struct run *run, bool **core, struct error *e
             (*core)[node[k]] = (*core)[node[k]] || (all && inside[node[k]]);
         }
     }
-done:
-    FREE_ALL(held, inside);
-    return status;
+    return STATUS_OK;
 }
 
 /* A condition most of whose facets are on patches that are too narrow to have such nodes. */

@@ -49,7 +49,7 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
             break;
         }
     }
-    names_free(&facets.names);
+    named_facets_free(&facets);
 }
 
 /* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
