@@ -161,12 +161,11 @@ static void print_energy(const struct side *fine, const struct side *coarse, dou
 static double average_difference(const struct tool *tool, const struct request *request,
                                  const struct side *first, const struct side *second)
 {
-    struct findings findings;
+    FREED_BY(findings_free) struct findings findings = {0};
     struct comparison_request everywhere = request->comparison;
     everywhere.region = NULL;
     findings_make(tool, &everywhere, first, second, &findings);
     double average = findings.statistics.average;
-    findings_free(&findings);
     return average;
 }
 

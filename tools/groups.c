@@ -335,8 +335,8 @@ static const char *const changes[] = {"facets", "nodes", "region", "rename", "de
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
-    struct group_body body;
+    FREED_BY(stream_free) struct stream stream = {0};
+    FREED_BY(group_body_free) struct group_body body = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
@@ -357,7 +357,5 @@ int main(int argc, char *argv[])
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    group_body_free(&body);
-    stream_free(&stream);
     return tool_end(&tool);
 }

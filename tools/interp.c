@@ -102,7 +102,7 @@ static void read_table(const struct tool *tool, const char *file, const char *un
 /* The nodes of another stream. */
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
-    struct stream other;
+    FREED_BY(stream_free) struct stream other = {0};
     struct error why;
     int other_dim;
     const double *x;
@@ -122,7 +122,6 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     }
     TOOL_TRY(tool, NEW_ARRAY(&points->x, points->count * dim, &error));
     memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
-    stream_free(&other);
 }
 
 /* Leave out the points that lie outside, and tell how many; or fail on the first that lies farther out. */

@@ -183,7 +183,7 @@ static void orient(struct layered *layered)
 
 static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
@@ -195,7 +195,6 @@ static void write_sizes(const struct tool *tool, struct layered *layered, bool t
     TOOL_TRY(tool, stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false,
                               &error));
     tool_write(tool, &stream, text);
-    stream_free(&stream);
 }
 
 static void report(const struct request *request, const struct cells *cells, const struct size_field *field)
@@ -212,10 +211,10 @@ static void report(const struct request *request, const struct cells *cells, con
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct cells cells;
-    struct size_field field;
-    double *squared = NULL;
+    FREED_BY(size_field_free) struct size_field field = {0};
+    SCRATCH double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     tool_excludes(&tool, "binary", "text");
     if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool_given(&tool, "text"))) {
@@ -243,8 +242,5 @@ int main(int argc, char *argv[])
         report(&request, &cells, &field);
     }
     layered_free(&layered);
-    size_field_free(&field);
-    free(squared);
-    stream_free(&stream);
     return tool_end(&tool);
 }

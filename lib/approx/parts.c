@@ -160,7 +160,7 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
                         int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,
                         struct error *error)
 {
-    bool *other;
+    SCRATCH bool *other = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
     bool *items = of_items ? chosen : other, *nodes = of_items ? other : chosen;
     if (rings < 0) {
@@ -179,6 +179,5 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
     if (rings < 0) {
         invert(of_items ? count : node_count, chosen);
     }
-    free(other);
     return STATUS_OK;
 }

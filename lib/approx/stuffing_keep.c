@@ -83,7 +83,7 @@ enum status stuffing_compact(struct stuffing *stuffing, struct error *error)
 {
     int dim = stuffing->dim, corners = dim + 1;
     int64_t slots = stuffing->cell_count * corners, nodes = 0;
-    int32_t *number = NULL;
+    SCRATCH int32_t *number = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&number, stuffing->node_count, error));
     for (int64_t i = 0; i < slots; i++) {
         number[stuffing->cell[i]] = 1;
@@ -101,7 +101,6 @@ enum status stuffing_compact(struct stuffing *stuffing, struct error *error)
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         stuffing->facet[i] = number[stuffing->facet[i]];
     }
-    free(number);
     return STATUS_OK;
 }
 

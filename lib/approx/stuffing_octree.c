@@ -22,7 +22,7 @@ static int64_t index_of(const int64_t count[3], const int64_t at[3])
 /* Mark what touches a marked cube: along each axis in turn. */
 static enum status dilate(const int64_t count[3], bool *marked, struct error *error)
 {
-    bool *before;
+    SCRATCH bool *before = NULL;
     int64_t total = cubes(count), stride = 1;
     enum status status = NEW_ARRAY(&before, total, error);
     for (int d = 0; d < 3 && status == STATUS_OK; d++) {
@@ -34,7 +34,6 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
         }
         stride *= count[d];
     }
-    free(before);
     return status;
 }
 

@@ -164,9 +164,9 @@ static enum status write_new(const char *name, const struct stream *stream, stru
 static enum status sync_folder(const char *file, struct error *error)
 {
     const char *slash = strrchr(file, '/');
-    char *folder = slash == NULL   ? strdup(".")
-                   : slash == file ? strdup("/")
-                                   : strndup(file, (size_t)(slash - file));
+    SCRATCH char *folder = slash == NULL   ? strdup(".")
+                           : slash == file ? strdup("/")
+                                           : strndup(file, (size_t)(slash - file));
     if (folder == NULL) {
         return fail_memory(error, file);
     }
@@ -178,7 +178,6 @@ static enum status sync_folder(const char *file, struct error *error)
     if (descriptor >= 0) {
         close(descriptor);
     }
-    free(folder);
     return status;
 }
 

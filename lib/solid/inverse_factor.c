@@ -141,7 +141,7 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
                                struct error *error)
 {
     int count = ranks_count(share->ranks);
-    int64_t *first = NULL;
+    SCRATCH int64_t *first = NULL;
     ranks_gather(share->ranks, length, sizeof *length, share->node_first);
     for (int64_t p = 0; p < rows->row_count; p++) {
         rows->ptr[p + 1] = rows->ptr[p] + length[p];
@@ -157,7 +157,6 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
     }
     ranks_gather(share->ranks, rows->idx, sizeof *rows->idx, first);
     ranks_gather(share->ranks, rows->value, sizeof *rows->value, first);
-    free(first);
     return STATUS_OK;
 }
 

@@ -129,7 +129,7 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
 {
     struct error error;
     struct field_comparison *comparison = &findings->comparison;
-    bool *chosen;
+    SCRATCH bool *chosen = NULL;
     sides_check(tool, a, b, request->field);
     tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
     tool_check(tool, regions_choose(&findings->regions, request->region, &chosen, &error), &error);
@@ -147,7 +147,6 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
                                 &findings->statistics, &error),
                &error);
     findings->reference = field_largest(b->field.cells.node_count, b->field.cols, b->field.values);
-    free(chosen);
 }
 
 void findings_free(struct findings *findings)

@@ -24,7 +24,7 @@ static bool same_group(const struct member *a, const struct member *b)
 static enum status add_name(struct mesh_names *names, const char *first, const char *second,
                             struct error *error)
 {
-    char *joined;
+    SCRATCH char *joined = NULL;
     if (second == NULL) {
         return mesh_add_name(names, first, error);
     }
@@ -32,7 +32,6 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
         return fail_memory(error, "a name");
     }
     enum status status = mesh_add_name(names, joined, error);
-    free(joined);
     return status;
 }
 

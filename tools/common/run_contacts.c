@@ -254,7 +254,7 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
 void run_contacts_judge(struct run *run, double slack, double share)
 {
     struct solid_system *system = &run->model->system;
-    double *x = system->contact_count > 0 ? deformed(run) : NULL;
+    SCRATCH double *x = system->contact_count > 0 ? deformed(run) : NULL;
     struct cells cells = run->model->assembly.cells;
     cells.x = x;
     for (int64_t c = 0; c < system->contact_count; c++) {
@@ -264,7 +264,6 @@ void run_contacts_judge(struct run *run, double slack, double share)
         TOOL_TRY(run->tool, contact_patch_find(contact, set, &cells, &patch, &error));
         judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
     }
-    free(x);
 }
 
 /* core[node_count]: nodes inside what is held, all of whose faces on the boundary are; in 3D, those of facets
@@ -322,7 +321,7 @@ static void note_narrow(const struct run *run, const struct condition *condition
 void run_displacements_judge(const struct run *run)
 {
     const struct assembly *input = &run->model->assembly;
-    bool *core = NULL;
+    SCRATCH bool *core = NULL;
     if (!wants_forces(&run->scene->output)) {
         return;
     }
@@ -337,5 +336,4 @@ void run_displacements_judge(const struct run *run)
             note_narrow(run, condition, core);
         }
     }
-    free(core);
 }

@@ -167,7 +167,7 @@ static enum status body_text(const struct model *model, const struct bodies *bod
 
 void run_check_rigid_modes(struct run *run)
 {
-    struct bodies bodies;
+    FREED_BY(bodies_free) struct bodies bodies = {0};
     const struct model *model = run->model;
     TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
@@ -187,5 +187,4 @@ void run_check_rigid_modes(struct run *run)
             tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
         }
     }
-    bodies_free(&bodies);
 }
