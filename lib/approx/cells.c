@@ -221,20 +221,19 @@ static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struc
 enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                         struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
     int64_t total = cells->count * (dim + 1);
-    int64_t *partner = NULL;
+    SCRATCH int64_t *partner = NULL;
     *faces = (struct faces){.dim = dim};
-    TRY(NEW_ARRAY(&partner, total, error));
-    TRY(match_faces(cells, partner, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, total, error));
+    RETURN_IF_ERROR(match_faces(cells, partner, error));
     int64_t count = 0;
     for (int64_t s = 0; s < total; s++) {
         faces->boundary_count += partner[s] < 0;
         count += partner[s] < 0 || (!boundary_only && partner[s] > s);
     }
-    TRY(NEW_ARRAY(&faces->node, count * dim, error));
-    TRY(NEW_ARRAY(&faces->cell, count * 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->node, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->cell, count * 2, error));
     for (int64_t s = 0; s < total; s++) {
         if (partner[s] < 0) {
             add_face(cells, s, -1, faces);
@@ -245,13 +244,7 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
-    status = face_rows_number(cells->node_count, NULL, faces, error);
-done:
-    free(partner);
-    if (status != STATUS_OK) {
-        faces_free(faces);
-    }
-    return status;
+    return face_rows_number(cells->node_count, NULL, faces, error);
 }
 
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,

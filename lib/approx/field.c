@@ -100,21 +100,14 @@ enum status field_table_build(const struct support_options *options, const struc
                               const struct cells *cells, const double *radius, int64_t count, const double *x,
                               const char *what, struct field_table *table, struct error *error)
 {
-    enum status status;
-    struct support_space space;
+    FREED_BY(support_space_free) struct support_space space = {0};
     *table = (struct field_table){0};
-    TRY(support_space_build(options, cells, radius, &space, error));
-    TRY(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
-    TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
+    RETURN_IF_ERROR(support_space_build(options, cells, radius, &space, error));
+    RETURN_IF_ERROR(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
-    TRY(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
-                    NULL, error));
-done:
-    support_space_free(&space);
-    if (status != STATUS_OK) {
-        field_table_free(table);
-    }
-    return status;
+    return shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
+                       NULL, error);
 }
 
 void field_table_free(struct field_table *table)

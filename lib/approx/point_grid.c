@@ -101,9 +101,8 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
 enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
                              const double *radius, struct error *error)
 {
-    enum status status;
-    uint8_t *level_of_node = NULL;
-    int32_t *bin = NULL;
+    SCRATCH uint8_t *level_of_node = NULL;
+    SCRATCH int32_t *bin = NULL;
     double least = INFINITY;
     *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
@@ -113,8 +112,8 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
         least = fmin(least, radius[n]);
     }
-    TRY(NEW_ARRAY(&level_of_node, node_count, error));
-    TRY(NEW_ARRAY(&bin, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level_of_node, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bin, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         level_of_node[n] = (uint8_t)level_of(radius[n], least);
         if (level_of_node[n] >= grid->level_count) {
@@ -122,14 +121,9 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
     }
     for (int l = 0; l < grid->level_count; l++) {
-        TRY(build_level(grid, l, level_of_node, bin, error));
+        RETURN_IF_ERROR(build_level(grid, l, level_of_node, bin, error));
     }
-done:
-    FREE_ALL(level_of_node, bin);
-    if (status != STATUS_OK) {
-        point_grid_free(grid);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void index_list_free(struct index_list *list)

@@ -247,37 +247,23 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
 
 enum status reach_build_cells(const struct cells *cells, struct reach *reach, struct error *error)
 {
-    enum status status;
     *reach = (struct reach){.cells = *cells};
-    TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
-    TRY(cells_across(cells, reach->across, error));
-    TRY(lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &reach->star_ptr,
-                     &reach->star, error));
-done:
-    if (status != STATUS_OK) {
-        reach_free(reach);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
+    RETURN_IF_ERROR(cells_across(cells, reach->across, error));
+    return lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &reach->star_ptr,
+                        &reach->star, error);
 }
 
 enum status reach_build(const struct cells *cells, const struct point_grid *grid, struct reach *reach,
                         struct error *error)
 {
-    enum status status;
-    struct faces faces = {0};
-    struct reach_work work = {0};
-    TRY(reach_build_cells(cells, reach, error));
+    FREED_BY(faces_free) struct faces faces = {0};
+    FREED_BY(reach_work_free) struct reach_work work = {0};
+    RETURN_IF_ERROR(reach_build_cells(cells, reach, error));
     reach->grid = grid;
-    TRY(faces_build(cells, true, &faces, error));
-    TRY(set_facets(&faces, reach, error));
-    TRY(list_shadows(reach, error));
-    TRY(find_corners(&faces, reach, &work, error));
-    TRY(file_views(reach, &work, error));
-done:
-    faces_free(&faces);
-    reach_work_free(&work);
-    if (status != STATUS_OK) {
-        reach_free(reach);
-    }
-    return status;
+    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
+    RETURN_IF_ERROR(set_facets(&faces, reach, error));
+    RETURN_IF_ERROR(list_shadows(reach, error));
+    RETURN_IF_ERROR(find_corners(&faces, reach, &work, error));
+    return file_views(reach, &work, error);
 }

@@ -23,11 +23,10 @@ struct nearest {
 
 enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
 {
-    enum status status;
     int dim = fit->dim;
     double extent = 0.0;
-    TRY(NEW_ARRAY(&fit->x, fit->count * dim, error));
-    TRY(NEW_ARRAY(&fit->radius, fit->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->x, fit->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->radius, fit->count, error));
     for (int64_t i = 0; i < fit->count; i++) {
         for (int a = 0; a < dim; a++) {
             fit->x[i * dim + a] = fit->row[i * fit->row_size + a];
@@ -37,17 +36,12 @@ enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
     /* A start only: the search widens it. */
     double radius = extent > 0.0 ? 2.0 * extent / pow((double)fit->count, 1.0 / dim) : 1.0;
     if (!(radius < 1e150)) {
-        TRY(fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart"));
+        return fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart");
     }
     for (int64_t i = 0; i < fit->count; i++) {
         fit->radius[i] = radius;
     }
-    TRY(point_grid_build(&fit->grid, dim, fit->count, fit->x, fit->radius, error));
-done:
-    if (status != STATUS_OK) {
-        scattered_fit_free(fit);
-    }
-    return status;
+    return point_grid_build(&fit->grid, dim, fit->count, fit->x, fit->radius, error);
 }
 
 void scattered_fit_free(struct scattered_fit *fit)

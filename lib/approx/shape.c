@@ -211,12 +211,11 @@ enum status shape_average_faces(const struct mls *mls, const double *nodes, cons
                                 const struct faces *faces, struct face_averages *averages,
                                 struct error *error)
 {
-    enum status status;
     const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
     const int64_t chunk = chunk_points / OWN_POINTS(faces->dim), count = faces->row_count;
     struct failure failure = {0, STATUS_OK};
     *averages = (struct face_averages){.count = count};
-    TRY(NEW_ARRAY(&averages->ptr, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->ptr, count + 1, error));
 #pragma omp parallel for schedule(static)
     for (int64_t r = 0; r < count; r++) {
         averages->ptr[r + 1] = merge_row(neighbours, faces, r, NULL, NULL, NULL);
@@ -224,22 +223,17 @@ enum status shape_average_faces(const struct mls *mls, const double *nodes, cons
     for (int64_t r = 0; r < count; r++) {
         averages->ptr[r + 1] += averages->ptr[r];
     }
-    TRY(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
-    TRY(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
-    TRY(NEW_ARRAY(&averages->boundary_phi, neighbours->ptr[face_row_point(faces, faces->boundary_count)],
-                  error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->boundary_phi,
+                              neighbours->ptr[face_row_point(faces, faces->boundary_count)], error));
 #pragma omp parallel for schedule(dynamic, 1)
     for (int64_t first = 0; first < count; first += chunk) {
         struct error own;
         int64_t last = first + chunk < count ? first + chunk : count;
         note_failure(&failure, first, average_rows(&table, faces, first, last, averages, &own), &own, error);
     }
-    status = failure.status;
-done:
-    if (status != STATUS_OK) {
-        face_averages_free(averages);
-    }
-    return status;
+    return failure.status;
 }
 
 void face_averages_free(struct face_averages *averages)

@@ -300,9 +300,6 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
     TRY(make_nodes(&points, error));
 done:
     FREE_ALL(points.label, points.near, points.node);
-    if (status != STATUS_OK) {
-        lattice_free(lattice);
-    }
     return status;
 }
 

@@ -73,16 +73,15 @@ static enum status cut(struct support_space *space, struct error *error)
 enum status support_space_build(const struct support_options *options, const struct cells *cells,
                                 const double *radius, struct support_space *space, struct error *error)
 {
-    enum status status = STATUS_OK;
     *space = (struct support_space){
         .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
         space->owner = options->owner;
         space->part = options->part;
-        TRY(cut(space, error));
+        RETURN_IF_ERROR(cut(space, error));
     } else {
-        TRY(NEW_ARRAY(&space->side, 1, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&space->side, 1, error));
         space->side_count = 1;
         space->side[0].node_count = cells->node_count;
     }
@@ -95,18 +94,14 @@ enum status support_space_build(const struct support_options *options, const str
         if (own.node_count == 0) {
             continue;
         }
-        TRY(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
-                             side->node != NULL ? side->radius : radius, error));
-        TRY(point_grid_list_touching(&side->grid, error));
+        RETURN_IF_ERROR(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
+                                         side->node != NULL ? side->radius : radius, error));
+        RETURN_IF_ERROR(point_grid_list_touching(&side->grid, error));
         if (space->by_cells) {
-            TRY(reach_build(&own, &side->grid, &side->reach, error));
+            RETURN_IF_ERROR(reach_build(&own, &side->grid, &side->reach, error));
         }
     }
-done:
-    if (status != STATUS_OK) {
-        support_space_free(space);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void support_space_free(struct support_space *space)

@@ -275,28 +275,23 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                                double least, struct envelope *factor, struct error *error)
 {
-    enum status status;
     int64_t kept = n, longs;
     *factor = (struct envelope){.n = n};
-    TRY(NEW_ARRAY(&factor->order, n, error));
-    TRY(NEW_ARRAY(&factor->first, n, error));
-    TRY(NEW_ARRAY(&factor->start, n + 1, error));
-    TRY(NEW_ARRAY(&factor->scratch, n, error));
-    TRY(NEW_ARRAY(&factor->block, n + 1, error));
-    TRY(order_rows(n, ptr, column, factor->order, &longs, error));
-    TRY(fill(n, ptr, column, value, factor, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->first, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->start, n + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, n + 1, error));
+    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, &longs, error));
+    RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
     factor_rows(factor, n - longs, fmax(weak_pivot, least));
     if (factor->dropped > 0) {
-        TRY(order_weak(n, ptr, column, value, least, factor, &kept, error));
-        TRY(fill(n, ptr, column, value, factor, error));
+        RETURN_IF_ERROR(order_weak(n, ptr, column, value, least, factor, &kept, error));
+        RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
         /* A pivot that was above `least` before cannot be far below now, but by round-off. */
         factor_rows(factor, kept, 0.1 * least);
     }
-done:
-    if (status != STATUS_OK) {
-        envelope_free(factor);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void envelope_dropped(const struct envelope *factor, int64_t *row)

@@ -181,21 +181,15 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
                        int (*owner)(const void *context, int64_t item), const void *context,
                        struct halo *halo, struct error *error)
 {
-    enum status status;
     *halo = (struct halo){.ranks = ranks};
     if (ranks == NULL) {
         return STATUS_OK;
     }
-    TRY(list_wanted(halo, items, wanted, owner, context, error));
-    TRY(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first,
-                             error));
-    TRY(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
-    TRY(NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error));
-done:
-    if (status != STATUS_OK) {
-        halo_free(halo);
-    }
-    return status;
+    RETURN_IF_ERROR(list_wanted(halo, items, wanted, owner, context, error));
+    RETURN_IF_ERROR(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send,
+                                         &halo->send_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
+    return NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error);
 }
 
 void halo_free(struct halo *halo)

@@ -147,19 +147,12 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
 enum status read_rows_fetch(const struct read_rows *rows, const bool *wanted, struct sparse *fetched,
                             struct error *error)
 {
-    enum status status;
-    struct halo halo = {0};
+    FREED_BY(halo_free) struct halo halo = {0};
     *fetched = (struct sparse){0};
-    TRY(halo_build(rows->ranks, rows->row_count, wanted, 1, reader_of, rows, &halo, error));
-    TRY(lay_out(rows, wanted, &halo, fetched, error));
-    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->idx, (const char *)rows->idx,
-                     (char *)fetched->idx, error));
-    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->value, (const char *)rows->value,
-                     (char *)fetched->value, error));
-done:
-    halo_free(&halo);
-    if (status != STATUS_OK) {
-        sparse_free(fetched);
-    }
-    return status;
+    RETURN_IF_ERROR(halo_build(rows->ranks, rows->row_count, wanted, 1, reader_of, rows, &halo, error));
+    RETURN_IF_ERROR(lay_out(rows, wanted, &halo, fetched, error));
+    RETURN_IF_ERROR(send_entries(rows, wanted, &halo, fetched, sizeof *rows->idx, (const char *)rows->idx,
+                                 (char *)fetched->idx, error));
+    return send_entries(rows, wanted, &halo, fetched, sizeof *rows->value, (const char *)rows->value,
+                        (char *)fetched->value, error);
 }

@@ -12,16 +12,10 @@ enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */
 enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries, struct sparse *matrix,
                        struct error *error)
 {
-    enum status status;
     *matrix = (struct sparse){.row_count = row_count, .column_count = column_count};
-    TRY(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error));
-done:
-    if (status != STATUS_OK) {
-        sparse_free(matrix);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
+    return NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error);
 }
 
 enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)

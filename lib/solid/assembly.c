@@ -135,7 +135,6 @@ void assembly_complete(struct assembly *input)
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
 {
-    enum status status;
     *system = (struct solid_system){.dim = input->cells.dim,
                                     .node_count = input->cells.node_count,
                                     .X = input->cells.x,
@@ -148,21 +147,17 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     input->curve_count = 0;
     constraint_rows_init(&system->rows, system->dim);
     constraint_rows_init(&system->penalties, system->dim);
-    TRY(NEW_ARRAY(&system->factor, system->curve_count, error));
-    TRY(lump_mass(input, system, error));
-    TRY(assembly_add_loads(input, system, error));
-    TRY(build_body(input, system, error));
-    TRY(assembly_complete_gravity(input, system, error));
-    TRY(field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
-    TRY(assembly_add_conditions(input, system, note, error));
-    TRY(assembly_add_points(input, system, note, error));
-    TRY(assembly_add_contacts(input, system, error));
-    TRY(system_share_penalties(system, error));
-done:
-    if (status != STATUS_OK) {
-        system_free(system);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
+    RETURN_IF_ERROR(lump_mass(input, system, error));
+    RETURN_IF_ERROR(assembly_add_loads(input, system, error));
+    RETURN_IF_ERROR(build_body(input, system, error));
+    RETURN_IF_ERROR(assembly_complete_gravity(input, system, error));
+    RETURN_IF_ERROR(
+        field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
+    RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_points(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
+    return system_share_penalties(system, error);
 }
 
 void material_list_free(struct material_list *list)

@@ -85,7 +85,7 @@ static enum status add_between(const struct assembly *input, const struct contac
                                const struct boundary_averages *averages, struct contact *contact,
                                struct error *error)
 {
-    struct opposite opposite = {0};
+    FREED_BY(opposite_free) struct opposite opposite = {0};
     SCRATCH int32_t *part = NULL;
     bool any;
     bool itself = condition->facets.facet == condition->opposite.facet;
@@ -108,7 +108,7 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
 {
     const struct contact_condition *condition = &input->contacts[number];
     bool between = condition->opposite.count > 0;
-    struct rigid_surface surface = {0};
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
     struct boundary_averages *points = &system->contact_points[number],
                              *averages = &system->contact_averages[number];
     struct contact *contact = &system->contacts[number];

@@ -188,7 +188,6 @@ static enum status count_pairs(const struct body_input *input, struct body *body
 
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
                           .point_count = input->point_count,
@@ -200,28 +199,24 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
     }
-    TRY(order_all(input, body, error));
-    TRY(cut_blocks(input, body, error));
-    TRY(body_share_cut(input, body, error));
-    TRY(copy_points(input, body, error));
+    RETURN_IF_ERROR(order_all(input, body, error));
+    RETURN_IF_ERROR(cut_blocks(input, body, error));
+    RETURN_IF_ERROR(body_share_cut(input, body, error));
+    RETURN_IF_ERROR(copy_points(input, body, error));
     if (body->averaged) {
-        TRY(nodal_volumes_build(input, body, error));
+        RETURN_IF_ERROR(nodal_volumes_build(input, body, error));
     }
     if (!body->smoothed) {
-        TRY(copy_gradients(input, body, error));
+        RETURN_IF_ERROR(copy_gradients(input, body, error));
     } else {
-        TRY(count_pairs(input, body, error));
-        TRY(smoothed_cells_build(input->smoothed, body, error));
+        RETURN_IF_ERROR(count_pairs(input, body, error));
+        RETURN_IF_ERROR(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
-    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
-    TRY(body_share_nodes(body, error));
-    TRY(body_make_bounds(body, error));
-done:
-    if (status != STATUS_OK) {
-        body_free(body);
-    }
-    return status;
+    RETURN_IF_ERROR(
+        row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
+    RETURN_IF_ERROR(body_share_nodes(body, error));
+    return body_make_bounds(body, error);
 }
 
 void body_free(struct body *body)

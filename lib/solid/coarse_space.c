@@ -114,22 +114,17 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
                                const struct neighbours *neighbours, int64_t centre_count,
                                struct coarse_space *coarse, struct error *error)
 {
-    enum status status = STATUS_OK;
     *coarse = (struct coarse_space){.dim = dim,
                                     .node_count = node_count,
                                     .X = X,
                                     .centre_count = centre_count,
                                     .count = centre_count * (dim + 1)};
     if (centre_count > 0) {
-        TRY(NEW_ARRAY(&coarse->share, node_count, error));
-        TRY(pick_centres(coarse, neighbours, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, node_count, error));
+        RETURN_IF_ERROR(pick_centres(coarse, neighbours, error));
         share_unity(coarse);
     }
-done:
-    if (status != STATUS_OK) {
-        coarse_space_free(coarse);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void coarse_space_free(struct coarse_space *coarse)

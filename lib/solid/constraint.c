@@ -219,8 +219,7 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
                              const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
-    enum status status;
-    bool *wanted = NULL;
+    SCRATCH bool *wanted = NULL;
     *constraint = (struct constraint){.node_count = node_count,
                                       .rows = rows,
                                       .mass = mass,
@@ -229,20 +228,15 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
     if (rows->count == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
     if (inverse != NULL) {
-        TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
         rows = inverse_rows;
     }
-    TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    TRY(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error) : STATUS_OK);
-    TRY(constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error));
-done:
-    free(wanted);
-    if (status != STATUS_OK) {
-        constraint_free(constraint);
-    }
-    return status;
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
+    RETURN_IF_ERROR(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error)
+                                                              : STATUS_OK);
+    return constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error);
 }
 
 void constraint_free(struct constraint *constraint)

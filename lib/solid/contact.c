@@ -106,18 +106,12 @@ enum status contact_build(const struct boundary_averages *points, const struct b
                           const double *X, int dim, struct rigid_surface *surface, double stiffness,
                           struct contact *contact, struct error *error)
 {
-    enum status status;
     *contact = (struct contact){
         .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
     *surface = (struct rigid_surface){0};
-    TRY(contact_allocate(contact, stiffness, error));
-    TRY(contact_rest_place(contact, X, error));
-    TRY(check_side(contact, error));
-done:
-    if (status != STATUS_OK) {
-        contact_free(contact);
-    }
-    return status;
+    RETURN_IF_ERROR(contact_allocate(contact, stiffness, error));
+    RETURN_IF_ERROR(contact_rest_place(contact, X, error));
+    return check_side(contact, error);
 }
 
 void contact_set_stiffness(struct contact *contact, double modulus)

@@ -357,8 +357,5 @@ enum status contact_between_build(const struct boundary_averages *points,
     *any = begin(contact, far);
 done:
     opposite_free(opposite);
-    if (status != STATUS_OK) {
-        contact_free(contact);
-    }
     return status;
 }

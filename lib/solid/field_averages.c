@@ -142,7 +142,6 @@ static enum status list_corners(int dim, struct field_averages *averages, struct
 enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
-    enum status status;
     const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
     int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
     int64_t looks = input->corner_count * (FACE_ROWS(input->dim) + 1);
@@ -150,17 +149,12 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     if (rows > INT32_MAX / stride || looks > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
-    TRY(NEW_ARRAY(&averages->of_corner, looks, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
-    TRY(match_corners(input, averages, error));
-    TRY(list_corners(input->dim, averages, error));
-done:
-    if (status != STATUS_OK) {
-        field_averages_free(averages);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, looks, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
+    RETURN_IF_ERROR(match_corners(input, averages, error));
+    return list_corners(input->dim, averages, error);
 }
 
 enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,

@@ -180,41 +180,35 @@ static enum status find_rims(struct folds *folds, const struct fold_ring *sides,
 
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
-    enum status status;
-    struct fold_ring *sides = NULL;
-    double *u = NULL;
-    bool *stopped = NULL;
+    SCRATCH struct fold_ring *sides = NULL;
+    SCRATCH double *u = NULL;
+    SCRATCH bool *stopped = NULL;
     int64_t size = input->node_count * input->dim;
     *folds = (struct folds){.input = *input};
     struct box box = box_of(input->dim, input->node_count, input->x);
     folds->extent = box_diagonal(&box);
-    TRY(NEW_ARRAY(&folds->y, size, error));
-    TRY(NEW_ARRAY(&folds->boxes, input->facet_count, error));
-    TRY(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
-    TRY(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
-    TRY(list_sides(input, &sides, error));
-    TRY(build_rings(folds, sides, error));
-    TRY(find_supports(folds, sides, error));
-    TRY(find_rims(folds, sides, error));
-    TRY(NEW_ARRAY(&u, size, error));
-    TRY(NEW_ARRAY(&stopped, input->node_count, error));
-    TRY(folds_find_bodies(folds, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
+    RETURN_IF_ERROR(list_sides(input, &sides, error));
+    RETURN_IF_ERROR(build_rings(folds, sides, error));
+    RETURN_IF_ERROR(find_supports(folds, sides, error));
+    RETURN_IF_ERROR(find_rims(folds, sides, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stopped, input->node_count, error));
+    RETURN_IF_ERROR(folds_find_bodies(folds, error));
     struct fold at_rest = folds_find(folds, u, stopped);
     if (at_rest.kind != FOLD_CROSSING && at_rest.kind != FOLD_WITHIN) {
         at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
         if (folds->body_count > 1) {
-            TRY(folds_look_for_overlaps(folds, true, &at_rest, error));
+            RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
         }
     }
     if (at_rest.kind == FOLD_CROSSING || at_rest.kind == FOLD_WITHIN) {
         folds->at_rest = at_rest;
     }
-done:
-    FREE_ALL(sides, u, stopped);
-    if (status != STATUS_OK) {
-        folds_free(folds);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void folds_free(struct folds *folds)

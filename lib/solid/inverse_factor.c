@@ -192,32 +192,24 @@ static int owner(const void *factor, int64_t node)
 enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
                                     struct inverse_factor *factor, struct error *error)
 {
-    enum status status;
-    struct lower lower = {0};
-    struct sparse by_place = {0};
+    FREED_BY(lower_free) struct lower lower = {0};
+    FREED_BY(sparse_free) struct sparse by_place = {0};
     const struct body_share *share = &system->body.share;
-    int64_t nodes = system->node_count, *length = NULL;
-    bool *wanted = NULL;
+    int64_t nodes = system->node_count;
+    SCRATCH int64_t *length = NULL;
+    SCRATCH bool *wanted = NULL;
     *factor = (struct inverse_factor){.ranks = share->ranks};
-    TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
-    TRY(lower_begin(system, &lower, error));
-    TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
-    TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(make_own_rows(system, stretch, &lower, &by_place, length, error));
-    TRY(gather_rows(share, length, &by_place, error));
+    RETURN_IF_ERROR(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
+    RETURN_IF_ERROR(lower_begin(system, &lower, error));
+    RETURN_IF_ERROR(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
+    RETURN_IF_ERROR(make_own_rows(system, stretch, &lower, &by_place, length, error));
+    RETURN_IF_ERROR(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
-    TRY(sort_rows(&system->body, &by_place, &factor->rows, error));
-    TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
-    TRY(inverse_factor_wanted(factor, &wanted, error));
-    TRY(halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error));
-done:
-    FREE_ALL(wanted, length);
-    sparse_free(&by_place);
-    lower_free(&lower);
-    if (status != STATUS_OK) {
-        inverse_factor_free(factor);
-    }
-    return status;
+    RETURN_IF_ERROR(sort_rows(&system->body, &by_place, &factor->rows, error));
+    RETURN_IF_ERROR(sparse_transpose(&factor->rows, &factor->transposed, error));
+    RETURN_IF_ERROR(inverse_factor_wanted(factor, &wanted, error));
+    return halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error);
 }
 
 void inverse_factor_free(struct inverse_factor *factor)
@@ -291,15 +283,14 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
                                           const struct constraint_rows *rows,
                                           struct constraint_rows *transformed, struct error *error)
 {
-    enum status status;
     const struct sparse *matrix = &factor->transposed;
-    int64_t *at = NULL;
-    int32_t *idx = NULL;
-    double *phi = NULL;
+    SCRATCH int64_t *at = NULL;
+    SCRATCH int32_t *idx = NULL;
+    SCRATCH double *phi = NULL;
     constraint_rows_init(transformed, rows->dim);
-    TRY(NEW_ARRAY(&at, matrix->row_count, error));
-    TRY(NEW_ARRAY(&idx, matrix->row_count, error));
-    TRY(NEW_ARRAY(&phi, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&idx, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, matrix->row_count, error));
     memset(at, -1, (size_t)matrix->row_count * sizeof *at);
     for (int64_t l = 0, r = 0; l < rows->list_count; l++) {
         struct average average = constraint_rows_average(rows, r);
@@ -320,14 +311,10 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
             at[idx[i]] = -1;
         }
         for (; r < rows->first[l + 1]; r++) {
-            TRY(constraint_rows_add(transformed, length, idx, phi, rows->direction + r * rows->dim,
-                                    rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
+            RETURN_IF_ERROR(constraint_rows_add(transformed, length, idx, phi,
+                                                rows->direction + r * rows->dim, rows->target[r],
+                                                rows->curve[r], rows->section[r], rows->node[r], error));
         }
     }
-done:
-    FREE_ALL(at, idx, phi);
-    if (status != STATUS_OK) {
-        constraint_rows_free(transformed);
-    }
-    return status;
+    return STATUS_OK;
 }

@@ -200,28 +200,23 @@ static void refit(struct opposite *opposite)
 enum status opposite_build(const struct face_table *table, const struct facet_set *set, const int32_t *part,
                            bool itself, struct opposite *opposite, struct error *error)
 {
-    enum status status;
     *opposite = (struct opposite){.itself = itself};
     struct rigid_surface *surface = &opposite->surface;
     surface->dim = table->dim;
     surface->facet_count = set->count;
-    TRY(boundary_corners_build(table, set, &opposite->rows, error));
-    TRY(number_vertices(opposite, table, set, error));
-    TRY(NEW_ARRAY(&opposite->stiffness, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&opposite->load, surface->vertex_count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->normal, set->count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
-    TRY(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
-    TRY(measure_rest(opposite, set, part, error));
-    TRY(rigid_grow_tree(surface, error));
+    RETURN_IF_ERROR(boundary_corners_build(table, set, &opposite->rows, error));
+    RETURN_IF_ERROR(number_vertices(opposite, table, set, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->stiffness, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->load, surface->vertex_count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, set->count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
+    RETURN_IF_ERROR(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
+    RETURN_IF_ERROR(measure_rest(opposite, set, part, error));
+    RETURN_IF_ERROR(rigid_grow_tree(surface, error));
     refit(opposite);
-done:
-    if (status != STATUS_OK) {
-        opposite_free(opposite);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void opposite_free(struct opposite *opposite)

@@ -124,24 +124,18 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
 enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                         struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
     *surface = (struct rigid_surface){.dim = dim, .facet_count = facet_count};
     if (facet_count < 1 || facet_count > INT32_MAX / 3) {
         return fail(error, STATUS_INPUT, "rigid surface: %lld facets: none, or too many",
                     (long long)facet_count);
     }
-    TRY(check_corners(surface, corners, error));
+    RETURN_IF_ERROR(check_corners(surface, corners, error));
     struct box box = box_of(dim, facet_count * dim, corners);
     surface->extent = box_diagonal(&box);
-    TRY(number_vertices(surface, corners, error));
-    TRY(make_normals(surface, flip, error));
-    TRY(rigid_join_facets(surface, error));
-    TRY(rigid_grow_tree(surface, error));
-done:
-    if (status != STATUS_OK) {
-        rigid_free(surface);
-    }
-    return status;
+    RETURN_IF_ERROR(number_vertices(surface, corners, error));
+    RETURN_IF_ERROR(make_normals(surface, flip, error));
+    RETURN_IF_ERROR(rigid_join_facets(surface, error));
+    return rigid_grow_tree(surface, error);
 }
 
 void rigid_free(struct rigid_surface *surface)

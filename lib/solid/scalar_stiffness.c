@@ -98,22 +98,15 @@ static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *
 enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
                                   struct error *error)
 {
-    enum status status;
     const struct body *body = &system->body;
     *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
-        status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
-        goto done;
+        return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
     }
-    TRY(row_operator_ranges(&body->rows, &stiffness->range, error));
-    TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
-    TRY(list_bonds(stiffness, error));
-done:
-    if (status != STATUS_OK) {
-        scalar_stiffness_free(stiffness);
-    }
-    return status;
+    RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
+    return list_bonds(stiffness, error);
 }
 
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)

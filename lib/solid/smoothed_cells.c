@@ -320,17 +320,11 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
 enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
                                  struct error *error)
 {
-    enum status status;
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    TRY(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
-    TRY(build_averages(input, body, error));
-done:
-    if (status != STATUS_OK) {
-        smoothed_cells_free(smoothed);
-    }
-    return status;
+    RETURN_IF_ERROR(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
+    return build_averages(input, body, error);
 }
 
 void smoothed_cells_free(struct smoothed_cells *smoothed)

@@ -258,6 +258,7 @@ TEST(failures)
     options.rule_points = 5;
     FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
           "no rule of 5 points");
+    adaptive_points_free(&points);
     options = body.options;
     options.support.mls.basis = BASIS_QUADRATIC;
     options.support.widen = false;
@@ -265,7 +266,7 @@ TEST(failures)
         body.radius[n] *= 0.6;
     }
     FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_VERDICT, "mls2");
-    assert_null(points.x);
+    adaptive_points_free(&points);
     body_free(&body);
 }
 

@@ -158,6 +158,7 @@ static void fault_of_smoothing(void)
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "face.phi: row 7: not the shape functions at this row: run shapefn again");
+    body_free(&body);
     *changed = before;
     changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
@@ -165,11 +166,13 @@ static void fault_of_smoothing(void)
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
+    body_free(&body);
     *changed = before;
     struct faces fewer = sample->assembly.faces;
     fewer.count--;
     smoothed.faces = &fewer;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "lacks a face: run ipoints for smoothed cells");
+    body_free(&body);
     struct faces wrong = sample->assembly.faces;
     wrong.row = array_or_fail(wrong.count, sizeof *wrong.row);
     for (int64_t f = 0; f < wrong.count; f++) {
@@ -177,6 +180,7 @@ static void fault_of_smoothing(void)
     }
     smoothed.faces = &wrong;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "faces.row: row ");
+    body_free(&body);
     free(wrong.row);
 }
 
@@ -202,11 +206,12 @@ TEST(faults)
                                .material_count = 1};
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "points.weight: row 1: no weight or no neighbours");
-    assert_null(body.order);
+    body_free(&body);
     ptr[1] = 1;
     weight[0] = (double)NAN;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "points.weight: row 0: no weight or no neighbours");
+    body_free(&body);
     weight[0] = 1.0;
     GOOD(body_build(&input, &body, &error));
     body_free(&body);

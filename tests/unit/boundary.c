@@ -502,18 +502,20 @@ TEST(faults)
         memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
-        assert_null(averages.node);
+        boundary_averages_free(&averages);
         /* Nodes that are no face at all, and none that exist. */
         facets[dim] = facets[dim + 1] = facets[0];
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        boundary_averages_free(&averages);
         facets[dim] = (int32_t)sample.cloud.node_count;
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, dim == 2 ? "facets: no node 16" : "facets: no node 64");
+        boundary_averages_free(&averages);
         facets[dim] = -1;
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: no node -1");
-        assert_null(averages.phi);
+        boundary_averages_free(&averages);
         sample_free(&sample);
     }
 }

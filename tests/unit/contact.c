@@ -312,7 +312,7 @@ TEST(wrong_side)
     assert_string_equal(error.text, "contact: node 3 starts 0.25 m behind the rigid surface: state its other "
                                     "side, or leave the node's facets out");
     assert_null(surface.vertex);
-    assert_null(contact.rest);
+    contact_free(&contact);
     /* Slightly behind is in contact from the start. */
     for (int a = 3; a < CONTACT_NODES; a++) {
         contact_nodes.X[2 * a + 1] = 1.0;

@@ -76,7 +76,7 @@ static enum status try_contact(struct error *error)
 {
     static const double corners[] = {1, -1, -1, -1};
     struct boundary_averages averages;
-    struct rigid_surface surface;
+    struct rigid_surface surface = {0};
     struct contact contact = {0};
     enum status status = build_averages(&averages, error);
     if (status == STATUS_OK) {
@@ -85,6 +85,7 @@ static enum status try_contact(struct error *error)
     if (status == STATUS_OK) {
         status = contact_build(&averages, NULL, sample.cloud.x, 2, &surface, 1.0, &contact, error);
     }
+    rigid_free(&surface);
     contact_free(&contact);
     boundary_averages_free(&averages);
     return status;

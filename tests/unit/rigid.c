@@ -480,7 +480,7 @@ static void fails(int dim, int64_t count, const double *corners, const char *exp
     struct error error = {""};
     assert_int_equal(rigid_build(dim, count, corners, false, &surface, &error), STATUS_INPUT);
     assert_string_equal(error.text, expected);
-    assert_null(surface.vertex);
+    rigid_free(&surface);
 }
 
 TEST(faults)

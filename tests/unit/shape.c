@@ -168,6 +168,7 @@ TEST(wrong_cells)
     struct cells cells = {2, 5, square, 3, fan};
     struct faces faces;
     FAILS(faces_build(&cells, false, &faces, &error), STATUS_INPUT, "more than two cells");
+    faces_free(&faces);
 }
 
 /* Averages over the faces and the table smoothed over the cells that they make. */
