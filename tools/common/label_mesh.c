@@ -151,20 +151,14 @@ static enum status make_sets(const struct label_image *image, const struct stuff
 enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
                             struct mesh *mesh, struct error *error)
 {
-    enum status status;
     *mesh = (struct mesh){.dim = stuffing->dim,
                           .node_count = stuffing->node_count,
                           .x = stuffing->x,
                           .cell_count = stuffing->cell_count,
                           .cells = stuffing->cell};
-    TRY(make_regions(image, stuffing, mesh, error));
-    TRY(make_facets(image, stuffing, mesh, error));
-    TRY(make_sets(image, stuffing, mesh, error));
-done:
-    if (status != STATUS_OK) {
-        label_mesh_free(mesh);
-    }
-    return status;
+    RETURN_IF_ERROR(make_regions(image, stuffing, mesh, error));
+    RETURN_IF_ERROR(make_facets(image, stuffing, mesh, error));
+    return make_sets(image, stuffing, mesh, error);
 }
 
 void label_mesh_free(struct mesh *mesh)
