@@ -147,8 +147,8 @@ int main(int argc, char *argv[])
 {
     static const char *const functions[] = {"paper", "linear", "quadratic"};
     struct tool tool;
-    struct cloud cloud;
-    struct stream stream;
+    FREED_BY(cloud_free) struct cloud cloud = {0};
+    FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 0, 0, argc, argv);
     struct cloud_options wanted = parse(&tool);
     int function = tool_choice(&tool, "field", functions, 3, 0);
@@ -158,7 +158,7 @@ int main(int argc, char *argv[])
     }
     struct cells cells = {cloud.dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     tool_note_thin(&tool, &cells);
-    int32_t *region = NULL;
+    SCRATCH int32_t *region = NULL;
     TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
     stream_init(&stream);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
@@ -166,8 +166,5 @@ int main(int argc, char *argv[])
         TOOL_TRY(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error));
     }
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    stream_free(&stream);
-    cloud_free(&cloud);
-    free(region);
     return tool_end(&tool);
 }

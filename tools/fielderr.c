@@ -126,16 +126,15 @@ static const struct section *find_table(const struct side *side, const char *nam
 static enum status print_forces(const struct side *fine, const struct side *coarse, double share,
                                 struct error *error)
 {
-    enum status status;
     int dim = fine->field.cells.dim;
     const struct section *f = find_table(fine, "reactions", dim);
     const struct section *c = find_table(coarse, "reactions", dim);
-    struct names of_fine = {0}, of_coarse = {0};
+    FREED_BY(names_free) struct names of_fine = {0}, of_coarse = {0};
     if (f == NULL || c == NULL) {
         return STATUS_OK;
     }
-    TRY(names_of(f, "rows", &of_fine, error));
-    TRY(names_of(c, "rows", &of_coarse, error));
+    RETURN_IF_ERROR(names_of(f, "rows", &of_fine, error));
+    RETURN_IF_ERROR(names_of(c, "rows", &of_coarse, error));
     for (int64_t i = 0; i < of_fine.count && i < f->rows; i++) {
         for (int64_t k = 0; k < of_coarse.count && k < c->rows; k++) {
             if (strcmp(of_fine.name[i], of_coarse.name[k]) == 0) {
@@ -145,10 +144,7 @@ static enum status print_forces(const struct side *fine, const struct side *coar
             }
         }
     }
-done:
-    names_free(&of_fine);
-    names_free(&of_coarse);
-    return status;
+    return STATUS_OK;
 }
 
 static void print_energy(const struct side *fine, const struct side *coarse, double share)
@@ -165,12 +161,11 @@ static void print_energy(const struct side *fine, const struct side *coarse, dou
 static double average_difference(const struct tool *tool, const struct request *request,
                                  const struct side *first, const struct side *second)
 {
-    struct findings findings;
+    FREED_BY(findings_free) struct findings findings = {0};
     struct comparison_request everywhere = request->comparison;
     everywhere.region = NULL;
     findings_make(tool, &everywhere, first, second, &findings);
     double average = findings.statistics.average;
-    findings_free(&findings);
     return average;
 }
 

@@ -105,37 +105,32 @@ static const char *plural(enum group_kind kind)
 
 static enum status make_group(const struct request *request, enum group_kind kind, struct error *error)
 {
-    enum status status;
     struct group_body *body = request->body;
     const struct items *items = &body->items[kind];
     const char *expression = NULL;
-    char *name = NULL;
-    bool *chosen = NULL;
+    SCRATCH char *name = NULL;
+    SCRATCH bool *chosen = NULL;
     int64_t count = 0;
-    TRY(take_name(request, &name, &expression, error));
-    TRY(group_check_name(name, error));
+    RETURN_IF_ERROR(take_name(request, &name, &expression, error));
+    RETURN_IF_ERROR(group_check_name(name, error));
     if (body->cells.count == 0 && kind != GROUP_NODES) {
-        TRY(fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)"));
+        return fail(error, STATUS_INPUT, "the stream has no cells, only nodes can be grouped (-n)");
     }
     if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
-        TRY(fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it"));
+        return fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
     }
-    TRY(NEW_ARRAY(&chosen, items->count, error));
-    TRY(group_select(body, kind, expression, request->unit, chosen, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&chosen, items->count, error));
+    RETURN_IF_ERROR(group_select(body, kind, expression, request->unit, chosen, error));
     for (int64_t i = 0; i < items->count; i++) {
         count += chosen[i];
     }
     if (count == 0) {
         struct box box = box_of(body->cells.dim, body->cells.node_count, body->cells.x);
         char place[128];
-        status = fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
-                      (long long)items->count, plural(kind), cell_report_box(&box, place));
-        goto done;
+        return fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
+                    (long long)items->count, plural(kind), cell_report_box(&box, place));
     }
-    TRY(group_put(body, kind, name, chosen, request->use->value, error));
-done:
-    FREE_ALL(chosen, name);
-    return status;
+    return group_put(body, kind, name, chosen, request->use->value, error);
 }
 
 /* The one group that "NAME" or "KIND:NAME" means: its kind and place. */
@@ -162,30 +157,26 @@ static enum status find_any(const struct request *request, const char *name, enu
 
 static enum status rename_group(const struct request *request, struct error *error)
 {
-    enum status status;
     enum group_kind kind = GROUP_FACETS;
     int64_t place;
     const char *after = NULL;
-    char *before = NULL;
+    SCRATCH char *before = NULL;
     char *name = NULL;
-    TRY(take_name(request, &before, &after, error));
-    TRY(find_any(request, before, &kind, &place, error));
-    TRY(group_check_name(after, error));
+    RETURN_IF_ERROR(take_name(request, &before, &after, error));
+    RETURN_IF_ERROR(find_any(request, before, &kind, &place, error));
+    RETURN_IF_ERROR(group_check_name(after, error));
     struct group_list *list = &request->body->groups[kind];
     if (group_find(list, after) >= 0) {
-        TRY(fail(error, STATUS_INPUT, "there is one of the new name already"));
+        return fail(error, STATUS_INPUT, "there is one of the new name already");
     }
     name = strdup(after);
     if (name == NULL) {
-        status = fail_memory(error, "a name");
-        goto done;
+        return fail_memory(error, "a name");
     }
     free(list->group[place].name);
     list->group[place].name = name;
     list->changed = true;
-done:
-    free(before);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status delete_group(const struct request *request, struct error *error)
@@ -243,10 +234,9 @@ static int64_t count_marked(const struct group *group, const bool *marked)
 /* Note which groups have facets in common with a new one that neither was made of the other. */
 static enum status note_overlaps(const struct tool *tool, const struct group_body *body, struct error *error)
 {
-    enum status status;
     const struct group_list *list = &body->groups[GROUP_FACETS];
-    bool *marked = NULL;
-    TRY(NEW_ARRAY(&marked, body->boundary.count, error));
+    SCRATCH bool *marked = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&marked, body->boundary.count, error));
     for (int64_t g = 0; g < list->count; g++) {
         const struct group *fresh = &list->group[g];
         char others[256] = "";
@@ -270,9 +260,7 @@ static enum status note_overlaps(const struct tool *tool, const struct group_bod
         }
         memset(marked, false, (size_t)body->boundary.count * sizeof *marked);
     }
-done:
-    free(marked);
-    return status;
+    return STATUS_OK;
 }
 
 /* "facets held: 34, area 0.00012 m2, box 0 0 0 to 0.1 0.1 0 m, mean normal 0 0 -1" */
@@ -347,8 +335,8 @@ static const char *const changes[] = {"facets", "nodes", "region", "rename", "de
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
-    struct group_body body;
+    FREED_BY(stream_free) struct stream stream = {0};
+    FREED_BY(group_body_free) struct group_body body = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (tool_first_given(&tool, changes) == NULL && !tool_given(&tool, "verbose")) {
         tool_fail(&tool, STATUS_INPUT, "nothing to do: give -f, -n, -r, -m, -d or -v (see -h)");
@@ -369,7 +357,5 @@ int main(int argc, char *argv[])
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    group_body_free(&body);
-    stream_free(&stream);
     return tool_end(&tool);
 }

@@ -102,7 +102,7 @@ static void read_table(const struct tool *tool, const char *file, const char *un
 /* The nodes of another stream. */
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
-    struct stream other;
+    FREED_BY(stream_free) struct stream other = {0};
     struct error why;
     int other_dim;
     const double *x;
@@ -122,28 +122,27 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     }
     TOOL_TRY(tool, NEW_ARRAY(&points->x, points->count * dim, &error));
     memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
-    stream_free(&other);
 }
 
 /* Leave out the points that lie outside, and tell how many; or fail on the first that lies farther out. */
 static enum status drop_outside(const struct tool *tool, const struct cells *cells, const double *spacing,
                                 bool skip, const char *file, struct points *points, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    bool *outside = NULL;
+    SCRATCH bool *outside = NULL;
     int64_t kept = 0;
-    TRY(NEW_ARRAY(&outside, points->count, error));
-    TRY(NEW_ARRAY(&points->row, points->count, error));
-    TRY(field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, points->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&points->row, points->count, error));
+    RETURN_IF_ERROR(
+        field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
     for (int64_t i = 0; i < points->count; i++) {
         if (outside[i] && !skip) {
             char place[96];
             point_text(dim, points->x + i * dim, place);
-            TRY(fail(error, STATUS_INPUT,
-                     "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
-                     "unit right? --skip-outside leaves such points out",
-                     file, (long long)i, place));
+            return fail(error, STATUS_INPUT,
+                        "%s: row %lld at %s: farther from the body than the spacing of its nodes: is the "
+                        "unit right? --skip-outside leaves such points out",
+                        file, (long long)i, place);
         }
         if (!outside[i]) {
             memmove(points->x + kept * dim, points->x + i * dim, (size_t)dim * sizeof *points->x);
@@ -151,15 +150,14 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
         }
     }
     if (kept == 0 && points->count > 0) {
-        status = fail(error, STATUS_INPUT, "%s: no point lies in the body: is the unit right?", file);
-    } else if (kept < points->count) {
+        return fail(error, STATUS_INPUT, "%s: no point lies in the body: is the unit right?", file);
+    }
+    if (kept < points->count) {
         tool_note(tool, "%s: %lld of %lld points lie outside of the body: left out", file,
                   (long long)(points->count - kept), (long long)points->count);
     }
     points->count = kept;
-done:
-    free(outside);
-    return status;
+    return STATUS_OK;
 }
 
 /* Supports and shape functions at the points: of the stream's own integration points, or, with a file, of the
@@ -168,29 +166,25 @@ static enum status make_table(const struct tool *tool, const struct solved *know
                               const struct support_options *support, const struct stream *stream, bool skip,
                               const char *file, struct points *points, struct error *error)
 {
-    enum status status;
     struct cells cells;
-    double *spacing = NULL, *radius = NULL;
+    SCRATCH double *spacing = NULL, *radius = NULL;
     const struct mls *shapes = NULL;
-    TRY(stream_cells(stream, false, &cells, error));
-    TRY(NEW_ARRAY(&spacing, cells.node_count, error));
-    TRY(NEW_ARRAY(&radius, cells.node_count, error));
-    TRY(field_spacing(&cells, spacing, error));
+    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells.node_count, error));
+    RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
     if (known->radius != NULL) {
         support = &known->recorded.support;
         shapes = &known->recorded.shapes;
         memcpy(radius, known->radius, (size_t)cells.node_count * sizeof *radius);
     } else {
-        TRY(support_radii(support, cells.node_count, spacing, radius, error));
+        RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
     }
     if (file != NULL) {
-        TRY(drop_outside(tool, &cells, spacing, skip, file, points, error));
+        RETURN_IF_ERROR(drop_outside(tool, &cells, spacing, skip, file, points, error));
     }
-    TRY(field_table_build(support, shapes, &cells, radius, points->count, points->x,
-                          file != NULL ? file : "points.x", &points->table, error));
-done:
-    FREE_ALL(spacing, radius);
-    return status;
+    return field_table_build(support, shapes, &cells, radius, points->count, points->x,
+                             file != NULL ? file : "points.x", &points->table, error);
 }
 
 /* The stream's own points. */

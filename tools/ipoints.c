@@ -116,7 +116,7 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct st
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct mls any = mls_default(0);
     int64_t unresolved;
     tool_begin(&tool, usage, 0, 1, argc, argv);
@@ -132,6 +132,5 @@ int main(int argc, char *argv[])
         tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
     }
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    stream_free(&stream);
     return tool_end(&tool);
 }

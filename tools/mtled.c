@@ -234,10 +234,10 @@ static void write_results(struct run *run)
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
-    struct scene scene;
+    FREED_BY(stream_free) struct stream stream = {0};
+    FREED_BY(scene_free) struct scene scene = {0};
     struct model model;
-    struct parts_input parts = {.given = false};
+    FREED_BY(parts_free) struct parts_input parts = {.given = false};
     process_begin(&argc, &argv);
     become_mpi(argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
@@ -264,8 +264,5 @@ int main(int argc, char *argv[])
     run_stability_free(&run);
     model_free(&model);
     free(run.u);
-    parts_free(&parts);
-    scene_free(&scene);
-    stream_free(&stream);
     return tool_end(&tool);
 }

@@ -59,7 +59,7 @@ struct command {
 
 static int list(struct tool *tool)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     tool_read(tool, tool->operands[1], &stream);
     for (int64_t i = 0; tool_given(tool, "verbose") && i < stream.provenance_count; i++) {
         printf("# @ %s\n", stream.provenance[i]);
@@ -69,13 +69,12 @@ static int list(struct tool *tool)
         printf("%s\t%s\t%" PRId64 "\t%" PRId64 "\t%s\n", section->name, element_type_name(section->type),
                section->rows, section->cols, section->attributes);
     }
-    stream_free(&stream);
     return tool_end(tool);
 }
 
 static int print(struct tool *tool)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     const char *name = tool->operands[1];
     tool_read(tool, tool->operands[2], &stream);
     const struct section *section = stream_find(&stream, name);
@@ -83,18 +82,16 @@ static int print(struct tool *tool)
         tool_fail(tool, STATUS_INPUT, "no section %s: see mts list", name);
     }
     TOOL_TRY(tool, fail_in(&error, stream_write_rows(section, STDOUT_FILENO, &error), "standard output"));
-    stream_free(&stream);
     return tool_end(tool);
 }
 
 /* The commands text and binary. */
 static int convert(struct tool *tool)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     bool text = strcmp(tool->operands[0], "text") == 0;
     tool_read(tool, tool->operands[1], &stream);
     tool_copy(tool, &stream, text);
-    stream_free(&stream);
     return tool_end(tool);
 }
 
@@ -148,7 +145,7 @@ static int check(struct tool *tool)
 
 static int recover(struct tool *tool)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct error why, error;
     const char *name;
     int descriptor = tool_open(tool, tool->operands[1], &name);
@@ -158,7 +155,6 @@ static int recover(struct tool *tool)
                   (long long)stream.section_count);
     }
     tool_write(tool, &stream, tool_given(tool, "text"));
-    stream_free(&stream);
     return tool_end(tool);
 }
 
@@ -182,8 +178,8 @@ static int select_sections(struct tool *tool)
     char *patterns[MOST];
     bool used[MOST] = {false};
     int count = 0;
-    struct stream stream;
-    char *list_of_patterns = tool_memory(tool, strdup(tool->operands[1]));
+    FREED_BY(stream_free) struct stream stream = {0};
+    SCRATCH char *list_of_patterns = tool_memory(tool, strdup(tool->operands[1]));
     for (char *rest = list_of_patterns, *pattern; (pattern = strsep(&rest, ",")) != NULL;) {
         if (count == MOST || *pattern == '\0') {
             tool_fail(tool, STATUS_INPUT, "'%s' is not a list of at most %d patterns", tool->operands[1],
@@ -203,8 +199,6 @@ static int select_sections(struct tool *tool)
         }
     }
     tool_write(tool, &stream, tool_given(tool, "text"));
-    stream_free(&stream);
-    free(list_of_patterns);
     return tool_end(tool);
 }
 

@@ -142,8 +142,8 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct msh msh;
-    struct mesh mesh;
-    struct stream stream;
+    FREED_BY(mesh_free) struct mesh mesh = {0};
+    FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     struct mesh_options wanted = parse(&tool);
     read_mesh(&tool, &msh);
@@ -164,7 +164,5 @@ int main(int argc, char *argv[])
     stream_init(&stream);
     TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    stream_free(&stream);
-    mesh_free(&mesh);
     return tool_end(&tool);
 }

@@ -73,7 +73,7 @@ static void print_report(const struct cut_body *whole, const struct report *repo
 
 static void write_parts(const struct cut_body *whole, bool wanted, bool text, struct report *report)
 {
-    struct body_part_work work = {0};
+    FREED_BY(body_part_work_free) struct body_part_work work = {0};
     const char *name = whole->tool->output;
     for (int32_t k = 0; k < whole->partition.parts; k++) {
         struct body_part body;
@@ -99,7 +99,6 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
         }
         body_part_free(&body);
     }
-    body_part_work_free(&work);
 }
 
 /* What parts of one cut have in common, and those of another have not. */
@@ -141,8 +140,8 @@ static void cut(struct cut_body *whole, const struct support_options *support)
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
-    struct cut_body whole = {.tool = &tool, .stream = &stream};
+    FREED_BY(stream_free) struct stream stream = {0};
+    FREED_BY(cut_body_free) struct cut_body whole = {.tool = &tool, .stream = &stream};
     struct support_options support = support_defaults(2);
     tool_begin(&tool, usage, 0, 1, argc, argv);
     if (!tool_given(&tool, "parts")) {
@@ -170,7 +169,5 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "verbose")) {
         print_report(&whole, &report);
     }
-    stream_free(&stream);
-    cut_body_free(&whole);
     return tool_end(&tool);
 }

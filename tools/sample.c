@@ -253,7 +253,7 @@ static void print_rows(FILE *file, const struct request *request, const struct s
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct request request;
     struct sample_points rows;
     struct target target;
@@ -289,6 +289,5 @@ int main(int argc, char *argv[])
     }
     FREE_ALL(rows.x, rows.value);
     tissue_free(&request.tissue);
-    stream_free(&stream);
     return tool_end(&tool);
 }

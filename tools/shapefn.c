@@ -43,7 +43,7 @@ static void record(const struct tool *tool, struct stream *stream, const struct 
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     int dim;
     int64_t node_count;
     const double *x;
@@ -60,6 +60,5 @@ int main(int argc, char *argv[])
     TOOL_TRY(&tool, stage_shapefn(&stream, &recorded.shapes, &error));
     record(&tool, &stream, &recorded);
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    stream_free(&stream);
     return tool_end(&tool);
 }

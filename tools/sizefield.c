@@ -73,22 +73,18 @@ static struct request parse(const struct tool *tool)
 static enum status recover(const struct stream *stream, const char *field, struct cells *cells,
                            double **squared, struct error *error)
 {
-    enum status status;
     const struct section *section;
-    struct cell_regions regions = {0};
-    TRY(stream_cells(stream, true, cells, error));
-    TRY(stream_field(stream, field, cells->node_count, &section, error));
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
+    RETURN_IF_ERROR(stream_field(stream, field, cells->node_count, &section, error));
     if (stream_find(stream, "cells.region") != NULL) {
-        TRY(stream_regions(stream, cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, cells, &regions, error));
     }
-    TRY(NEW_ARRAY(squared, cells->count, error));
-    TRY(fail_in(error,
-                field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
-                                      section->data, *squared, error),
-                "%s", field));
-done:
-    names_free(&regions.names);
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(squared, cells->count, error));
+    return fail_in(error,
+                   field_error_recovered(cells, regions.of_cell, (int32_t)regions.names.count, section->cols,
+                                         section->data, *squared, error),
+                   "%s", field);
 }
 
 /* The cells with their sizes, and a layer beyond the boundary: between each facet and its nodes moved outward
@@ -108,15 +104,15 @@ static void layered_free(struct layered *layered)
 static enum status layered_make(const struct cells *cells, const struct size_field *field,
                                 struct layered *layered, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    int32_t *outer = NULL; /* node_count: the node moved outward, 0: of none */
+    SCRATCH int32_t *outer = NULL; /* node_count: the node moved outward, 0: of none */
     const struct faces *boundary = &field->boundary;
     *layered = (struct layered){.cells = {.dim = dim, .node_count = cells->node_count}};
-    TRY(NEW_ARRAY(&outer, cells->node_count, error));
-    TRY(NEW_ARRAY(&layered->x, 2 * cells->node_count * dim, error));
-    TRY(NEW_ARRAY(&layered->size, 2 * cells->node_count, error));
-    TRY(NEW_ARRAY(&layered->node, (cells->count + boundary->boundary_count * dim) * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outer, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&layered->x, 2 * cells->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&layered->size, 2 * cells->node_count, error));
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&layered->node, (cells->count + boundary->boundary_count * dim) * (dim + 1), error));
     memcpy(layered->x, cells->x, (size_t)(cells->node_count * dim) * sizeof(double));
     memcpy(layered->size, field->size, (size_t)cells->node_count * sizeof(double));
     memcpy(layered->node, cells->node, (size_t)(cells->count * (dim + 1)) * sizeof(int32_t));
@@ -142,9 +138,7 @@ static enum status layered_make(const struct cells *cells, const struct size_fie
     layered->cells.count = cells->count + boundary->boundary_count * dim;
     layered->cells.x = layered->x;
     layered->cells.node = layered->node;
-done:
-    free(outer);
-    return status;
+    return STATUS_OK;
 }
 
 /* Simplices of a view of gmsh, ST or SS: corners and the sizes there. */
@@ -189,7 +183,7 @@ static void orient(struct layered *layered)
 
 static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
@@ -201,7 +195,6 @@ static void write_sizes(const struct tool *tool, struct layered *layered, bool t
     TOOL_TRY(tool, stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false,
                               &error));
     tool_write(tool, &stream, text);
-    stream_free(&stream);
 }
 
 static void report(const struct request *request, const struct cells *cells, const struct size_field *field)
@@ -218,10 +211,10 @@ static void report(const struct request *request, const struct cells *cells, con
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct cells cells;
-    struct size_field field;
-    double *squared = NULL;
+    FREED_BY(size_field_free) struct size_field field = {0};
+    SCRATCH double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     tool_excludes(&tool, "binary", "text");
     if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool_given(&tool, "text"))) {
@@ -249,8 +242,5 @@ int main(int argc, char *argv[])
         report(&request, &cells, &field);
     }
     layered_free(&layered);
-    size_field_free(&field);
-    free(squared);
-    stream_free(&stream);
     return tool_end(&tool);
 }

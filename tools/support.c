@@ -105,7 +105,7 @@ static void note_report(const struct tool *tool, const struct support_report *re
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     int dim;
     int64_t node_count;
     const double *x;
@@ -116,7 +116,7 @@ int main(int argc, char *argv[])
     TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error));
     struct support_options support = parse(&tool, dim);
     stage_fill(&tool, &stream, "ipoints");
-    int32_t *side = NULL;
+    SCRATCH int32_t *side = NULL;
     if (tool_given(&tool, "interface")) {
         TOOL_TRY(&tool, stage_interfaces(&stream, tool_value(&tool, "interface"), &side, &error));
         support.side = side;
@@ -129,7 +129,5 @@ int main(int argc, char *argv[])
         note_report(&tool, &report);
     }
     tool_write(&tool, &stream, tool_given(&tool, "text"));
-    stream_free(&stream);
-    free(side);
     return tool_end(&tool);
 }

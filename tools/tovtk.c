@@ -63,8 +63,9 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
-    char **paths, **names; /* the names are relative to the .pvd file: the ends of the paths */
-    double *times;
+    SCRATCH char **paths = NULL,
+                 **names = NULL; /* the names are relative to the .pvd file: the ends of the paths */
+    SCRATCH double *times = NULL;
     tool_check(tool, NEW_ARRAY(&paths, count, &error), &error);
     tool_check(tool, NEW_ARRAY(&names, count, &error), &error);
     tool_check(tool, NEW_ARRAY(&times, count, &error), &error);
@@ -82,7 +83,6 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }
-    FREE_ALL(paths, names, times);
 }
 
 /* Exits where the ending of the output's name is not one of ours. */
@@ -99,7 +99,7 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct error error;
-    struct plot plot = {0};
+    FREED_BY(plot_free) struct plot plot = {0};
     struct target target;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     check_ending(&tool);
@@ -117,6 +117,5 @@ int main(int argc, char *argv[])
         target_close(&tool, &target,
                      write_vtu(&plot, FRAME_NONE, tool_given(&tool, "text"), target.file, &error), &error);
     }
-    plot_free(&plot);
     return tool_end(&tool);
 }

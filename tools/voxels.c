@@ -91,8 +91,8 @@ static double shown(int dim, double volume)
 static void report_labels(const struct tool *tool, const struct label_image *image,
                           const struct stuffing *stuffing, const struct cells *cells, bool verbose)
 {
-    double *volume = NULL, *voxels = NULL;
-    int64_t *lost = NULL;
+    SCRATCH double *volume = NULL, *voxels = NULL;
+    SCRATCH int64_t *lost = NULL;
     int dim = stuffing->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
     TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
@@ -137,7 +137,6 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
                 name, missing, unit);
         }
     }
-    FREE_ALL(volume, voxels, lost);
 }
 
 /* How many connected bodies there are, when more than one. */
@@ -226,8 +225,8 @@ static void report(const struct tool *tool, const struct label_image *image, con
 static void write_stream(const struct tool *tool, const struct label_image *image,
                          const struct stuffing *stuffing, bool text)
 {
-    struct mesh mesh;
-    struct stream stream;
+    FREED_BY(label_mesh_free) struct mesh mesh = {0};
+    FREED_BY(stream_free) struct stream stream = {0};
     TOOL_TRY(tool, label_mesh_make(image, stuffing, &mesh, &error));
     stream_init(&stream);
     for (int32_t p = 0; p < image->part_count; p++) {
@@ -241,8 +240,6 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     }
     TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
     tool_write(tool, &stream, text);
-    stream_free(&stream);
-    label_mesh_free(&mesh);
 }
 
 static void check_options(const struct tool *tool)
@@ -261,8 +258,8 @@ int main(int argc, char *argv[])
 {
     static char help[] = "--help";
     struct tool tool;
-    struct label_image image;
-    struct stuffing stuffing;
+    FREED_BY(label_image_free) struct label_image image = {0};
+    FREED_BY(stuffing_free) struct stuffing stuffing = {0};
     if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
         argv[argc - 1] = help;
     }
@@ -285,7 +282,7 @@ int main(int argc, char *argv[])
                                                 .keep = image.keep,
                                                 .whole = image.region,
                                                 .largest = tool_given(&tool, "largest")};
-    bool *fine = NULL;
+    SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine = label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &stuffing_options.finest);
         stuffing_options.fine = fine;
@@ -308,9 +305,6 @@ int main(int argc, char *argv[])
     } else {
         write_stream(&tool, &image, &stuffing, tool_given(&tool, "text"));
     }
-    stuffing_free(&stuffing);
     label_sizes_free(&sizes);
-    free(fine);
-    label_image_free(&image);
     return tool_end(&tool);
 }

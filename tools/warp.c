@@ -246,12 +246,12 @@ static int32_t *find_seen(const struct tool *tool, const struct image *grid, con
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct warp_request request;
     struct warp_report report = {0};
-    struct image image, like = {0}, result;
+    FREED_BY(image_free) struct image image = {0}, like = {0}, result = {0};
     struct cells cells;
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     struct image_axes axes; /* of the grid */
     tool_begin(&tool, usage, 1, 2, argc, argv);
     parse(&tool, &request);
@@ -269,7 +269,7 @@ int main(int argc, char *argv[])
     const double *seen = request.inverse ? cells.x : motion.moved;
     const double *unseen = request.inverse ? motion.moved : cells.x;
     int64_t ignored;
-    int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
+    SCRATCH int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     if (!request.field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
         tell_not_finite(&tool, &image, tool.operands[0]);
@@ -291,11 +291,5 @@ int main(int argc, char *argv[])
     }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);
-    FREE_ALL(owner, other);
-    motion_free(&motion);
-    image_free(&image);
-    image_free(&like);
-    image_free(&result);
-    stream_free(&stream);
     return tool_end(&tool);
 }

@@ -174,9 +174,6 @@ enum status adaptive_points_build(const struct adaptive_options *options, const 
 done:
     support_space_free(&refinement.space);
     FREE_ALL(refinement.norm, leaves.leaf);
-    if (status != STATUS_OK) {
-        adaptive_points_free(points);
-    }
     return status;
 }
 

@@ -138,17 +138,16 @@ static int64_t unite(const struct support_lists *lists, int64_t first, int64_t l
 static enum status measure(const struct refinement *refinement, const struct sample *sample, int64_t leaf,
                            double volume, double *norm, double *change, struct error *error)
 {
-    enum status status;
     const struct support_lists *lists = &sample->lists;
     int dim = refinement->cells->dim, per_rule = refinement->rule.points;
     int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];
-    int32_t *united = NULL, *place = NULL;
-    double *matrix = NULL;
-    TRY(NEW_ARRAY(&united, pairs, error));
-    TRY(NEW_ARRAY(&place, pairs, error));
+    SCRATCH int32_t *united = NULL, *place = NULL;
+    SCRATCH double *matrix = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&united, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, pairs, error));
     int64_t n = unite(lists, first, last, united, place);
-    TRY(NEW_ARRAY(&matrix, n * n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&matrix, n * n, error));
     for (int64_t p = first; p < last; p++) {
         int64_t at = lists->ptr[p], count = lists->ptr[p + 1] - at;
         double weight = volume * refinement->rule.weight[(p - first) % per_rule];
@@ -161,9 +160,7 @@ static enum status measure(const struct refinement *refinement, const struct sam
                      own ? weight : -weight / adaptive_children(dim), matrix);
     }
     *change = norm_of(matrix, n);
-done:
-    FREE_ALL(united, place, matrix);
-    return status;
+    return STATUS_OK;
 }
 
 /* Measure one batch of subcells. */

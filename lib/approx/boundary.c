@@ -139,22 +139,21 @@ static enum status collect_parts(const struct face_table *table, const struct fa
                                  const int64_t *face_of, bool split, struct boundary_sides *sides,
                                  struct corner *corners, int64_t *parts, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int64_t *group = NULL, count = 2 * set->count * table->dim;
+    SCRATCH int64_t *group = NULL;
+    int64_t count = 2 * set->count * table->dim;
     boundary_collect_corners(table, set, face_of, split, corners, parts);
     if (sides != NULL) {
         sides->node_average_count = *parts;
-        TRY(NEW_ARRAY(&group, set->count, error));
-        TRY(boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
-        TRY(NEW_ARRAY(&sides->group, *parts, error));
-        TRY(NEW_ARRAY(&sides->flat, *parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&group, set->count, error));
+        RETURN_IF_ERROR(
+            boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&sides->group, *parts, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&sides->flat, *parts, error));
         for (int64_t i = 0; i < count; i++) {
             sides->group[corners[i].part] = group[corners[i].facet];
         }
     }
-done:
-    free(group);
-    return status;
+    return STATUS_OK;
 }
 
 /* All kinds of averages; node_lists == NULL: boundary averages. */
@@ -200,9 +199,6 @@ static enum status build(const struct face_table *table, const struct facet_set 
     }
 done:
     FREE_ALL(corners, face_of, row.value, row.touched, row.is_touched);
-    if (status != STATUS_OK) {
-        boundary_averages_free(averages);
-    }
     return status;
 }
 
@@ -257,45 +253,40 @@ enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, 
                                 const struct neighbours *lists, const double *phi,
                                 struct boundary_averages *averages, struct error *error)
 {
-    enum status status;
     int64_t pairs = 0;
     *averages = (struct boundary_averages){0};
     for (int64_t i = 0; i < count; i++) {
         pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
     }
-    TRY(allocate(dim, count, count, averages, error));
-    TRY(NEW_ARRAY(&averages->idx, pairs, error));
-    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, pairs, error));
     for (int64_t i = 0; i < count; i++) {
         int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
         averages->node[i] = nodes[i];
         put_values(averages, i, lists->idx + from, phi + from, length);
         put_place(dim, i, x + (int64_t)nodes[i] * dim, averages);
     }
-done:
-    if (status != STATUS_OK) {
-        boundary_averages_free(averages);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                   struct boundary_averages *averages, struct error *error)
 {
-    enum status status;
     int dim = table->dim;
-    int64_t *face_of = NULL, pairs = 0, count = set->count * table->per_face;
+    SCRATCH int64_t *face_of = NULL;
+    int64_t pairs = 0, count = set->count * table->per_face;
     struct quadrature_rule rule = quadrature_face_rule(dim);
     *averages = (struct boundary_averages){0};
-    TRY(NEW_ARRAY(&face_of, set->count, error));
-    TRY(boundary_find_faces(table, set, face_of, error));
-    TRY(allocate(dim, count, count, averages, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&face_of, set->count, error));
+    RETURN_IF_ERROR(boundary_find_faces(table, set, face_of, error));
+    RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
     for (int64_t f = 0; f < set->count; f++) {
         int64_t first = face_of[f] * table->per_face;
         pairs += table->lists->ptr[first + table->per_face] - table->lists->ptr[first];
     }
-    TRY(NEW_ARRAY(&averages->idx, pairs, error));
-    TRY(NEW_ARRAY(&averages->phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, pairs, error));
     for (int64_t p = 0; p < count; p++) {
         int64_t facet = p / table->per_face, point = face_of[facet] * table->per_face + p % table->per_face;
         int64_t from = table->lists->ptr[point], length = table->lists->ptr[point + 1] - from;
@@ -308,12 +299,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
         put_place(dim, p, x + p % table->per_face * dim, averages);
         put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
-done:
-    free(face_of);
-    if (status != STATUS_OK) {
-        boundary_averages_free(averages);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void boundary_averages_free(struct boundary_averages *averages)

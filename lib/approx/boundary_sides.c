@@ -168,13 +168,13 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
                                struct corner *corners, int64_t *part_count, int64_t *group,
                                int64_t *group_count, struct error *error)
 {
-    enum status status;
     int dim = table->dim;
-    int64_t count = set->count * dim, *part = NULL;
-    int32_t *side = NULL, *piece = NULL;
-    TRY(NEW_ARRAY(&side, set->count, error));
-    TRY(NEW_ARRAY(&piece, set->count, error));
-    TRY(NEW_ARRAY(&part, set->count, error));
+    int64_t count = set->count * dim;
+    SCRATCH int64_t *part = NULL;
+    SCRATCH int32_t *side = NULL, *piece = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&side, set->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&piece, set->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, set->count, error));
     join_facets(table, set, corners, side, piece);
     *group_count = 0;
     for (int64_t f = 0; f < set->count; f++) {
@@ -188,24 +188,22 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
         }
     }
     qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
-done:
-    FREE_ALL(side, piece, part);
-    return status;
+    return STATUS_OK;
 }
 
 enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
                                const bool *touched, bool *end, struct error *error)
 {
-    enum status status;
     int dim = table->dim;
     const int32_t *node = table->faces->node;
-    int64_t count = table->faces->count, *ptr = NULL;
-    int32_t *row = NULL, *at = NULL; /* faces of the boundary at each node */
-    TRY(NEW_ARRAY(&row, count * dim, error));
+    int64_t count = table->faces->count;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *row = NULL, *at = NULL; /* faces of the boundary at each node */
+    RETURN_IF_ERROR(NEW_ARRAY(&row, count * dim, error));
     for (int64_t i = 0; i < count * dim; i++) {
         row[i] = table->faces->cell[2 * (i / dim) + 1] < 0 ? node[i] : -1;
     }
-    TRY(lists_by_row(count, dim, row, table->node_count, &ptr, &at, error));
+    RETURN_IF_ERROR(lists_by_row(count, dim, row, table->node_count, &ptr, &at, error));
     for (int64_t n = 0; n < table->node_count; n++) {
         for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
             for (int64_t k = i + 1; k < ptr[n + 1]; k++) {
@@ -218,7 +216,5 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
             }
         }
     }
-done:
-    FREE_ALL(row, ptr, at);
-    return status;
+    return STATUS_OK;
 }

@@ -181,11 +181,10 @@ static int compare_faces(const void *left, const void *right)
 /* partner[source]: the source of the same face in the other cell, or -1. */
 static enum status match_faces(const struct cells *cells, int64_t *partner, struct error *error)
 {
-    enum status status;
     int corners = cells->dim + 1;
     int64_t total = cells->count * corners;
-    struct keyed_face *keyed = NULL;
-    TRY(NEW_ARRAY(&keyed, total, error));
+    SCRATCH struct keyed_face *keyed = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&keyed, total, error));
     for (int64_t s = 0; s < total; s++) {
         int32_t node[3];
         cell_face(cells, s / corners, opposite(cells->dim, s % corners), node);
@@ -200,15 +199,13 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
             continue;
         }
         if (partner[one] >= 0) {
-            TRY(fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
-                     (long long)(other / corners)));
+            return fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
+                        (long long)(other / corners));
         }
         partner[one] = other;
         partner[other] = one;
     }
-done:
-    free(keyed);
-    return status;
+    return STATUS_OK;
 }
 
 /* Append the face at slot s of the cells, beyond which is that cell or none. */
@@ -224,20 +221,19 @@ static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struc
 enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                         struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
     int64_t total = cells->count * (dim + 1);
-    int64_t *partner = NULL;
+    SCRATCH int64_t *partner = NULL;
     *faces = (struct faces){.dim = dim};
-    TRY(NEW_ARRAY(&partner, total, error));
-    TRY(match_faces(cells, partner, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, total, error));
+    RETURN_IF_ERROR(match_faces(cells, partner, error));
     int64_t count = 0;
     for (int64_t s = 0; s < total; s++) {
         faces->boundary_count += partner[s] < 0;
         count += partner[s] < 0 || (!boundary_only && partner[s] > s);
     }
-    TRY(NEW_ARRAY(&faces->node, count * dim, error));
-    TRY(NEW_ARRAY(&faces->cell, count * 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->node, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->cell, count * 2, error));
     for (int64_t s = 0; s < total; s++) {
         if (partner[s] < 0) {
             add_face(cells, s, -1, faces);
@@ -248,13 +244,7 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
-    status = face_rows_number(cells->node_count, NULL, faces, error);
-done:
-    free(partner);
-    if (status != STATUS_OK) {
-        faces_free(faces);
-    }
-    return status;
+    return face_rows_number(cells->node_count, NULL, faces, error);
 }
 
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,
@@ -282,18 +272,15 @@ enum status faces_find(const struct faces *faces, int64_t count, const int32_t *
 
 enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
 {
-    enum status status;
     int corners = cells->dim + 1;
-    int64_t *partner = NULL;
-    TRY(NEW_ARRAY(&partner, cells->count * corners, error));
-    TRY(match_faces(cells, partner, error));
+    SCRATCH int64_t *partner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells->count * corners, error));
+    RETURN_IF_ERROR(match_faces(cells, partner, error));
     for (int64_t s = 0; s < cells->count * corners; s++) {
         across[s / corners * corners + opposite(cells->dim, s % corners)] =
             partner[s] < 0 ? -1 : (int32_t)(partner[s] / corners);
     }
-done:
-    free(partner);
-    return status;
+    return STATUS_OK;
 }
 
 void faces_free(struct faces *faces)
@@ -304,10 +291,9 @@ void faces_free(struct faces *faces)
 
 enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    int64_t *visits = NULL;
-    TRY(NEW_ARRAY(&visits, cells->node_count, error));
+    SCRATCH int64_t *visits = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&visits, cells->node_count, error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = 0.0;
     }
@@ -328,7 +314,5 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = visits[n] > 0 ? spacing[n] / (double)visits[n] : 0.0;
     }
-done:
-    free(visits);
-    return status;
+    return STATUS_OK;
 }

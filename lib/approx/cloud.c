@@ -247,13 +247,12 @@ static int side_of(const struct cloud_options *options, const int32_t face[])
 
 static enum status make_facets(const struct cloud_options *options, struct cloud *cloud, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = options->dim;
     struct cells cells = {dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
-    struct faces faces = {0};
-    TRY(faces_build(&cells, true, &faces, error));
-    TRY(NEW_ARRAY(&cloud->facets, faces.count * dim, error));
-    TRY(NEW_ARRAY(&cloud->facet_set, faces.count, error));
+    FREED_BY(faces_free) struct faces faces = {0};
+    RETURN_IF_ERROR(faces_build(&cells, true, &faces, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->facets, faces.count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->facet_set, faces.count, error));
     for (int side = 0; side < 2 * dim; side++) {
         for (int64_t f = 0; f < faces.count; f++) {
             if (side_of(options, &faces.node[f * dim]) == side) {
@@ -263,37 +262,29 @@ static enum status make_facets(const struct cloud_options *options, struct cloud
             }
         }
     }
-done:
-    faces_free(&faces);
-    return status;
+    return STATUS_OK;
 }
 
 enum status cloud_make(const struct cloud_options *options, struct cloud *cloud, struct error *error)
 {
-    enum status status = STATUS_OK;
     *cloud = (struct cloud){.dim = options->dim};
-    TRY(check(options, error));
-    TRY(count_nodes(options, &cloud->node_count, error));
-    TRY(NEW_ARRAY(&cloud->x, cloud->node_count * options->dim, error));
+    RETURN_IF_ERROR(check(options, error));
+    RETURN_IF_ERROR(count_nodes(options, &cloud->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cloud->x, cloud->node_count * options->dim, error));
     if (options->kind == CLOUD_HALTON) {
-        TRY(place_halton(options, cloud, error));
-        goto done;
+        RETURN_IF_ERROR(place_halton(options, cloud, error));
+        return STATUS_OK;
     }
-    TRY(place_lattice(options, cloud, error));
+    RETURN_IF_ERROR(place_lattice(options, cloud, error));
     if (options->kind == CLOUD_JITTERED) {
-        TRY(jitter(options, cloud, error));
+        RETURN_IF_ERROR(jitter(options, cloud, error));
     }
-    TRY(make_cells(options, cloud, error));
+    RETURN_IF_ERROR(make_cells(options, cloud, error));
     if (!all_positive(cloud)) {
         cloud->cell_count = 0;
-        goto done;
+        return STATUS_OK;
     }
-    TRY(make_facets(options, cloud, error));
-done:
-    if (status != STATUS_OK) {
-        cloud_free(cloud);
-    }
-    return status;
+    return make_facets(options, cloud, error);
 }
 
 void cloud_free(struct cloud *cloud)

@@ -10,12 +10,12 @@
 static enum status number_edges(int64_t node_count, const struct faces *faces, int32_t *edge, int64_t *edges,
                                 struct error *error)
 {
-    enum status status;
-    int32_t *last = NULL, *before = NULL, *higher = NULL; /* edges by their lower node, latest first */
+    SCRATCH int32_t *last = NULL, *before = NULL,
+                    *higher = NULL; /* edges by their lower node, latest first */
     *edges = 0;
-    TRY(NEW_ARRAY(&last, node_count, error));
-    TRY(NEW_ARRAY(&before, faces->count * 3, error));
-    TRY(NEW_ARRAY(&higher, faces->count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&last, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&before, faces->count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&higher, faces->count * 3, error));
     for (int64_t i = 0; i < faces->count * 3; i++) {
         const int32_t *node = faces->node + i / 3 * 3;
         int32_t a = node[i % 3], b = node[(i + 1) % 3];
@@ -31,9 +31,7 @@ static enum status number_edges(int64_t node_count, const struct faces *faces, i
         }
         edge[i] = e;
     }
-done:
-    FREE_ALL(last, before, higher);
-    return status;
+    return STATUS_OK;
 }
 
 /* outer[node_count]: those of faces on the boundary, or between sides. */
@@ -50,10 +48,9 @@ static void mark_outer(const int32_t *side, const struct faces *faces, bool *out
 enum status face_rows_number(int64_t node_count, const int32_t *side, struct faces *faces,
                              struct error *error)
 {
-    enum status status;
     int64_t edges;
-    int32_t *edge = NULL, *row_of = NULL;
-    bool *outer = NULL;
+    SCRATCH int32_t *edge = NULL, *row_of = NULL;
+    SCRATCH bool *outer = NULL;
     faces->row = NULL;
     faces->own_count = faces->row_count = faces->count;
     if (!faces_may_share(faces)) {
@@ -62,11 +59,11 @@ enum status face_rows_number(int64_t node_count, const int32_t *side, struct fac
     if (faces->count > INT32_MAX / 3) {
         return fail(error, STATUS_INPUT, "%lld faces: too many", (long long)faces->count);
     }
-    TRY(NEW_ARRAY(&edge, faces->count * 3, error));
-    TRY(number_edges(node_count, faces, edge, &edges, error));
-    TRY(NEW_ARRAY(&outer, node_count, error));
-    TRY(NEW_ARRAY(&row_of, edges, error)); /* and 1 */
-    TRY(NEW_ARRAY(&faces->row, faces->count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&edge, faces->count * 3, error));
+    RETURN_IF_ERROR(number_edges(node_count, faces, edge, &edges, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outer, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row_of, edges, error)); /* and 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->row, faces->count * 3, error));
     mark_outer(side, faces, outer);
     faces->own_count = 0;
     for (int64_t f = 0; f < faces->count; f++) {
@@ -86,9 +83,7 @@ enum status face_rows_number(int64_t node_count, const int32_t *side, struct fac
             faces->row[i] = row_of[edge[i]] - 1;
         }
     }
-done:
-    FREE_ALL(edge, outer, row_of);
-    return status;
+    return STATUS_OK;
 }
 
 /* The rows of the edges of faces in 3D, also of faces that have one of their own: row[count * 3]; -1: none.
@@ -96,12 +91,11 @@ done:
 static enum status rows_of_edges(int64_t node_count, const struct faces *faces, int32_t *row,
                                  struct error *error)
 {
-    enum status status;
     int64_t edges;
-    int32_t *edge = NULL, *row_of = NULL; /* and 1 */
-    TRY(NEW_ARRAY(&edge, faces->count * 3, error));
-    TRY(number_edges(node_count, faces, edge, &edges, error));
-    TRY(NEW_ARRAY(&row_of, edges, error));
+    SCRATCH int32_t *edge = NULL, *row_of = NULL; /* and 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&edge, faces->count * 3, error));
+    RETURN_IF_ERROR(number_edges(node_count, faces, edge, &edges, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row_of, edges, error));
     for (int64_t i = 0; i < faces->count * 3; i++) {
         if (!face_has_own_row(faces, i / 3)) {
             row_of[edge[i]] = faces->row[i] + 1;
@@ -110,9 +104,7 @@ static enum status rows_of_edges(int64_t node_count, const struct faces *faces, 
     for (int64_t i = 0; i < faces->count * 3; i++) {
         row[i] = row_of[edge[i]] - 1;
     }
-done:
-    FREE_ALL(edge, row_of);
-    return status;
+    return STATUS_OK;
 }
 
 /* Each cell once, without what is beyond the boundary; row r had those up to ptr[r + 1]. */

@@ -15,27 +15,24 @@ enum { POINTS_FOR_THREAD = 4000 }; /* see chunks_of */
 
 enum status field_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
-    enum status status = STATUS_OK;
-    double *nearest = NULL;
+    SCRATCH double *nearest = NULL;
     bool complete = cells->count > 0;
     if (cells->count > 0) {
-        TRY(cells_node_spacing(cells, spacing, error));
+        RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
         for (int64_t n = 0; n < cells->node_count; n++) {
             complete = complete && spacing[n] > 0.0;
         }
     }
     if (!complete) {
-        TRY(NEW_ARRAY(&nearest, cells->node_count, error));
-        TRY(nodes_spacing(cells->dim, cells->node_count, cells->x, nearest, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&nearest, cells->node_count, error));
+        RETURN_IF_ERROR(nodes_spacing(cells->dim, cells->node_count, cells->x, nearest, error));
         for (int64_t n = 0; n < cells->node_count; n++) {
             if (cells->count == 0 || !(spacing[n] > 0.0)) {
                 spacing[n] = nearest[n];
             }
         }
     }
-done:
-    free(nearest);
-    return status;
+    return STATUS_OK;
 }
 
 /* centre[count * dim] and radius[count], m: a ball around each cell that holds all that is nearer to it than
@@ -58,20 +55,19 @@ static void enclose(const struct cells *cells, const double *spacing, double wit
 static enum status outside_of_cells(const struct cells *cells, const double *spacing, double within,
                                     int64_t count, const double *x, bool *outside, struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    struct point_grid grid = {0};
-    struct index_list near = {0};
-    double *centre = NULL, *radius = NULL, *size = NULL;
-    TRY(NEW_ARRAY(&centre, cells->count * dim, error));
-    TRY(NEW_ARRAY(&radius, cells->count, error));
-    TRY(NEW_ARRAY(&size, cells->count, error));
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    SCRATCH double *centre = NULL, *radius = NULL, *size = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&centre, cells->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&size, cells->count, error));
     enclose(cells, spacing, within, centre, radius, size);
-    TRY(point_grid_build(&grid, dim, cells->count, centre, radius, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, cells->count, centre, radius, error));
     for (int64_t p = 0; p < count; p++) {
         near.count = 0;
         outside[p] = true;
-        TRY(point_grid_query(&grid, x + p * dim, 1.0, &near, error));
+        RETURN_IF_ERROR(point_grid_query(&grid, x + p * dim, 1.0, &near, error));
         for (int64_t i = 0; i < near.count && outside[p]; i++) {
             const double *corner[4];
             int64_t c = near.index[i];
@@ -80,52 +76,38 @@ static enum status outside_of_cells(const struct cells *cells, const double *spa
             outside[p] = !(simplex_distance2(dim, dim, corner, x + p * dim) <= most * most);
         }
     }
-done:
-    point_grid_free(&grid);
-    FREE_ALL(near.index, centre, radius, size);
-    return status;
+    return STATUS_OK;
 }
 
 enum status field_outside(const struct cells *cells, const double *spacing, double within, int64_t count,
                           const double *x, bool *outside, struct error *error)
 {
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list near = {0};
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
     if (cells->count > 0) {
         return outside_of_cells(cells, spacing, within, count, x, outside, error);
     }
-    TRY(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, spacing, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, spacing, error));
     for (int64_t p = 0; p < count; p++) {
         near.count = 0;
-        TRY(point_grid_query(&grid, x + p * cells->dim, 2.0, &near, error));
+        RETURN_IF_ERROR(point_grid_query(&grid, x + p * cells->dim, 2.0, &near, error));
         outside[p] = near.count == 0;
     }
-done:
-    point_grid_free(&grid);
-    free(near.index);
-    return status;
+    return STATUS_OK;
 }
 
 enum status field_table_build(const struct support_options *options, const struct mls *shapes,
                               const struct cells *cells, const double *radius, int64_t count, const double *x,
                               const char *what, struct field_table *table, struct error *error)
 {
-    enum status status;
-    struct support_space space;
+    FREED_BY(support_space_free) struct support_space space = {0};
     *table = (struct field_table){0};
-    TRY(support_space_build(options, cells, radius, &space, error));
-    TRY(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
-    TRY(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
+    RETURN_IF_ERROR(support_space_build(options, cells, radius, &space, error));
+    RETURN_IF_ERROR(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
     struct neighbours lists = support_view(&table->lists);
-    TRY(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
-                    NULL, error));
-done:
-    support_space_free(&space);
-    if (status != STATUS_OK) {
-        field_table_free(table);
-    }
-    return status;
+    return shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
+                       NULL, error);
 }
 
 void field_table_free(struct field_table *table)

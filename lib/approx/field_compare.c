@@ -24,21 +24,20 @@ static bool same_place(int dim, const double *a, const double *b, double toleran
 static enum status match_any_order(int dim, int64_t count, const double *a, const double *b, double tolerance,
                                    int32_t *match, bool *matched, struct error *error)
 {
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list list = {0};
-    double *radius = NULL;
-    char *used = NULL;
-    TRY(NEW_ARRAY(&radius, count, error));
-    TRY(NEW_ARRAY(&used, count, error));
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list list = {0};
+    SCRATCH double *radius = NULL;
+    SCRATCH char *used = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&used, count, error));
     for (int64_t n = 0; n < count; n++) {
         radius[n] = tolerance * sqrt((double)dim);
     }
-    TRY(point_grid_build(&grid, dim, count, b, radius, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, count, b, radius, error));
     *matched = true;
     for (int64_t n = 0; n < count && *matched; n++) {
         list.count = 0;
-        TRY(point_grid_query(&grid, a + n * dim, 1.0, &list, error));
+        RETURN_IF_ERROR(point_grid_query(&grid, a + n * dim, 1.0, &list, error));
         int64_t at = 0;
         while (at < list.count && used[list.index[at]]) {
             at++;
@@ -49,10 +48,7 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
             used[match[n]] = 1;
         }
     }
-done:
-    point_grid_free(&grid);
-    FREE_ALL(list.index, radius, used);
-    return status;
+    return STATUS_OK;
 }
 
 enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
@@ -144,15 +140,15 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
                                 const double *spacing, bool skip, struct field_comparison *comparison,
                                 double *points, struct error *error)
 {
-    enum status status;
-    bool *outside = NULL;
+    SCRATCH bool *outside = NULL;
     int dim = a->cells.dim;
     int64_t kept = 0, first = -1;
     for (int64_t i = 0; i < comparison->count; i++) {
         memcpy(points + i * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
     }
-    TRY(NEW_ARRAY(&outside, comparison->count, error));
-    TRY(field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, comparison->count, error));
+    RETURN_IF_ERROR(
+        field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
     for (int64_t i = 0; i < comparison->count; i++) {
         if (!outside[i]) {
             memmove(points + kept * dim, points + i * dim, (size_t)dim * sizeof *points);
@@ -166,13 +162,11 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
     if (comparison->outside > 0 && !skip) {
         char place[96];
         point_text(dim, a->cells.x + first * dim, place);
-        status =
-            fail(error, STATUS_INPUT, "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
-                 (long long)comparison->outside, (long long)first, place);
+        return fail(error, STATUS_INPUT,
+                    "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
+                    (long long)comparison->outside, (long long)first, place);
     }
-done:
-    free(outside);
-    return status;
+    return STATUS_OK;
 }
 
 /* B's field at the chosen nodes of A. */
@@ -209,15 +203,14 @@ done:
 enum status field_compare(const struct nodal_field *a, const struct nodal_field *b, const bool *chosen,
                           bool skip_outside, struct field_comparison *comparison, struct error *error)
 {
-    enum status status;
     int64_t count = a->cells.node_count, cols = a->cols;
-    int32_t *match = NULL;
-    double *reference = NULL; /* B's values at the nodes of A */
+    SCRATCH int32_t *match = NULL;
+    SCRATCH double *reference = NULL; /* B's values at the nodes of A */
     *comparison = (struct field_comparison){0};
-    TRY(NEW_ARRAY(&match, count, error));
-    TRY(NEW_ARRAY(&reference, count * cols, error));
-    TRY(NEW_ARRAY(&comparison->node, count, error));
-    TRY(NEW_ARRAY(&comparison->difference, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&match, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reference, count * cols, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&comparison->node, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&comparison->difference, count, error));
     for (int64_t n = 0; n < count; n++) {
         if (chosen == NULL || chosen[n]) {
             comparison->node[comparison->count++] = n;
@@ -226,20 +219,18 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     for (int64_t i = 0; i < count * cols; i++) {
         reference[i] = NAN;
     }
-    TRY(field_match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
-                          &comparison->coincide, error));
+    RETURN_IF_ERROR(field_match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
+                                      &comparison->coincide, error));
     if (comparison->coincide) {
         for (int64_t i = 0; i < comparison->count; i++) {
             int64_t node = comparison->node[i];
             memcpy(reference + node * cols, b->values + match[node] * cols, (size_t)cols * sizeof(double));
         }
     } else {
-        TRY(interpolate(a, b, skip_outside, comparison, reference, error));
+        RETURN_IF_ERROR(interpolate(a, b, skip_outside, comparison, reference, error));
     }
     field_difference(count, cols, a->values, reference, comparison->difference);
-done:
-    FREE_ALL(match, reference);
-    return status;
+    return STATUS_OK;
 }
 
 void field_comparison_free(struct field_comparison *comparison)

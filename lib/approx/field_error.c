@@ -137,24 +137,21 @@ static void recover_region(const struct cells *cells, const int32_t *region, int
 enum status field_error_recovered(const struct cells *cells, const int32_t *region, int32_t region_count,
                                   int64_t cols, const double *values, double *squared, struct error *error)
 {
-    enum status status;
     int64_t size = cols * cells->dim;
-    double *gradient = NULL, *recovered = NULL, *volume = NULL;
+    SCRATCH double *gradient = NULL, *recovered = NULL, *volume = NULL;
     for (int64_t i = 0; i < cells->node_count * cols; i++) {
         if (!isfinite(values[i])) {
             return fail(error, STATUS_INPUT, "row %lld: not a finite number", (long long)(i / cols));
         }
     }
-    TRY(NEW_ARRAY(&gradient, cells->count * size, error));
-    TRY(NEW_ARRAY(&recovered, cells->node_count * size, error));
-    TRY(NEW_ARRAY(&volume, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&gradient, cells->count * size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&recovered, cells->node_count * size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volume, cells->node_count, error));
     for (int64_t q = 0; q < cells->count; q++) {
         cell_gradient(cells, q, cols, values, gradient + q * size);
     }
     for (int32_t r = 0; r < (region != NULL ? region_count : 1); r++) {
         recover_region(cells, region, r, size, gradient, recovered, volume, squared);
     }
-done:
-    FREE_ALL(gradient, recovered, volume);
-    return status;
+    return STATUS_OK;
 }

@@ -51,14 +51,10 @@ static void edges(const struct cells *cells, const double *x, int64_t cell, doub
 static enum status choose_radii(const struct cells *cells, const struct support_options *options,
                                 double *radius, struct error *error)
 {
-    enum status status;
-    double *spacing = NULL;
-    TRY(NEW_ARRAY(&spacing, cells->node_count, error));
-    TRY(field_spacing(cells, spacing, error));
-    TRY(support_radii(options, cells->node_count, spacing, radius, error));
-done:
-    free(spacing);
-    return status;
+    SCRATCH double *spacing = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
+    return support_radii(options, cells->node_count, spacing, radius, error);
 }
 
 /* Gradients at the nodes, of the source, or of a fit. */
@@ -70,24 +66,23 @@ static enum status find_gradients(const struct cells *cells, const double *u,
     struct support_options options = source != NULL ? *source->support : support_defaults(dim);
     struct mls shapes = source != NULL ? *source->shapes : options.mls;
     struct reach_places places = {.nodes = true};
-    struct support_lists lists = {0};
-    struct support_space space = {0};
-    double *radius = NULL, *phi = NULL, *dphi = NULL;
-    enum status status = STATUS_OK;
-    TRY(NEW_ARRAY(&radius, nodes, error));
+    FREED_BY(support_free) struct support_lists lists = {0};
+    FREED_BY(support_space_free) struct support_space space = {0};
+    SCRATCH double *radius = NULL, *phi = NULL, *dphi = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, nodes, error));
     if (source != NULL) {
         u = source->parameters;
         memcpy(radius, source->radius, (size_t)nodes * sizeof *radius);
     } else {
         options.mls.basis = shapes.basis = BASIS_QUADRATIC;
-        TRY(choose_radii(cells, &options, radius, error));
+        RETURN_IF_ERROR(choose_radii(cells, &options, radius, error));
     }
-    TRY(support_space_build(&options, cells, radius, &space, error));
-    TRY(support_space_lists(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
-    TRY(NEW_ARRAY(&phi, lists.ptr[nodes], error));
-    TRY(NEW_ARRAY(&dphi, lists.ptr[nodes] * dim, error));
+    RETURN_IF_ERROR(support_space_build(&options, cells, radius, &space, error));
+    RETURN_IF_ERROR(support_space_lists(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[nodes], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&dphi, lists.ptr[nodes] * dim, error));
     struct neighbours view = support_view(&lists);
-    TRY(shape_table(&shapes, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
+    RETURN_IF_ERROR(shape_table(&shapes, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
     for (int64_t n = 0; n < nodes; n++) {
         for (int64_t p = lists.ptr[n]; p < lists.ptr[n + 1]; p++) {
             for (int ij = 0; ij < dim * dim; ij++) {
@@ -95,11 +90,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
             }
         }
     }
-done:
-    FREE_ALL(radius, phi, dphi);
-    support_free(&lists);
-    support_space_free(&space);
-    return status;
+    return STATUS_OK;
 }
 
 enum status motion_build(const struct cells *cells, const double *u, bool linear,

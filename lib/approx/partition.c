@@ -221,22 +221,21 @@ enum status body_part_build(const struct partition *partition, int32_t part, con
                             int64_t count, bool cells_wanted, struct body_part_work *work,
                             struct body_part *body, struct error *error)
 {
-    enum status status;
-    struct index_list nodes = {0}, found = {0};
+    FREED_BY(index_list_free) struct index_list nodes = {0}, found = {0};
     *body = (struct body_part){.own_cells = count};
-    TRY(prepare(partition, work, error));
+    RETURN_IF_ERROR(prepare(partition, work, error));
     for (int64_t i = 0; i < count; i++) {
         body->work += partition->work[own_cell[i]];
     }
     for (int64_t n = 0; n < partition->cells->node_count; n++) {
         if (partition->owner[n] == part) {
-            TRY(see_node(work, part, (int32_t)n, &nodes, error));
+            RETURN_IF_ERROR(see_node(work, part, (int32_t)n, &nodes, error));
         }
     }
-    TRY(list_reaching(partition, part, own_cell, count, work, &nodes, error));
+    RETURN_IF_ERROR(list_reaching(partition, part, own_cell, count, work, &nodes, error));
     int64_t reaching = nodes.count;
-    TRY(add_cells(partition, part, work, &nodes, 0, &found, error));
-    TRY(add_cells(partition, part, work, &nodes, reaching, &found, error));
+    RETURN_IF_ERROR(add_cells(partition, part, work, &nodes, 0, &found, error));
+    RETURN_IF_ERROR(add_cells(partition, part, work, &nodes, reaching, &found, error));
     qsort(nodes.index, (size_t)nodes.count, sizeof *nodes.index, compare_int32);
     body->node = nodes.index;
     body->node_count = nodes.count;
@@ -248,9 +247,7 @@ enum status body_part_build(const struct partition *partition, int32_t part, con
         body->cell = found.index;
         found.index = NULL;
     }
-done:
-    FREE_ALL(nodes.index, found.index);
-    return status;
+    return STATUS_OK;
 }
 
 void body_part_free(struct body_part *body)

@@ -41,21 +41,20 @@ static int64_t list_neighbours(const struct cells *cells, const struct cell_star
 static enum status build_graph(const struct cells *cells, const struct cell_stars *stars, const int32_t *work,
                                struct graph *graph, struct error *error)
 {
-    enum status status;
-    int32_t *mark = NULL;
+    SCRATCH int32_t *mark = NULL;
     int64_t total = 0;
     double sum = 0;
-    TRY(NEW_ARRAY(&mark, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mark, cells->node_count, error));
     for (int64_t n = 0; n < cells->node_count; n++) {
         total += list_neighbours(cells, stars, n, mark, NULL);
     }
     if (total > IDX_MAX) {
-        TRY(fail(error, STATUS_INPUT, "cells: more than %lld edges: too many for this METIS",
-                 (long long)IDX_MAX / 2));
+        return fail(error, STATUS_INPUT, "cells: more than %lld edges: too many for this METIS",
+                    (long long)IDX_MAX / 2);
     }
-    TRY(NEW_ARRAY(&graph->ptr, cells->node_count + 1, error));
-    TRY(NEW_ARRAY(&graph->other, total, error));
-    TRY(NEW_ARRAY(&graph->weight, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&graph->ptr, cells->node_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&graph->other, total, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&graph->weight, cells->node_count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         sum += work[c];
     }
@@ -73,34 +72,33 @@ static enum status build_graph(const struct cells *cells, const struct cell_star
         }
         graph->weight[n] = 1 + (idx_t)(scale * share / (cells->dim + 1));
     }
-done:
-    free(mark);
-    return status;
+    return STATUS_OK;
 }
 
 enum status partition_nodes(const struct cells *cells, const struct cell_stars *stars, const int32_t *work,
                             int32_t parts, int32_t *owner, struct error *error)
 {
-    enum status status;
-    struct graph graph = {0};
-    idx_t *part = NULL, cut, constraints = 1, nodes = (idx_t)cells->node_count, wanted = parts;
+    FREED_BY(graph_free) struct graph graph = {0};
+    SCRATCH idx_t *part = NULL;
+    idx_t cut, constraints = 1, nodes = (idx_t)cells->node_count, wanted = parts;
     idx_t options[METIS_NOPTIONS];
-    int64_t *own = NULL;
+    SCRATCH int64_t *own = NULL;
     if (parts > cells->node_count) {
         return fail(error, STATUS_INPUT, "%d parts of %lld nodes", parts, (long long)cells->node_count);
     }
-    TRY(NEW_ARRAY(&own, parts, error));
-    TRY(NEW_ARRAY(&part, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&own, parts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->node_count, error));
     if (parts > 1) {
-        TRY(build_graph(cells, stars, work, &graph, error));
+        RETURN_IF_ERROR(build_graph(cells, stars, work, &graph, error));
         METIS_SetDefaultOptions(options);
         options[METIS_OPTION_SEED] = 1;
         options[METIS_OPTION_UFACTOR] = 10; /* balance to 1 % */
         int result = METIS_PartGraphKway(&nodes, &constraints, graph.ptr, graph.other, graph.weight, NULL,
                                          NULL, &wanted, NULL, NULL, options, &cut, part);
         if (result != METIS_OK) {
-            TRY(result == METIS_ERROR_MEMORY ? fail_memory(error, "METIS")
-                                             : fail(error, STATUS_INPUT, "METIS cannot cut this cloud"));
+            RETURN_IF_ERROR(result == METIS_ERROR_MEMORY
+                                ? fail_memory(error, "METIS")
+                                : fail(error, STATUS_INPUT, "METIS cannot cut this cloud"));
         }
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
@@ -109,12 +107,9 @@ enum status partition_nodes(const struct cells *cells, const struct cell_stars *
     }
     for (int32_t k = 0; k < parts; k++) {
         if (own[k] == 0) {
-            TRY(fail(error, STATUS_INPUT, "part %d of %d would have no nodes: ask for fewer parts", k,
-                     parts));
+            return fail(error, STATUS_INPUT, "part %d of %d would have no nodes: ask for fewer parts", k,
+                        parts);
         }
     }
-done:
-    graph_free(&graph);
-    FREE_ALL(own, part);
-    return status;
+    return STATUS_OK;
 }

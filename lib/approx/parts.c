@@ -12,12 +12,11 @@
 static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
                                 int32_t *count, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct placed *parts = NULL; /* by the negative of their size */
-    int32_t *place = NULL;       /* of a root: its place among the parts, then its number */
+    SCRATCH struct placed *parts = NULL; /* by the negative of their size */
+    SCRATCH int32_t *place = NULL;       /* of a root: its place among the parts, then its number */
     *count = 0;
-    TRY(NEW_ARRAY(&parts, items, error));
-    TRY(NEW_ARRAY(&place, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&parts, items, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, items, error));
     for (int64_t i = 0; i < items; i++) {
         int32_t root = set_first(parent, (int32_t)i);
         if (root == i) {
@@ -33,9 +32,7 @@ static enum status number_parts(int64_t items, int32_t parent[], const double si
     for (int64_t i = 0; i < items; i++) {
         part[i] = place[set_first(parent, (int32_t)i)];
     }
-done:
-    FREE_ALL(parts, place);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status parts_begin(int64_t items, int32_t **parent, double **size, struct error *error)
@@ -50,12 +47,11 @@ static enum status parts_begin(int64_t items, int32_t **parent, double **size, s
 
 enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
 {
-    enum status status;
-    struct faces faces = {0};
-    int32_t *parent = NULL;
-    double *volume = NULL;
-    TRY(parts_begin(cells->count, &parent, &volume, error));
-    TRY(faces_build(cells, false, &faces, error));
+    FREED_BY(faces_free) struct faces faces = {0};
+    SCRATCH int32_t *parent = NULL;
+    SCRATCH double *volume = NULL;
+    RETURN_IF_ERROR(parts_begin(cells->count, &parent, &volume, error));
+    RETURN_IF_ERROR(faces_build(cells, false, &faces, error));
     for (int64_t f = 0; f < faces.count; f++) {
         if (faces.cell[2 * f + 1] >= 0) {
             set_join(parent, faces.cell[2 * f], faces.cell[2 * f + 1]);
@@ -64,11 +60,7 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     for (int64_t c = 0; c < cells->count; c++) {
         volume[c] = cell_volume(cells, c);
     }
-    TRY(number_parts(cells->count, parent, volume, part, count, error));
-done:
-    faces_free(&faces);
-    FREE_ALL(parent, volume);
-    return status;
+    return number_parts(cells->count, parent, volume, part, count, error);
 }
 
 /* ---- sides ---- */
@@ -105,17 +97,16 @@ int64_t ridges_end(int64_t count, const struct ridge *ridge, int64_t first)
 enum status boundary_sides(const double *x, const struct faces *boundary, double degrees, int32_t *part,
                            int32_t *count, struct error *error)
 {
-    enum status status;
     int dim = boundary->dim;
     int64_t ridge_count = boundary->count * dim;
     double least = cos(degrees * acos(-1) / 180) - 1e-12;
-    struct ridge *ridges = NULL;
-    int32_t *parent = NULL;
-    double *area = NULL;
-    double *normal = NULL;
-    TRY(parts_begin(boundary->count, &parent, &area, error));
-    TRY(NEW_ARRAY(&normal, boundary->count * dim, error));
-    TRY(NEW_ARRAY(&ridges, ridge_count, error));
+    SCRATCH struct ridge *ridges = NULL;
+    SCRATCH int32_t *parent = NULL;
+    SCRATCH double *area = NULL;
+    SCRATCH double *normal = NULL;
+    RETURN_IF_ERROR(parts_begin(boundary->count, &parent, &area, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&normal, boundary->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ridges, ridge_count, error));
     for (int64_t f = 0; f < boundary->count; f++) {
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
         area[f] = vector_length(dim, normal + f * dim);
@@ -130,10 +121,7 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
             set_join(parent, a, b);
         }
     }
-    TRY(number_parts(boundary->count, parent, area, part, count, error));
-done:
-    FREE_ALL(parent, area, normal, ridges);
-    return status;
+    return number_parts(boundary->count, parent, area, part, count, error);
 }
 
 /* ---- rings ---- */
@@ -172,7 +160,7 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
                         int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,
                         struct error *error)
 {
-    bool *other;
+    SCRATCH bool *other = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
     bool *items = of_items ? chosen : other, *nodes = of_items ? other : chosen;
     if (rings < 0) {
@@ -191,6 +179,5 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
     if (rings < 0) {
         invert(of_items ? count : node_count, chosen);
     }
-    free(other);
     return STATUS_OK;
 }

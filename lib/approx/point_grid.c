@@ -101,9 +101,8 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
 enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
                              const double *radius, struct error *error)
 {
-    enum status status;
-    uint8_t *level_of_node = NULL;
-    int32_t *bin = NULL;
+    SCRATCH uint8_t *level_of_node = NULL;
+    SCRATCH int32_t *bin = NULL;
     double least = INFINITY;
     *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
@@ -113,8 +112,8 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
         least = fmin(least, radius[n]);
     }
-    TRY(NEW_ARRAY(&level_of_node, node_count, error));
-    TRY(NEW_ARRAY(&bin, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level_of_node, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bin, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         level_of_node[n] = (uint8_t)level_of(radius[n], least);
         if (level_of_node[n] >= grid->level_count) {
@@ -122,14 +121,15 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
     }
     for (int l = 0; l < grid->level_count; l++) {
-        TRY(build_level(grid, l, level_of_node, bin, error));
+        RETURN_IF_ERROR(build_level(grid, l, level_of_node, bin, error));
     }
-done:
-    FREE_ALL(level_of_node, bin);
-    if (status != STATUS_OK) {
-        point_grid_free(grid);
-    }
-    return status;
+    return STATUS_OK;
+}
+
+void index_list_free(struct index_list *list)
+{
+    free(list->index);
+    *list = (struct index_list){0};
 }
 
 void point_grid_free(struct point_grid *grid)
@@ -177,14 +177,13 @@ static void file_bins(const struct point_grid_level *level, int dim, int32_t slo
 
 enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
 {
-    enum status status = STATUS_OK;
-    int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
+    SCRATCH int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
     for (int l = 0; l < grid->level_count; l++) {
         struct point_grid_level *level = &grid->level[l];
         int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
         free(slot);
-        TRY(NEW_ARRAY(&slot, grid->node_count, error));
-        TRY(NEW_ARRAY(&level->touch_start, bins + 2, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&slot, grid->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch_start, bins + 2, error));
         for (int32_t i = 0; level->start != NULL && i < level->start[bins]; i++) {
             slot[level->node[i]] = i + 1;
             file_bins(level, grid->dim, i, level->touch_start, NULL);
@@ -192,16 +191,14 @@ enum status point_grid_list_touching(struct point_grid *grid, struct error *erro
         for (int64_t b = 0; b < bins; b++) {
             level->touch_start[b + 2] += level->touch_start[b + 1];
         }
-        TRY(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
         for (int64_t n = 0; n < grid->node_count; n++) {
             if (slot[n] > 0) {
                 file_bins(level, grid->dim, slot[n] - 1, level->touch_start, level->touch);
             }
         }
     }
-done:
-    free(slot);
-    return status;
+    return STATUS_OK;
 }
 
 enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)

@@ -45,6 +45,7 @@ struct index_list {
     int32_t *index;
     int64_t count, capacity;
 };
+void index_list_free(struct index_list *list);
 
 /* Append to `list` the nodes j with |x - x_j| < factor R_j, in ascending order. */
 MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,

@@ -96,16 +96,16 @@ static bool is_of_facet(int dim, const struct reach_facet *facet, int32_t node)
  */
 static enum status list_shadows(struct reach *reach, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct index_list near = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
     int dim = reach->cells.dim;
-    TRY(NEW_ARRAY(&reach->shadowed, reach->cells.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->shadowed, reach->cells.node_count, error));
     for (int64_t f = 0; f < reach->facet_count; f++) {
         const struct reach_facet *facet = &reach->facet[f];
         struct box box = box_of_nodes(dim, reach->cells.x, facet->node, dim);
         near.count = 0;
-        TRY(point_grid_query_box(reach->grid, box.low, box.high, 1.0, &near, error));
-        TRY(GROW_ARRAY(&reach->shadow, reach->shadow_count + near.count, &reach->shadow_capacity, error));
+        RETURN_IF_ERROR(point_grid_query_box(reach->grid, box.low, box.high, 1.0, &near, error));
+        RETURN_IF_ERROR(
+            GROW_ARRAY(&reach->shadow, reach->shadow_count + near.count, &reach->shadow_capacity, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t node = near.index[i];
             const double *x = reach->cells.x + (int64_t)node * dim;
@@ -118,9 +118,7 @@ static enum status list_shadows(struct reach *reach, struct error *error)
             }
         }
     }
-done:
-    free(near.index);
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether the cells at a node hang together by faces at it. */
@@ -175,13 +173,12 @@ static bool is_reentrant(const struct reach *reach, const struct ridge *first, c
 static enum status find_corners(const struct faces *faces, struct reach *reach, struct reach_work *work,
                                 struct error *error)
 {
-    enum status status;
-    struct pair_list edges = {0};
-    struct ridge *ridges = NULL;
+    FREED_BY(pair_list_free) struct pair_list edges = {0};
+    SCRATCH struct ridge *ridges = NULL;
     int dim = reach->cells.dim;
     int64_t count = faces->count * dim;
-    TRY(NEW_ARRAY(&ridges, count, error));
-    TRY(NEW_ARRAY(&reach->corner, reach->cells.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ridges, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->corner, reach->cells.node_count, error));
     ridges_list(dim, faces->count, faces->node, ridges);
     for (int64_t i = 0, end; i < count; i = end) {
         end = ridges_end(count, ridges, i);
@@ -192,33 +189,29 @@ static enum status find_corners(const struct faces *faces, struct reach *reach, 
         reach->corner[a] = true;
         if (b >= 0) {
             reach->corner[b] = true;
-            TRY(pair_list_reserve(&edges, 2, error));
+            RETURN_IF_ERROR(pair_list_reserve(&edges, 2, error));
             pair_list_add(&edges, a, b);
             pair_list_add(&edges, b, a);
         }
     }
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         if (reach->corner[n]) {
-            TRY(hangs_together(reach, (int32_t)n, work, &reach->corner[n], error));
+            RETURN_IF_ERROR(hangs_together(reach, (int32_t)n, work, &reach->corner[n], error));
         }
     }
-    TRY(pair_list_file(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error));
-done:
-    free(ridges);
-    pair_list_free(&edges);
-    return status;
+    return pair_list_file(&edges, reach->cells.node_count, &reach->edge_ptr, &reach->edge, error);
 }
 
 /* What each node sees and does not see of the others. */
 static enum status file_views(struct reach *reach, struct reach_work *work, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct pair_list seen = {0}, hidden = {0};
-    struct reach_shadows shadows = {0};
-    struct index_list near = {0};
+    FREED_BY(pair_list_free) struct pair_list seen = {0}, hidden = {0};
+    FREED_BY(reach_shadows_free) struct reach_shadows shadows = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
     int dim = reach->cells.dim;
     const struct reach_places nodes = {.nodes = true};
-    TRY(reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, NULL, 0, &shadows, error));
+    RETURN_IF_ERROR(
+        reach_shadows_build(reach, reach->cells.node_count, reach->cells.x, NULL, 0, &shadows, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         const double *x = reach->cells.x + n * dim;
         int64_t unused;
@@ -226,11 +219,11 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
             continue;
         }
         near.count = 0;
-        TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
-        TRY(reach_begin(reach, &nodes, n, x, work, error));
-        TRY(reach_mark_shadows(reach, &shadows, n, work, &unused, error));
-        TRY(pair_list_reserve(&seen, near.count, error));
-        TRY(pair_list_reserve(&hidden, near.count, error));
+        RETURN_IF_ERROR(point_grid_query(reach->grid, x, 1.0, &near, error));
+        RETURN_IF_ERROR(reach_begin(reach, &nodes, n, x, work, error));
+        RETURN_IF_ERROR(reach_mark_shadows(reach, &shadows, n, work, &unused, error));
+        RETURN_IF_ERROR(pair_list_reserve(&seen, near.count, error));
+        RETURN_IF_ERROR(pair_list_reserve(&hidden, near.count, error));
         for (int64_t i = 0; i < near.count; i++) {
             if (reach_is_hidden(work, near.index[i])) {
                 pair_list_add(&hidden, (int32_t)n, near.index[i]);
@@ -239,56 +232,38 @@ static enum status file_views(struct reach *reach, struct reach_work *work, stru
             }
         }
     }
-    TRY(pair_list_file(&hidden, reach->cells.node_count, &reach->hidden_ptr, &reach->hidden, error));
-    TRY(pair_list_file(&seen, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
-    TRY(NEW_ARRAY(&reach->seen_length, seen.count, error));
+    RETURN_IF_ERROR(
+        pair_list_file(&hidden, reach->cells.node_count, &reach->hidden_ptr, &reach->hidden, error));
+    RETURN_IF_ERROR(pair_list_file(&seen, reach->cells.node_count, &reach->seen_ptr, &reach->seen, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->seen_length, seen.count, error));
     for (int64_t n = 0; n < reach->cells.node_count; n++) {
         for (int64_t i = reach->seen_ptr[n]; i < reach->seen_ptr[n + 1]; i++) {
             reach->seen_length[i] = vector_distance(dim, reach->cells.x + (int64_t)reach->seen[i] * dim,
                                                     reach->cells.x + n * dim);
         }
     }
-done:
-    reach_shadows_free(&shadows);
-    pair_list_free(&seen);
-    pair_list_free(&hidden);
-    free(near.index);
-    return status;
+    return STATUS_OK;
 }
 
 enum status reach_build_cells(const struct cells *cells, struct reach *reach, struct error *error)
 {
-    enum status status;
     *reach = (struct reach){.cells = *cells};
-    TRY(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
-    TRY(cells_across(cells, reach->across, error));
-    TRY(lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &reach->star_ptr,
-                     &reach->star, error));
-done:
-    if (status != STATUS_OK) {
-        reach_free(reach);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&reach->across, cells->count * (cells->dim + 1), error));
+    RETURN_IF_ERROR(cells_across(cells, reach->across, error));
+    return lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &reach->star_ptr,
+                        &reach->star, error);
 }
 
 enum status reach_build(const struct cells *cells, const struct point_grid *grid, struct reach *reach,
                         struct error *error)
 {
-    enum status status;
-    struct faces faces = {0};
-    struct reach_work work = {0};
-    TRY(reach_build_cells(cells, reach, error));
+    FREED_BY(faces_free) struct faces faces = {0};
+    FREED_BY(reach_work_free) struct reach_work work = {0};
+    RETURN_IF_ERROR(reach_build_cells(cells, reach, error));
     reach->grid = grid;
-    TRY(faces_build(cells, true, &faces, error));
-    TRY(set_facets(&faces, reach, error));
-    TRY(list_shadows(reach, error));
-    TRY(find_corners(&faces, reach, &work, error));
-    TRY(file_views(reach, &work, error));
-done:
-    faces_free(&faces);
-    reach_work_free(&work);
-    if (status != STATUS_OK) {
-        reach_free(reach);
-    }
-    return status;
+    RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
+    RETURN_IF_ERROR(set_facets(&faces, reach, error));
+    RETURN_IF_ERROR(list_shadows(reach, error));
+    RETURN_IF_ERROR(find_corners(&faces, reach, &work, error));
+    return file_views(reach, &work, error);
 }

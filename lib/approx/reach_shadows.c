@@ -179,9 +179,6 @@ done:
     free(size);
     point_grid_free(&points.grid);
     pair_list_free(&pairs);
-    if (status != STATUS_OK) {
-        reach_shadows_free(shadows);
-    }
     return status;
 }
 

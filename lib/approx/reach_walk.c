@@ -148,13 +148,12 @@ static double pull_into(const struct cells *cells, int64_t cell, const double *x
 enum status reach_locate(const struct reach *reach, const double *x, struct reach_work *work,
                          struct error *error)
 {
-    enum status status;
-    struct index_list near = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
     double least[4], nearest = INFINITY, pulled[3];
     work->own.count = 0;
     work->outside = false;
-    TRY(point_grid_query(reach->grid, x, 1.0, &near, error));
-    TRY(index_list_reserve(&work->own, 1, error));
+    RETURN_IF_ERROR(point_grid_query(reach->grid, x, 1.0, &near, error));
+    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
     for (int64_t i = 0; i < near.count; i++) {
         for (int64_t s = reach->star_ptr[near.index[i]]; s < reach->star_ptr[near.index[i] + 1]; s++) {
             int32_t cell = reach->star[s];
@@ -163,7 +162,7 @@ enum status reach_locate(const struct reach *reach, const double *x, struct reac
                 work->outside = false;
                 nearest = 0.0;
                 if (!contains(&work->own, cell)) {
-                    TRY(index_list_reserve(&work->own, 1, error));
+                    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
                     work->own.index[work->own.count++] = cell;
                 }
             } else if (nearest > 0.0 && pull_into(&reach->cells, cell, x, pulled) < nearest) {
@@ -179,7 +178,5 @@ enum status reach_locate(const struct reach *reach, const double *x, struct reac
     }
     work->cell = work->own.index;
     work->cell_count = work->own.count;
-done:
-    free(near.index);
-    return status;
+    return STATUS_OK;
 }

@@ -23,11 +23,10 @@ struct nearest {
 
 enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
 {
-    enum status status;
     int dim = fit->dim;
     double extent = 0.0;
-    TRY(NEW_ARRAY(&fit->x, fit->count * dim, error));
-    TRY(NEW_ARRAY(&fit->radius, fit->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->x, fit->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->radius, fit->count, error));
     for (int64_t i = 0; i < fit->count; i++) {
         for (int a = 0; a < dim; a++) {
             fit->x[i * dim + a] = fit->row[i * fit->row_size + a];
@@ -37,17 +36,12 @@ enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
     /* A start only: the search widens it. */
     double radius = extent > 0.0 ? 2.0 * extent / pow((double)fit->count, 1.0 / dim) : 1.0;
     if (!(radius < 1e150)) {
-        TRY(fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart"));
+        return fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart");
     }
     for (int64_t i = 0; i < fit->count; i++) {
         fit->radius[i] = radius;
     }
-    TRY(point_grid_build(&fit->grid, dim, fit->count, fit->x, fit->radius, error));
-done:
-    if (status != STATUS_OK) {
-        scattered_fit_free(fit);
-    }
-    return status;
+    return point_grid_build(&fit->grid, dim, fit->count, fit->x, fit->radius, error);
 }
 
 void scattered_fit_free(struct scattered_fit *fit)
@@ -92,18 +86,17 @@ static int64_t count_usable(const struct scattered_fit *fit, const struct index_
 static enum status find_nearest(const struct scattered_fit *fit, const double *x, struct nearest *nearest,
                                 struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = fit->dim;
     int64_t most = dim == 2 ? 12 : MOST_NEIGHBOURS, wanted = fit->count < most ? fit->count : most;
     double at[3] = {0.0, 0.0, 0.0};
-    struct index_list near = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
     for (int a = 0; a < dim; a++) {
         at[a] = x[a] / fit->unit;
     }
     for (double factor = 1.0;
          count_usable(fit, &near) < wanted && near.count < fit->count && factor < 0x1p500; factor *= 2.0) {
         near.count = 0;
-        TRY(point_grid_query(&fit->grid, at, factor, &near, error));
+        RETURN_IF_ERROR(point_grid_query(&fit->grid, at, factor, &near, error));
     }
     nearest->count = 0;
     for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
@@ -113,11 +106,9 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
         }
     }
     if (near.count < wanted) {
-        status = fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
+        return fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
     }
-done:
-    free(near.index);
-    return status;
+    return STATUS_OK;
 }
 
 /* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 /
@@ -143,24 +134,22 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
 {
-    enum status status = STATUS_OK;
     if (fit->ways != NULL) {
         ways_begin(fit->ways, from);
     }
     for (bool settled = false; !settled;) {
         settled = true;
-        TRY(find_nearest(fit, x, nearest, error));
+        RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
         for (int64_t i = 0; fit->ways != NULL && i < nearest->count; i++) {
             bool reached;
-            TRY(ways_reach(fit->ways, nearest->row[i], &reached, error));
+            RETURN_IF_ERROR(ways_reach(fit->ways, nearest->row[i], &reached, error));
             settled = settled && reached;
         }
     }
     if (nearest->count == 0) {
-        status = fail(error, STATUS_INPUT, "none of its points is within reach through the cells");
+        return fail(error, STATUS_INPUT, "none of its points is within reach through the cells");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void monomials(int dim, const double *xi, double *p)
@@ -296,24 +285,23 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
 static enum status weights_of(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
                               double *phi, struct error *error)
 {
-    enum status status;
     size_t linear_columns = (size_t)(1 + fit->dim);
     size_t quadratic_columns = (size_t)(fit->dim * (fit->dim + 1) / 2);
     size_t rows = (size_t)nearest->count;
-    struct part linear = {0}, quadratic = {0};
+    FREED_BY(part_free) struct part linear = {0}, quadratic = {0};
     double root[MOST_NEIGHBOURS], value[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS];
     double beyond[MOST_MONOMIALS] = {0.0}, moment[MOST_NEIGHBOURS * MOST_MONOMIALS];
-    TRY(part_allocate(&linear, rows, linear_columns, error));
-    TRY(part_allocate(&quadratic, rows, quadratic_columns, error));
+    RETURN_IF_ERROR(part_allocate(&linear, rows, linear_columns, error));
+    RETURN_IF_ERROR(part_allocate(&quadratic, rows, quadratic_columns, error));
     fill_columns(fit, x, nearest, root, linear.U, quadratic.U, at_x);
     for (size_t i = 0; i < rows; i++) {
         for (size_t k = 0; k < quadratic_columns; k++) {
             moment[i * quadratic_columns + k] = gsl_matrix_get(quadratic.U, i, k);
         }
     }
-    TRY(part_decompose(&linear, 0.0, error));
+    RETURN_IF_ERROR(part_decompose(&linear, 0.0, error));
     orthogonalise(&linear, nearest->count, quadratic.U);
-    TRY(part_decompose(&quadratic, gsl_vector_get(linear.s, 0), error));
+    RETURN_IF_ERROR(part_decompose(&quadratic, gsl_vector_get(linear.s, 0), error));
     /* p_l c_l + p_q c_q with c_l = L^+ (b - Q c_q), c_q = Q'^+ b. */
     add_inverse(&linear, at_x, nearest->count, value);
     for (size_t k = 0; k < quadratic_columns; k++) {
@@ -326,10 +314,7 @@ static enum status weights_of(const struct scattered_fit *fit, const double *x, 
     for (int64_t i = 0; i < nearest->count; i++) {
         phi[i] = value[i] * root[i];
     }
-done:
-    part_free(&linear);
-    part_free(&quadratic);
-    return status;
+    return STATUS_OK;
 }
 
 enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,

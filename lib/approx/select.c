@@ -101,27 +101,23 @@ static void circumscribe(const struct pieces *pieces, double reach, double *cent
 enum status items_near(const struct items *items, const struct pieces *pieces, double reach, bool *chosen,
                        struct error *error)
 {
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list candidates = {0};
-    double *centre = NULL;
-    double *radius = NULL;
-    TRY(NEW_ARRAY(&centre, pieces->count * pieces->dim, error));
-    TRY(NEW_ARRAY(&radius, pieces->count, error));
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list candidates = {0};
+    SCRATCH double *centre = NULL;
+    SCRATCH double *radius = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&centre, pieces->count * pieces->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, pieces->count, error));
     circumscribe(pieces, reach, centre, radius);
-    TRY(point_grid_build(&grid, pieces->dim, pieces->count, centre, radius, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, pieces->dim, pieces->count, centre, radius, error));
     for (int64_t i = 0; i < items->count; i++) {
         double point[3];
         item_centre(items, i, point);
         candidates.count = 0;
         chosen[i] = false;
-        TRY(point_grid_query(&grid, point, 1, &candidates, error));
+        RETURN_IF_ERROR(point_grid_query(&grid, point, 1, &candidates, error));
         for (int64_t k = 0; k < candidates.count && !chosen[i]; k++) {
             chosen[i] = piece_distance(pieces, candidates.index[k], point) <= reach;
         }
     }
-done:
-    point_grid_free(&grid);
-    FREE_ALL(candidates.index, centre, radius);
-    return status;
+    return STATUS_OK;
 }

@@ -188,12 +188,11 @@ static int64_t merge_row(const struct neighbours *lists, const struct faces *fac
 static enum status average_rows(const struct tabulation *table, const struct faces *faces, int64_t first,
                                 int64_t last, struct face_averages *averages, struct error *error)
 {
-    enum status status;
     const int64_t *ptr = table->lists->ptr;
     int64_t point = face_row_point(faces, first), pair = ptr[point];
-    double *phi = NULL;
-    TRY(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
-    TRY(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
+    SCRATCH double *phi = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
+    RETURN_IF_ERROR(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
     for (int64_t r = first; r < last; r++) {
         int64_t at = averages->ptr[r];
         (void)merge_row(table->lists, faces, r, phi + (ptr[face_row_point(faces, r)] - pair),
@@ -204,9 +203,7 @@ static enum status average_rows(const struct tabulation *table, const struct fac
         memcpy(averages->boundary_phi + pair, phi,
                (size_t)(ptr[face_row_point(faces, end)] - pair) * sizeof *phi);
     }
-done:
-    free(phi);
-    return status;
+    return STATUS_OK;
 }
 
 enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
@@ -214,12 +211,11 @@ enum status shape_average_faces(const struct mls *mls, const double *nodes, cons
                                 const struct faces *faces, struct face_averages *averages,
                                 struct error *error)
 {
-    enum status status;
     const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
     const int64_t chunk = chunk_points / OWN_POINTS(faces->dim), count = faces->row_count;
     struct failure failure = {0, STATUS_OK};
     *averages = (struct face_averages){.count = count};
-    TRY(NEW_ARRAY(&averages->ptr, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->ptr, count + 1, error));
 #pragma omp parallel for schedule(static)
     for (int64_t r = 0; r < count; r++) {
         averages->ptr[r + 1] = merge_row(neighbours, faces, r, NULL, NULL, NULL);
@@ -227,22 +223,17 @@ enum status shape_average_faces(const struct mls *mls, const double *nodes, cons
     for (int64_t r = 0; r < count; r++) {
         averages->ptr[r + 1] += averages->ptr[r];
     }
-    TRY(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
-    TRY(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
-    TRY(NEW_ARRAY(&averages->boundary_phi, neighbours->ptr[face_row_point(faces, faces->boundary_count)],
-                  error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->boundary_phi,
+                              neighbours->ptr[face_row_point(faces, faces->boundary_count)], error));
 #pragma omp parallel for schedule(dynamic, 1)
     for (int64_t first = 0; first < count; first += chunk) {
         struct error own;
         int64_t last = first + chunk < count ? first + chunk : count;
         note_failure(&failure, first, average_rows(&table, faces, first, last, averages, &own), &own, error);
     }
-    status = failure.status;
-done:
-    if (status != STATUS_OK) {
-        face_averages_free(averages);
-    }
-    return status;
+    return failure.status;
 }
 
 void face_averages_free(struct face_averages *averages)

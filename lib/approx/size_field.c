@@ -62,10 +62,9 @@ static double equal_error(const struct cells *cells, const double *squared, cons
 static enum status node_sizes(const struct cells *cells, const double *squared, const double *spacing,
                               const struct size_field_request *request, double *size, struct error *error)
 {
-    enum status status;
     double equal = equal_error(cells, squared, spacing, request);
-    int64_t *count = NULL;
-    TRY(NEW_ARRAY(&count, cells->node_count, error));
+    SCRATCH int64_t *count = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&count, cells->node_count, error));
     for (int64_t q = 0; q < cells->count; q++) {
         double now = cell_size(cells, spacing, q);
         double factor = cell_factor(cells, squared[q], now, equal, request->least);
@@ -77,13 +76,11 @@ static enum status node_sizes(const struct cells *cells, const double *squared, 
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         if (count[n] == 0) {
-            TRY(fail(error, STATUS_INPUT, "node %lld belongs to no cell", (long long)n));
+            return fail(error, STATUS_INPUT, "node %lld belongs to no cell", (long long)n);
         }
         size[n] = spacing[n] * exp(size[n] / (double)count[n]);
     }
-done:
-    free(count);
-    return status;
+    return STATUS_OK;
 }
 
 /* No larger sizes on the boundary than there are: what its shape needs the errors do not tell. */
@@ -220,17 +217,16 @@ enum status size_field_build(const struct cells *cells, const double *squared,
                              const struct size_field_request *request, struct size_field *field,
                              struct error *error)
 {
-    enum status status;
-    double *spacing = NULL, *normal = NULL, *angle = NULL;
+    SCRATCH double *spacing = NULL, *normal = NULL, *angle = NULL;
     *field = (struct size_field){0};
-    TRY(NEW_ARRAY(&spacing, cells->node_count, error));
-    TRY(NEW_ARRAY(&normal, cells->node_count * cells->dim, error));
-    TRY(NEW_ARRAY(&angle, cells->node_count, error));
-    TRY(NEW_ARRAY(&field->size, cells->node_count, error));
-    TRY(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
-    TRY(faces_build(cells, true, &field->boundary, error));
-    TRY(cells_node_spacing(cells, spacing, error));
-    TRY(node_sizes(cells, squared, spacing, request, field->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&normal, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&angle, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&field->size, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(faces_build(cells, true, &field->boundary, error));
+    RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(node_sizes(cells, squared, spacing, request, field->size, error));
     boundary_normals(cells, &field->boundary, normal);
     move_outward(cells, normal, spacing, field->outer);
     keep_boundary(&field->boundary, spacing, field->size);
@@ -250,9 +246,7 @@ enum status size_field_build(const struct cells *cells, const double *squared,
         }
         field->nodes = request->most_nodes;
     }
-done:
-    FREE_ALL(spacing, normal, angle);
-    return status;
+    return STATUS_OK;
 }
 
 void size_field_free(struct size_field *field)

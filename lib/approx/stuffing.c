@@ -55,19 +55,8 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     }
 }
 
-/* Whether a cell is inverted or of no volume. */
-static bool is_spoilt(const struct stuffing *stuffing)
-{
-    for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        if (!(stuffing_score(stuffing, c) > 0)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static enum status make(const struct labels *labels, const struct stuffing_options *options,
-                        struct stuffing *stuffing, struct error *error)
+enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
+                          struct stuffing *stuffing, struct error *error)
 {
     struct lattice lattice;
     bool *between = NULL;
@@ -91,21 +80,6 @@ done:
     free(between);
     if (status != STATUS_OK) {
         stuffing_free(stuffing);
-    }
-    return status;
-}
-
-enum status stuffing_make(const struct labels *labels, const struct stuffing_options *options,
-                          struct stuffing *stuffing, struct error *error)
-{
-    struct stuffing_options everywhere = *options;
-    enum status status = make(labels, options, stuffing, error);
-    everywhere.fine = NULL;
-    /* Cells are sound where no interface passes leaves of two sizes. */
-    if (status == STATUS_OK && options->fine != NULL && is_spoilt(stuffing)) {
-        struct stuffing spoilt = *stuffing;
-        status = make(labels, &everywhere, stuffing, error);
-        stuffing_free(&spoilt);
     }
     return status;
 }

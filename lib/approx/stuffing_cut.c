@@ -218,8 +218,5 @@ enum status lattice_cells(const struct lattice *lattice, struct stuffing *stuffi
 done:
     FREE_ALL(cutting.x, cutting.cut_node, cutting.cut_edge, cutting.second);
     *between = cutting.between;
-    if (status != STATUS_OK) {
-        stuffing_free(stuffing);
-    }
     return status;
 }

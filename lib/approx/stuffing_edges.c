@@ -42,10 +42,9 @@ static int64_t collect(const struct lattice *lattice, uint64_t *key)
 
 static enum status find_edges(struct lattice *lattice, struct error *error)
 {
-    enum status status;
-    uint64_t *key = NULL;
+    SCRATCH uint64_t *key = NULL;
     int64_t count = collect(lattice, NULL);
-    TRY(NEW_ARRAY(&key, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&key, count, error));
     collect(lattice, key);
     qsort(key, (size_t)count, sizeof *key, compare_keys);
     for (int64_t i = 0; i < count; i++) {
@@ -53,18 +52,15 @@ static enum status find_edges(struct lattice *lattice, struct error *error)
             key[lattice->edge_count++] = key[i];
         }
     }
-    TRY(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));
-    TRY(NEW_ARRAY(&lattice->cut, lattice->edge_count, error));
-    TRY(NEW_ARRAY(&lattice->on, lattice->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->cut, lattice->edge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lattice->on, lattice->node_count, error));
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         lattice->end[2 * e] = (int32_t)(key[e] >> 32);
         lattice->end[2 * e + 1] = (int32_t)(key[e] & UINT32_MAX);
     }
-    TRY(lists_by_row(lattice->edge_count, 2, lattice->end, lattice->node_count, &lattice->edge_ptr,
-                     &lattice->edge_idx, error));
-done:
-    free(key);
-    return status;
+    return lists_by_row(lattice->edge_count, 2, lattice->end, lattice->node_count, &lattice->edge_ptr,
+                        &lattice->edge_idx, error);
 }
 
 int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q)

@@ -18,7 +18,7 @@ static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
 static const double separation = 0.25, most_separation = 0.5;
 enum { FIT_SWEEPS = 4 };
 
-double stuffing_score(const struct stuffing *stuffing, int64_t cell)
+static double stuffing_score(const struct stuffing *stuffing, int64_t cell)
 {
     int dim = stuffing->dim;
     const double *x[4];

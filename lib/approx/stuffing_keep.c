@@ -25,13 +25,12 @@ static void add_label(struct stuffing_star *star, int64_t node, int32_t label)
 enum status star_make(const struct stuffing *stuffing, const bool *wanted, const int32_t *whole,
                       struct stuffing_star *star, struct error *error)
 {
-    enum status status;
     int corners = stuffing->dim + 1;
     *star = (struct stuffing_star){0};
-    TRY(lists_by_row(stuffing->cell_count, corners, stuffing->cell, stuffing->node_count, &star->ptr,
-                     &star->cell, error));
-    TRY(NEW_ARRAY(&star->label, stuffing->node_count, error));
-    TRY(NEW_ARRAY(&star->labels, stuffing->node_count, error));
+    RETURN_IF_ERROR(lists_by_row(stuffing->cell_count, corners, stuffing->cell, stuffing->node_count,
+                                 &star->ptr, &star->cell, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&star->label, stuffing->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&star->labels, stuffing->node_count, error));
     for (int64_t i = 0; i < stuffing->cell_count * corners; i++) {
         int32_t label = stuffing->label[i / corners];
         if (wanted == NULL || wanted[i / corners]) {
@@ -42,11 +41,7 @@ enum status star_make(const struct stuffing *stuffing, const bool *wanted, const
         int32_t label = stuffing->side[2 * (i / stuffing->dim) + 1];
         add_label(star, stuffing->facet[i], whole != NULL ? whole[label] : label);
     }
-done:
-    if (status != STATUS_OK) {
-        star_free(star);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void star_free(struct stuffing_star *star)
@@ -83,7 +78,7 @@ enum status stuffing_compact(struct stuffing *stuffing, struct error *error)
 {
     int dim = stuffing->dim, corners = dim + 1;
     int64_t slots = stuffing->cell_count * corners, nodes = 0;
-    int32_t *number = NULL;
+    SCRATCH int32_t *number = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&number, stuffing->node_count, error));
     for (int64_t i = 0; i < slots; i++) {
         number[stuffing->cell[i]] = 1;
@@ -101,7 +96,6 @@ enum status stuffing_compact(struct stuffing *stuffing, struct error *error)
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         stuffing->facet[i] = number[stuffing->facet[i]];
     }
-    free(number);
     return STATUS_OK;
 }
 

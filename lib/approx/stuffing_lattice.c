@@ -199,14 +199,13 @@ static void find_inside(const struct points *points, const int64_t cubes[3], boo
 
 static enum status add_tetrahedra(struct points *points, const struct stuffing_options *options)
 {
-    enum status status;
-    bool *marked = NULL;
-    uint8_t *wish = NULL;
-    struct octree octree = {0};
+    SCRATCH bool *marked = NULL;
+    SCRATCH uint8_t *wish = NULL;
+    FREED_BY(octree_free) struct octree octree = {0};
     const int64_t cubes[3] = {points->count[0] - 1, points->count[1] - 1, points->count[2] - 1};
     int64_t total = cubes[0] * cubes[1] * cubes[2];
-    TRY(NEW_ARRAY(&marked, total, points->error));
-    TRY(NEW_ARRAY(&wish, total, points->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&marked, total, points->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wish, total, points->error));
     if (points->fine > 0) {
         find_wanted(points, options->fine, cubes, marked);
         for (int64_t c = 0; c < total; c++) {
@@ -217,18 +216,14 @@ static enum status add_tetrahedra(struct points *points, const struct stuffing_o
         const double first[3] = {points->low[0] + points->spacing / 2, points->low[1] + points->spacing / 2,
                                  points->low[2] + points->spacing / 2};
         find_inside(points, cubes, marked);
-        TRY(sizes_wish(options, points->levels, cubes, first, points->spacing, marked, wish,
-                       &points->lattice->unsized, points->error));
+        RETURN_IF_ERROR(sizes_wish(options, points->levels, cubes, first, points->spacing, marked, wish,
+                                   &points->lattice->unsized, points->error));
     }
-    TRY(octree_make(points->levels, cubes, wish, &octree, points->error));
+    RETURN_IF_ERROR(octree_make(points->levels, cubes, wish, &octree, points->error));
     points->marking = true;
-    TRY(octree_cells(&octree, add_tetrahedron, points));
+    RETURN_IF_ERROR(octree_cells(&octree, add_tetrahedron, points));
     points->marking = false;
-    TRY(octree_cells(&octree, add_tetrahedron, points));
-done:
-    octree_free(&octree);
-    FREE_ALL(marked, wish);
-    return status;
+    return octree_cells(&octree, add_tetrahedron, points);
 }
 
 /* Number the points of cells. */
@@ -305,9 +300,6 @@ enum status lattice_make(const struct labels *labels, const struct stuffing_opti
     TRY(make_nodes(&points, error));
 done:
     FREE_ALL(points.label, points.near, points.node);
-    if (status != STATUS_OK) {
-        lattice_free(lattice);
-    }
     return status;
 }
 

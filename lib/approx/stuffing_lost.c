@@ -68,18 +68,17 @@ static bool is_near(const struct grid *grid, const struct stuffing *stuffing, co
 enum status stuffing_lost(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
                           int64_t *lost, struct error *error)
 {
-    enum status status;
     struct grid grid = grid_of(labels);
     int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2], doubly;
     int dim = labels->dim;
-    double *x = NULL;
-    int32_t *owner = NULL;
+    SCRATCH double *x = NULL;
+    SCRATCH int32_t *owner = NULL;
     struct cells cells = {dim, stuffing->node_count, NULL, stuffing->cell_count, stuffing->cell};
     for (int32_t l = 0; l < labels->count; l++) {
         lost[l] = 0;
     }
-    TRY(NEW_ARRAY(&x, stuffing->node_count * dim, error));
-    TRY(NEW_ARRAY(&owner, voxels, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, stuffing->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&owner, voxels, error));
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double voxel[3];
         labels_to_voxel(labels, stuffing->x + n * dim, voxel);
@@ -95,7 +94,5 @@ enum status stuffing_lost(const struct labels *labels, const bool *keep, const s
             lost[label] += !is_near(&grid, stuffing, owner, v, label, keep[label]);
         }
     }
-done:
-    FREE_ALL(x, owner);
-    return status;
+    return STATUS_OK;
 }

@@ -22,7 +22,7 @@ static int64_t index_of(const int64_t count[3], const int64_t at[3])
 /* Mark what touches a marked cube: along each axis in turn. */
 static enum status dilate(const int64_t count[3], bool *marked, struct error *error)
 {
-    bool *before;
+    SCRATCH bool *before = NULL;
     int64_t total = cubes(count), stride = 1;
     enum status status = NEW_ARRAY(&before, total, error);
     for (int d = 0; d < 3 && status == STATUS_OK; d++) {
@@ -34,7 +34,6 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
         }
         stride *= count[d];
     }
-    free(before);
     return status;
 }
 
@@ -54,8 +53,7 @@ static void hand_up(const int64_t fine[3], const int64_t coarse[3], uint8_t *wis
 enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
                         struct error *error)
 {
-    enum status status = STATUS_OK;
-    bool *marked = NULL;
+    SCRATCH bool *marked = NULL;
     *octree = (struct octree){.levels = levels};
     for (int l = levels - 1; l >= 0; l--) {
         for (int d = 0; d < 3; d++) {
@@ -66,12 +64,12 @@ enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struc
         /* Cubes that touch one that is split, or a wish that says so, are of this level at least: their
          * parents are split. */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
-        TRY(NEW_ARRAY(&marked, cubes(fine), error));
+        RETURN_IF_ERROR(NEW_ARRAY(&marked, cubes(fine), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
             marked[i] = (l < levels - 1 && octree->split[l][i]) || wish[i] == OCTREE_WISH(l, true);
         }
-        TRY(dilate(fine, marked, error));
-        TRY(NEW_ARRAY(&octree->split[l - 1], cubes(coarse), error));
+        RETURN_IF_ERROR(dilate(fine, marked, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&octree->split[l - 1], cubes(coarse), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
             const int64_t parent[3] = {i % fine[0] / 2, i / fine[0] % fine[1] / 2, i / fine[0] / fine[1] / 2};
             if (marked[i] || wish[i] >= OCTREE_WISH(l, false)) {
@@ -82,12 +80,7 @@ enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struc
         marked = NULL;
         hand_up(fine, coarse, wish);
     }
-done:
-    free(marked);
-    if (status != STATUS_OK) {
-        octree_free(octree);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void octree_free(struct octree *octree)

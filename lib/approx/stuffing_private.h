@@ -192,7 +192,6 @@ struct shaping {
  * around the body no more is asked than that they are not. */
 double star_score(const struct shaping *shaping, int64_t node);
 double shaping_score(const struct shaping *shaping, int64_t cell);
-double stuffing_score(const struct stuffing *stuffing, int64_t cell);
 
 /* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
  * nodes of the body around it, but those of rims and those that are apart, out of the way: those of

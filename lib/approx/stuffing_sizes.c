@@ -41,13 +41,12 @@ enum status sizes_wish(const struct stuffing_options *options, int levels, const
                        const double low[3], double edge, const bool *inside, uint8_t *wish, double *unsized,
                        struct error *error)
 {
-    enum status status;
     struct cells scaled = *options->sized;
     int64_t total = count[0] * count[1] * count[2], doubly = 0, within = 0, beyond = 0;
-    double *x = NULL;
-    int32_t *owner = NULL;
-    TRY(NEW_ARRAY(&x, 3 * scaled.node_count, error));
-    TRY(NEW_ARRAY(&owner, total, error));
+    SCRATCH double *x = NULL;
+    SCRATCH int32_t *owner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&x, 3 * scaled.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&owner, total, error));
     for (int64_t i = 0; i < 3 * scaled.node_count; i++) {
         x[i] = (options->sized->x[i] - low[i % 3]) / edge;
     }
@@ -66,10 +65,9 @@ enum status sizes_wish(const struct stuffing_options *options, int levels, const
         }
     }
     if (within > 0 && beyond == within) {
-        TRY(fail(error, STATUS_INPUT, "the sizes lie elsewhere: none of their cells reaches into the body"));
+        return fail(error, STATUS_INPUT,
+                    "the sizes lie elsewhere: none of their cells reaches into the body");
     }
     *unsized = within > 0 ? (double)beyond / (double)within : 0;
-done:
-    FREE_ALL(x, owner);
-    return status;
+    return STATUS_OK;
 }

@@ -226,9 +226,6 @@ done:
     }
     free(search.shadows);
     free(all.index);
-    if (status != STATUS_OK) {
-        support_free(lists);
-    }
     return status;
 }
 

@@ -31,17 +31,16 @@ static double mean_of_least(double *distance, int64_t count, int64_t wanted)
 static enum status spacing_of(const struct point_grid *grid, int64_t node, struct index_list *list,
                               double *spacing, struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = grid->dim;
-    double *distance = NULL;
+    SCRATCH double *distance = NULL;
     int64_t wanted = grid->node_count - 1 < 2 * dim ? grid->node_count - 1 : 2 * dim;
     *spacing = -1.0;
     for (double factor = 1.0; *spacing < 0.0; factor *= 2.0) {
         const double *x = grid->x + node * dim;
         list->count = 0;
-        TRY(point_grid_query(grid, x, factor, list, error));
+        RETURN_IF_ERROR(point_grid_query(grid, x, factor, list, error));
         free(distance);
-        TRY(NEW_ARRAY(&distance, list->count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&distance, list->count, error));
         int64_t others = 0;
         for (int64_t i = 0; i < list->count; i++) {
             if (list->index[i] != node) {
@@ -50,17 +49,14 @@ static enum status spacing_of(const struct point_grid *grid, int64_t node, struc
         }
         *spacing = mean_of_least(distance, others, wanted);
     }
-done:
-    free(distance);
-    return status;
+    return STATUS_OK;
 }
 
 enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing, struct error *error)
 {
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list list = {0};
-    double *radius = NULL;
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list list = {0};
+    SCRATCH double *radius = NULL;
     struct box box = box_of(dim, node_count, x);
     double extent = box_side(&box);
     if (node_count < 2 || !(extent > 0.0)) {
@@ -68,19 +64,15 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
                     (long long)node_count);
     }
     /* A first guess of the neighbourhood's size, doubled where it holds too few. */
-    TRY(NEW_ARRAY(&radius, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         radius[n] = 2.0 * extent / pow((double)node_count, 1.0 / dim);
     }
-    TRY(point_grid_build(&grid, dim, node_count, x, radius, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, node_count, x, radius, error));
     for (int64_t n = 0; n < node_count; n++) {
-        TRY(spacing_of(&grid, n, &list, &spacing[n], error));
+        RETURN_IF_ERROR(spacing_of(&grid, n, &list, &spacing[n], error));
     }
-done:
-    point_grid_free(&grid);
-    free(list.index);
-    free(radius);
-    return status;
+    return STATUS_OK;
 }
 
 enum status support_radii(const struct support_options *options, int64_t node_count, const double *spacing,

@@ -49,44 +49,39 @@ static int64_t sides_in(const struct support_space *space)
 /* Cut the body along its interfaces. */
 static enum status cut(struct support_space *space, struct error *error)
 {
-    enum status status;
-    int64_t *first = NULL;
-    int32_t *cell = NULL, *local_node = NULL, sides = 0;
+    SCRATCH int64_t *first = NULL;
+    SCRATCH int32_t *cell = NULL, *local_node = NULL;
+    int32_t sides = 0;
     const struct cells *cells = &space->cells;
     for (int64_t c = 0; c < cells->count; c++) {
         sides = space->cell_side[c] >= sides ? space->cell_side[c] + 1 : sides;
     }
-    TRY(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
-    TRY(NEW_ARRAY(&local_node, cells->node_count, error));
-    TRY(NEW_ARRAY(&space->place, cells->count, error));
-    TRY(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
+    RETURN_IF_ERROR(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&local_node, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&space->place, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
     space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
     memset(local_node, -1, (size_t)cells->node_count * sizeof *local_node);
     for (int32_t s = 0; s < sides; s++) {
         space->side[s].cell_count = first[s + 1] - first[s];
-        TRY(cut_out(space, cell + first[s], &space->side[s], local_node, error));
+        RETURN_IF_ERROR(cut_out(space, cell + first[s], &space->side[s], local_node, error));
     }
-done:
-    free(first);
-    free(cell);
-    free(local_node);
-    return status;
+    return STATUS_OK;
 }
 
 enum status support_space_build(const struct support_options *options, const struct cells *cells,
                                 const double *radius, struct support_space *space, struct error *error)
 {
-    enum status status = STATUS_OK;
     *space = (struct support_space){
         .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
         space->owner = options->owner;
         space->part = options->part;
-        TRY(cut(space, error));
+        RETURN_IF_ERROR(cut(space, error));
     } else {
-        TRY(NEW_ARRAY(&space->side, 1, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&space->side, 1, error));
         space->side_count = 1;
         space->side[0].node_count = cells->node_count;
     }
@@ -99,18 +94,14 @@ enum status support_space_build(const struct support_options *options, const str
         if (own.node_count == 0) {
             continue;
         }
-        TRY(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
-                             side->node != NULL ? side->radius : radius, error));
-        TRY(point_grid_list_touching(&side->grid, error));
+        RETURN_IF_ERROR(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
+                                         side->node != NULL ? side->radius : radius, error));
+        RETURN_IF_ERROR(point_grid_list_touching(&side->grid, error));
         if (space->by_cells) {
-            TRY(reach_build(&own, &side->grid, &side->reach, error));
+            RETURN_IF_ERROR(reach_build(&own, &side->grid, &side->reach, error));
         }
     }
-done:
-    if (status != STATUS_OK) {
-        support_space_free(space);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void support_space_free(struct support_space *space)
@@ -175,10 +166,9 @@ static void sides_of_others(const struct support_space *space, const struct reac
 static enum status locate_sides(const struct support_space *space, int64_t count, const double *x,
                                 int32_t *side, struct error *error)
 {
-    enum status status;
-    struct reach whole = {0};
-    struct reach_work work = {0};
-    struct point_grid grid = {0};
+    FREED_BY(reach_free) struct reach whole = {0};
+    FREED_BY(reach_work_free) struct reach_work work = {0};
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
     const struct cells *cells = &space->cells;
     bool all_known = true;
     for (int64_t p = 0; p < count; p++) {
@@ -187,25 +177,21 @@ static enum status locate_sides(const struct support_space *space, int64_t count
     if (all_known) {
         return STATUS_OK;
     }
-    TRY(reach_build_cells(cells, &whole, error));
-    TRY(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, space->radius, error));
+    RETURN_IF_ERROR(reach_build_cells(cells, &whole, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, space->radius, error));
     whole.grid = &grid;
     for (int64_t p = 0; p < count; p++) {
         if (side[p] >= 0) {
             continue;
         }
-        TRY(reach_locate(&whole, x + p * cells->dim, &work, error));
+        RETURN_IF_ERROR(reach_locate(&whole, x + p * cells->dim, &work, error));
         side[p] = work.cell_count > 0 ? space->cell_side[work.cell[0]] : 0;
         for (int64_t i = 1; i < work.cell_count; i++) {
             int32_t other = space->cell_side[work.cell[i]];
             side[p] = other < side[p] ? other : side[p];
         }
     }
-done:
-    reach_work_free(&work);
-    reach_free(&whole);
-    point_grid_free(&grid);
-    return status;
+    return STATUS_OK;
 }
 
 /* The places of points on their sides: the node that each is there, or its cells there. ptr, item: what they
@@ -256,32 +242,25 @@ static enum status lists_of_sides(const struct support_options *options, const s
                                   const struct reach_places *places, int64_t count, const double *x,
                                   const char *what, struct support_lists *lists, struct error *error)
 {
-    enum status status;
     struct reach_places within;
-    struct support_body *body = NULL;
-    int64_t *ptr = NULL;
-    int32_t *side = NULL, *item = NULL;
-    TRY(NEW_ARRAY(&side, count, error));
-    TRY(NEW_ARRAY(&body, sides_in(space), error));
+    SCRATCH struct support_body *body = NULL;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *side = NULL, *item = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&side, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body, sides_in(space), error));
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
         sides_of_cells(space, places, count, side);
     }
-    TRY(locate_sides(space, count, x, side, error));
+    RETURN_IF_ERROR(locate_sides(space, count, x, side, error));
     sides_of_others(space, places, count, side);
-    TRY(places_on_sides(space, places, count, side, &ptr, &item, &within, error));
+    RETURN_IF_ERROR(places_on_sides(space, places, count, side, &ptr, &item, &within, error));
     for (int64_t s = 0; s < sides_in(space); s++) {
         const struct support_side *of = &space->side[s];
         body[s] = (struct support_body){&of->grid, &of->reach, of->node};
     }
-    TRY(support_build_among(options, sides_in(space), body, side, &within, count, x, what, lists, error));
-done:
-    free(body);
-    free(side);
-    free(ptr);
-    free(item);
-    return status;
+    return support_build_among(options, sides_in(space), body, side, &within, count, x, what, lists, error);
 }
 
 enum status support_space_lists(const struct support_options *options, const struct support_space *space,

@@ -74,13 +74,12 @@ static double thickness(const struct cells *cells, const int32_t *across, int64_
 enum status cells_find_thin(const struct cells *cells, double bound, struct thin_report *report,
                             struct error *error)
 {
-    enum status status;
     int dim = cells->dim, corners = dim + 1;
-    int32_t *across = NULL;
+    SCRATCH int32_t *across = NULL;
     double whole = 0.0, thin = 0.0;
     *report = (struct thin_report){.least = bound};
-    TRY(NEW_ARRAY(&across, cells->count * corners, error));
-    TRY(cells_across(cells, across, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&across, cells->count * corners, error));
+    RETURN_IF_ERROR(cells_across(cells, across, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int64_t cell = i / corners;
         int face = (int)(i % corners);
@@ -106,7 +105,5 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
         }
     }
     report->share = whole > 0.0 ? thin / whole : 0.0;
-done:
-    free(across);
-    return status;
+    return STATUS_OK;
 }

@@ -33,18 +33,13 @@ static void assign_nodes(struct ways *ways, int64_t stride, const double *place,
 enum status ways_build(const struct cells *cells, int64_t place_count, int64_t stride, const double *place,
                        double unit, struct ways *ways, struct error *error)
 {
-    enum status status;
     *ways = (struct ways){.place_count = place_count, .from = -1, .searched = -1.0};
-    TRY(reach_build_cells(cells, &ways->reach, error));
-    TRY(NEW_ARRAY(&ways->node, place_count, error));
-    TRY(NEW_ARRAY(&ways->verdict, place_count, error));
-    TRY(NEW_ARRAY(&ways->length, cells->node_count, error));
+    RETURN_IF_ERROR(reach_build_cells(cells, &ways->reach, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ways->node, place_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ways->verdict, place_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ways->length, cells->node_count, error));
     assign_nodes(ways, stride, place, unit);
-done:
-    if (status != STATUS_OK) {
-        ways_free(ways);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void ways_free(struct ways *ways)

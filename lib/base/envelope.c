@@ -24,10 +24,9 @@ enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *column, int64_t *order,
                               int64_t *longs, struct error *error)
 {
-    enum status status;
-    bool *placed = NULL;
+    SCRATCH bool *placed = NULL;
     int64_t count = 0, last = n;
-    TRY(NEW_ARRAY(&placed, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&placed, n, error));
     for (int64_t i = 0; i < n; i++) {
         placed[i] = (ptr[i + 1] - ptr[i]) * n > most_entries * ptr[n];
         if (placed[i]) {
@@ -60,9 +59,7 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
         order[i] = order[last - 1 - i];
         order[last - 1 - i] = swap;
     }
-done:
-    free(placed);
-    return status;
+    return STATUS_OK;
 }
 
 /* Where blocks begin: from the end, at a row before which none behind it reaches. */
@@ -91,11 +88,10 @@ static inline int threads_for(const struct envelope *factor, int64_t begin, int6
 static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                         struct envelope *factor, struct error *error)
 {
-    enum status status;
-    int64_t *place = NULL;
+    SCRATCH int64_t *place = NULL;
     free(factor->value);
     factor->value = NULL;
-    TRY(NEW_ARRAY(&place, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, n, error));
     for (int64_t i = 0; i < n; i++) {
         place[factor->order[i]] = i;
     }
@@ -108,7 +104,7 @@ static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, co
         }
         factor->start[i + 1] = factor->start[i] + i - factor->first[i] + 1;
     }
-    TRY(NEW_ARRAY(&factor->value, factor->start[n], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->value, factor->start[n], error));
     for (int64_t i = 0; i < n; i++) {
         int64_t row = factor->order[i];
         for (int64_t k = ptr[row]; k < ptr[row + 1]; k++) {
@@ -119,9 +115,7 @@ static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, co
         }
     }
     find_blocks(factor);
-done:
-    free(place);
-    return status;
+    return STATUS_OK;
 }
 
 /* Sum of a[k] b[k], in four parts: one would wait for each addition. */
@@ -242,14 +236,13 @@ static int64_t order_by_pivot(int64_t count, double *matrix, const double *diago
 static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                               double least, struct envelope *factor, int64_t *kept, struct error *error)
 {
-    enum status status;
     int64_t count = factor->dropped, strong = 0, weak = 0;
-    int64_t *behind = NULL, *by_pivot = NULL;
-    double *matrix = NULL, *diagonal = NULL;
-    TRY(NEW_ARRAY(&behind, count, error));
-    TRY(NEW_ARRAY(&by_pivot, count, error));
-    TRY(NEW_ARRAY(&matrix, count * count, error));
-    TRY(NEW_ARRAY(&diagonal, count, error));
+    SCRATCH int64_t *behind = NULL, *by_pivot = NULL;
+    SCRATCH double *matrix = NULL, *diagonal = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&behind, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&by_pivot, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&matrix, count * count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, count, error));
     for (int64_t i = 0; i < n; i++) {
         if (isinf(row_at(factor, i)[i])) {
             behind[weak++] = factor->order[i];
@@ -258,7 +251,7 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
         }
     }
     memcpy(factor->order + strong, behind, (size_t)count * sizeof *behind);
-    TRY(fill(n, ptr, column, value, factor, error));
+    RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
     for (int64_t i = 0; i < n; i++) {
         if (i >= strong) {
             diagonal[i - strong] = row_at(factor, i)[i];
@@ -276,36 +269,29 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
     for (int64_t i = 0; i < count; i++) {
         factor->order[strong + i] = behind[by_pivot[i]];
     }
-done:
-    FREE_ALL(behind, by_pivot, matrix, diagonal);
-    return status;
+    return STATUS_OK;
 }
 
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                                double least, struct envelope *factor, struct error *error)
 {
-    enum status status;
     int64_t kept = n, longs;
     *factor = (struct envelope){.n = n};
-    TRY(NEW_ARRAY(&factor->order, n, error));
-    TRY(NEW_ARRAY(&factor->first, n, error));
-    TRY(NEW_ARRAY(&factor->start, n + 1, error));
-    TRY(NEW_ARRAY(&factor->scratch, n, error));
-    TRY(NEW_ARRAY(&factor->block, n + 1, error));
-    TRY(order_rows(n, ptr, column, factor->order, &longs, error));
-    TRY(fill(n, ptr, column, value, factor, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->order, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->first, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->start, n + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, n, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor->block, n + 1, error));
+    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, &longs, error));
+    RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
     factor_rows(factor, n - longs, fmax(weak_pivot, least));
     if (factor->dropped > 0) {
-        TRY(order_weak(n, ptr, column, value, least, factor, &kept, error));
-        TRY(fill(n, ptr, column, value, factor, error));
+        RETURN_IF_ERROR(order_weak(n, ptr, column, value, least, factor, &kept, error));
+        RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
         /* A pivot that was above `least` before cannot be far below now, but by round-off. */
         factor_rows(factor, kept, 0.1 * least);
     }
-done:
-    if (status != STATUS_OK) {
-        envelope_free(factor);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void envelope_dropped(const struct envelope *factor, int64_t *row)
@@ -367,18 +353,15 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
 enum status envelope_share(const struct envelope *factor, const struct ranks *ranks, int64_t **first,
                            struct error *error)
 {
-    enum status status;
     const int64_t *begin = factor->block, blocks = factor->block_count;
-    double *work = NULL;
-    TRY(NEW_ARRAY(&work, blocks, error));
+    SCRATCH double *work = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&work, blocks, error));
     for (int64_t b = 0; b < blocks; b++) {
         work[b] = (double)(factor->start[begin[b + 1]] - factor->start[begin[b]]);
     }
-    TRY(ranks_share(ranks, blocks, work, first, error));
+    RETURN_IF_ERROR(ranks_share(ranks, blocks, work, first, error));
     for (int r = 0; r <= ranks_count(ranks); r++) {
         (*first)[r] = begin[(*first)[r]];
     }
-done:
-    free(work);
-    return status;
+    return STATUS_OK;
 }

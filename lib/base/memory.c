@@ -77,6 +77,11 @@ void *array_take(void *pointer)
     return array;
 }
 
+void scratch_free(void *pointer)
+{
+    free(array_take(pointer));
+}
+
 enum status array_resize(void *pointer, int64_t count, size_t size, const char *name, struct error *error)
 {
     void *array;

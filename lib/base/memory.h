@@ -53,6 +53,15 @@ enum status array_grow_list(void *pointer, int64_t needed, int64_t *room, size_t
 #define FREE_ALL(...) free_all(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
 void free_all(size_t count, void *const array[]);
 
+/* For a local array, NULL to begin with, that is freed wherever its function is left: SCRATCH double *x =
+ * NULL;
+ */
+#define SCRATCH __attribute__((cleanup(scratch_free)))
+void scratch_free(void *pointer);
+
+/* For another local variable, empty to begin with: function(&variable) is called there. */
+#define FREED_BY(function) __attribute__((cleanup(function)))
+
 /* Memory of one owner, freed all at once. */
 struct owned {
     int64_t count;
@@ -64,8 +73,8 @@ struct owned {
 MUST_CHECK enum status owned_add(struct owned *owned, void *memory, const char *name, struct error *error);
 void owned_free(struct owned *owned);
 
-/* Evaluate a status expression; on failure, leave through the label `done` with `status` set.
- * The functions of lib/ have one exit path, which frees. */
+/* Evaluate a status expression; on failure, leave through the label `done` with `status` set: in functions
+ * that have more to do there than SCRATCH and FREED_BY can. */
 #define TRY(expression)                                                                                      \
     do {                                                                                                     \
         status = (expression);                                                                               \

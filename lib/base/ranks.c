@@ -133,11 +133,10 @@ static enum status list_wanted(struct halo *halo, int64_t items, const bool *wan
                                int (*owner)(const void *context, int64_t item), const void *context,
                                struct error *error)
 {
-    enum status status;
     int count = halo->ranks->count, rank = halo->ranks->rank;
-    int64_t *next = NULL;
-    TRY(NEW_ARRAY(&halo->receive_first, count + 1, error));
-    TRY(NEW_ARRAY(&next, count, error));
+    SCRATCH int64_t *next = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&halo->receive_first, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
     for (int64_t i = 0; i < items; i++) {
         int from = wanted[i] ? owner(context, i) : rank;
         halo->receive_first[from + 1] += from != rank;
@@ -146,28 +145,25 @@ static enum status list_wanted(struct halo *halo, int64_t items, const bool *wan
         halo->receive_first[r + 1] += halo->receive_first[r];
         next[r] = halo->receive_first[r];
     }
-    TRY(NEW_ARRAY(&halo->receive, halo->receive_first[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&halo->receive, halo->receive_first[count], error));
     for (int64_t i = 0; i < items; i++) {
         int from = wanted[i] ? owner(context, i) : rank;
         if (from != rank) {
             halo->receive[next[from]++] = i;
         }
     }
-done:
-    free(next);
-    return status;
+    return STATUS_OK;
 }
 
 enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
                                  int64_t **receive, int64_t **receive_first, struct error *error)
 {
-    enum status status;
     int count = ranks->count;
-    int64_t *each = NULL, *in_turn = NULL, *many = NULL;
-    TRY(NEW_ARRAY(&each, count, error));
-    TRY(NEW_ARRAY(&many, count, error));
-    TRY(NEW_ARRAY(&in_turn, count + 1, error));
-    TRY(NEW_ARRAY(receive_first, count + 1, error));
+    SCRATCH int64_t *each = NULL, *in_turn = NULL, *many = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&each, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&many, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&in_turn, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(receive_first, count + 1, error));
     for (int r = 0; r < count; r++) {
         in_turn[r + 1] = r + 1;
         each[r] = send_first[r + 1] - send_first[r];
@@ -176,32 +172,24 @@ enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
     for (int r = 0; r < count; r++) {
         (*receive_first)[r + 1] = (*receive_first)[r] + many[r];
     }
-    TRY(NEW_ARRAY(receive, (*receive_first)[count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(receive, (*receive_first)[count], error));
     ranks->exchange(ranks, sizeof *send, send, send_first, *receive, *receive_first);
-done:
-    FREE_ALL(each, many, in_turn);
-    return status;
+    return STATUS_OK;
 }
 
 enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wanted, int width,
                        int (*owner)(const void *context, int64_t item), const void *context,
                        struct halo *halo, struct error *error)
 {
-    enum status status;
     *halo = (struct halo){.ranks = ranks};
     if (ranks == NULL) {
         return STATUS_OK;
     }
-    TRY(list_wanted(halo, items, wanted, owner, context, error));
-    TRY(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first,
-                             error));
-    TRY(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
-    TRY(NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error));
-done:
-    if (status != STATUS_OK) {
-        halo_free(halo);
-    }
-    return status;
+    RETURN_IF_ERROR(list_wanted(halo, items, wanted, owner, context, error));
+    RETURN_IF_ERROR(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send,
+                                         &halo->send_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
+    return NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error);
 }
 
 void halo_free(struct halo *halo)

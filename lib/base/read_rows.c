@@ -20,12 +20,11 @@ static void free_lists(struct row_lists *lists)
 static enum status list_rows(const struct read_rows *rows, int (*owner)(const void *, int64_t),
                              const void *context, struct row_lists *lists, struct error *error)
 {
-    enum status status;
     int count = rows->ranks->count;
-    int64_t *seen = NULL, *next = NULL; /* of each process: 1 + the last row that was listed */
-    TRY(NEW_ARRAY(&seen, count, error));
-    TRY(NEW_ARRAY(&next, count, error));
-    TRY(NEW_ARRAY(&lists->first, count + 1, error));
+    SCRATCH int64_t *seen = NULL, *next = NULL; /* of each process: 1 + the last row that was listed */
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&lists->first, count + 1, error));
     for (int pass = 0; pass < 2; pass++) {
         memset(seen, 0, (size_t)count * sizeof *seen);
         for (int64_t f = 0; f < rows->row_count; f++) {
@@ -45,12 +44,10 @@ static enum status list_rows(const struct read_rows *rows, int (*owner)(const vo
                 lists->first[r + 1] = lists->first[r] + next[r];
             }
             memcpy(next, lists->first, (size_t)count * sizeof *next);
-            TRY(NEW_ARRAY(&lists->row, lists->first[count], error));
+            RETURN_IF_ERROR(NEW_ARRAY(&lists->row, lists->first[count], error));
         }
     }
-done:
-    FREE_ALL(seen, next);
-    return status;
+    return STATUS_OK;
 }
 
 enum status read_rows_with(const struct read_rows *rows, int (*owner)(const void *context, int64_t column),
@@ -83,10 +80,9 @@ static int64_t length_of(const struct read_rows *rows, int64_t row)
 static enum status lay_out(const struct read_rows *rows, const bool *wanted, struct halo *halo,
                            struct sparse *fetched, struct error *error)
 {
-    enum status status;
-    double *length = NULL;
+    SCRATCH double *length = NULL;
     int64_t at = 0;
-    TRY(NEW_ARRAY(&length, rows->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&length, rows->row_count, error));
     for (int64_t f = 0; f < rows->row_count; f++) {
         length[f] = (double)length_of(rows, f);
     }
@@ -95,13 +91,11 @@ static enum status lay_out(const struct read_rows *rows, const bool *wanted, str
         length[f] = wanted[f] ? length[f] : 0.0;
         at += (int64_t)length[f];
     }
-    TRY(sparse_new(rows->row_count, rows->column_count, at, fetched, error));
+    RETURN_IF_ERROR(sparse_new(rows->row_count, rows->column_count, at, fetched, error));
     for (int64_t f = 0; f < rows->row_count; f++) {
         fetched->ptr[f + 1] = fetched->ptr[f] + (int64_t)length[f];
     }
-done:
-    free(length);
-    return status;
+    return STATUS_OK;
 }
 
 /* Entries of so many bytes: own rows from `from`, and those of others, to their rows of `to`. */
@@ -109,12 +103,12 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
                                 const struct sparse *fetched, size_t size, const char *from, char *to,
                                 struct error *error)
 {
-    enum status status;
     const struct ranks *ranks = rows->ranks;
-    int64_t *send_first = NULL, *first = NULL;
-    char *sent = NULL, *got = NULL, *at;
-    TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
-    TRY(NEW_ARRAY(&first, ranks->count + 1, error));
+    SCRATCH int64_t *send_first = NULL, *first = NULL;
+    SCRATCH char *sent = NULL, *got = NULL;
+    char *at;
+    RETURN_IF_ERROR(NEW_ARRAY(&send_first, ranks->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&first, ranks->count + 1, error));
     for (int r = 0; r < ranks->count; r++) {
         send_first[r + 1] = send_first[r];
         first[r + 1] = first[r];
@@ -125,8 +119,8 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
             first[r + 1] += fetched->ptr[halo->receive[i] + 1] - fetched->ptr[halo->receive[i]];
         }
     }
-    TRY(NEW_ARRAY(&sent, send_first[ranks->count] * (int64_t)size, error));
-    TRY(NEW_ARRAY(&got, first[ranks->count] * (int64_t)size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sent, send_first[ranks->count] * (int64_t)size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&got, first[ranks->count] * (int64_t)size, error));
     at = sent;
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
         size_t bytes = (size_t)length_of(rows, halo->send[i]) * size;
@@ -147,27 +141,18 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
                    (size_t)length_of(rows, f) * size);
         }
     }
-done:
-    FREE_ALL(send_first, first, sent, got);
-    return status;
+    return STATUS_OK;
 }
 
 enum status read_rows_fetch(const struct read_rows *rows, const bool *wanted, struct sparse *fetched,
                             struct error *error)
 {
-    enum status status;
-    struct halo halo = {0};
+    FREED_BY(halo_free) struct halo halo = {0};
     *fetched = (struct sparse){0};
-    TRY(halo_build(rows->ranks, rows->row_count, wanted, 1, reader_of, rows, &halo, error));
-    TRY(lay_out(rows, wanted, &halo, fetched, error));
-    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->idx, (const char *)rows->idx,
-                     (char *)fetched->idx, error));
-    TRY(send_entries(rows, wanted, &halo, fetched, sizeof *rows->value, (const char *)rows->value,
-                     (char *)fetched->value, error));
-done:
-    halo_free(&halo);
-    if (status != STATUS_OK) {
-        sparse_free(fetched);
-    }
-    return status;
+    RETURN_IF_ERROR(halo_build(rows->ranks, rows->row_count, wanted, 1, reader_of, rows, &halo, error));
+    RETURN_IF_ERROR(lay_out(rows, wanted, &halo, fetched, error));
+    RETURN_IF_ERROR(send_entries(rows, wanted, &halo, fetched, sizeof *rows->idx, (const char *)rows->idx,
+                                 (char *)fetched->idx, error));
+    return send_entries(rows, wanted, &halo, fetched, sizeof *rows->value, (const char *)rows->value,
+                        (char *)fetched->value, error);
 }

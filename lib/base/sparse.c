@@ -12,25 +12,19 @@ enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */
 enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries, struct sparse *matrix,
                        struct error *error)
 {
-    enum status status;
     *matrix = (struct sparse){.row_count = row_count, .column_count = column_count};
-    TRY(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error));
-done:
-    if (status != STATUS_OK) {
-        sparse_free(matrix);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&matrix->ptr, row_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&matrix->idx, entries, error));
+    return NEW_ARRAY_UNTOUCHED(&matrix->value, entries, error);
 }
 
 enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)
 {
-    enum status status;
-    int64_t entries = matrix->ptr[matrix->row_count], *next = NULL;
+    int64_t entries = matrix->ptr[matrix->row_count];
+    SCRATCH int64_t *next = NULL;
     *transposed = (struct sparse){0};
-    TRY(NEW_ARRAY(&next, matrix->column_count + 1, error));
-    TRY(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&next, matrix->column_count + 1, error));
+    RETURN_IF_ERROR(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
     for (int64_t i = 0; i < entries; i++) {
         transposed->ptr[matrix->idx[i] + 1]++;
     }
@@ -45,9 +39,7 @@ enum status sparse_transpose(const struct sparse *matrix, struct sparse *transpo
             transposed->value[at] = matrix->value[i];
         }
     }
-done:
-    free(next);
-    return status;
+    return STATUS_OK;
 }
 
 void sparse_free(struct sparse *matrix)

@@ -20,8 +20,8 @@ enum status {
 
 #define MUST_CHECK __attribute__((warn_unused_result))
 
-/* Evaluate a status expression; on failure, return its status. In functions that have something to free
- * first, see TRY in memory.h. */
+/* Evaluate a status expression; on failure, return its status. What is to be freed then: see SCRATCH in
+ * memory.h. */
 #define RETURN_IF_ERROR(expression)                                                                          \
     do {                                                                                                     \
         enum status status_of_expression = (expression);                                                     \

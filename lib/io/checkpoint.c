@@ -164,9 +164,9 @@ static enum status write_new(const char *name, const struct stream *stream, stru
 static enum status sync_folder(const char *file, struct error *error)
 {
     const char *slash = strrchr(file, '/');
-    char *folder = slash == NULL   ? strdup(".")
-                   : slash == file ? strdup("/")
-                                   : strndup(file, (size_t)(slash - file));
+    SCRATCH char *folder = slash == NULL   ? strdup(".")
+                           : slash == file ? strdup("/")
+                                           : strndup(file, (size_t)(slash - file));
     if (folder == NULL) {
         return fail_memory(error, file);
     }
@@ -178,7 +178,6 @@ static enum status sync_folder(const char *file, struct error *error)
     if (descriptor >= 0) {
         close(descriptor);
     }
-    free(folder);
     return status;
 }
 
@@ -206,18 +205,14 @@ done:
 enum status checkpoint_remove(const char *file, struct error *error)
 {
     static const char *const endings[] = {".new", ".old", ""};
-    enum status status = STATUS_OK;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        char *name;
-        TRY(sibling_name(file, endings[i], &name, error));
+        SCRATCH char *name = NULL;
+        RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));
         if (unlink(name) != 0 && errno != ENOENT) {
-            status = fail_file(name, error);
+            return fail_file(name, error);
         }
-        free(name);
-        TRY(status);
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Read one file; *exists tells whether it is there. */

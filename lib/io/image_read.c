@@ -223,21 +223,20 @@ static enum status read_values(struct image_source *source, const struct nifti *
                                struct error *error)
 {
     size_t size = (size_t)type->bytes, done_count = 0, capacity = 0, got;
-    unsigned char *block = NULL;
-    enum status status = STATUS_OK;
-    TRY(NEW_ARRAY(&block, (int64_t)(block_values * size), error));
-    TRY(skip_extensions(source, header, block, block_values * size, error));
+    SCRATCH unsigned char *block = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&block, (int64_t)(block_values * size), error));
+    RETURN_IF_ERROR(skip_extensions(source, header, block, block_values * size, error));
     while (done_count < count) {
         size_t wanted = count - done_count < block_values ? count - done_count : block_values;
-        TRY(image_source_take(source, block, wanted * size, &got, error));
+        RETURN_IF_ERROR(image_source_take(source, block, wanted * size, &got, error));
         if (got < wanted * size) {
-            TRY(fail(error, STATUS_INPUT, "cut short: data of %zu bytes, the header says %zu",
-                     done_count * size + got, count * size));
+            return fail(error, STATUS_INPUT, "cut short: data of %zu bytes, the header says %zu",
+                        done_count * size + got, count * size);
         }
         if (done_count + wanted > capacity) {
             capacity = 2 * capacity < count ? 2 * capacity + 4 * block_values : count;
             capacity = capacity < count ? capacity : count;
-            TRY(RESIZE_ARRAY(&image->values, (int64_t)capacity, error));
+            RETURN_IF_ERROR(RESIZE_ARRAY(&image->values, (int64_t)capacity, error));
         }
         if (header->swapped && size > 1) {
             reverse_bytes(block, wanted, size);
@@ -245,14 +244,12 @@ static enum status read_values(struct image_source *source, const struct nifti *
         convert(type, block, wanted, image->values + done_count);
         done_count += wanted;
     }
-    TRY(image_source_take(source, block, 1, &got, error));
+    RETURN_IF_ERROR(image_source_take(source, block, 1, &got, error));
     if (got > 0) {
-        TRY(fail(error, STATUS_INPUT,
-                 "more data than %zu bytes, as the header says: it lies about size or type", count * size));
+        return fail(error, STATUS_INPUT,
+                    "more data than %zu bytes, as the header says: it lies about size or type", count * size);
     }
-done:
-    free(block);
-    return status;
+    return STATUS_OK;
 }
 
 /* Integers that no double holds would come out as others. */

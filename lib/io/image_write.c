@@ -98,12 +98,12 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     static const unsigned char head[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3};
     unsigned char tail[8];
     int64_t blocks = (int64_t)((size + BLOCK - 1) / BLOCK);
-    size_t room = compressBound(BLOCK) + 64, *used = NULL;
-    unsigned char *packed = NULL;
-    enum status status = STATUS_OK;
+    size_t room = compressBound(BLOCK) + 64;
+    SCRATCH size_t *used = NULL;
+    SCRATCH unsigned char *packed = NULL;
     bool good = true;
-    TRY(NEW_ARRAY(&used, blocks, error));
-    TRY(RESIZE_ARRAY(&packed, blocks * (int64_t)room, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&used, blocks, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&packed, blocks * (int64_t)room, error));
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int64_t b = 0; b < blocks; b++) {
         size_t begin = (size_t)b * BLOCK, length = size - begin < BLOCK ? size - begin : BLOCK;
@@ -112,36 +112,31 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
                good;
     }
     if (!good) {
-        TRY(fail_memory(error, "compressed image"));
+        return fail_memory(error, "compressed image");
     }
-    TRY(descriptor_write(descriptor, head, sizeof head, error));
+    RETURN_IF_ERROR(descriptor_write(descriptor, head, sizeof head, error));
     for (int64_t b = 0; b < blocks; b++) {
-        TRY(descriptor_write(descriptor, packed + (size_t)b * room, used[b], error));
+        RETURN_IF_ERROR(descriptor_write(descriptor, packed + (size_t)b * room, used[b], error));
     }
     put_little_endian(tail, (uint32_t)crc32_z(0, bytes, size));
     put_little_endian(tail + 4, (uint32_t)size);
-    TRY(descriptor_write(descriptor, tail, sizeof tail, error));
-done:
-    FREE_ALL(used, packed);
-    return status;
+    return descriptor_write(descriptor, tail, sizeof tail, error);
 }
 
 enum status image_write(const struct image *image, int descriptor, bool gzip, struct error *error)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
-    unsigned char header[NIFTI2_HEADER + 4], *bytes = NULL;
-    enum status status = STATUS_OK;
+    unsigned char header[NIFTI2_HEADER + 4];
+    SCRATCH unsigned char *bytes = NULL;
     if (type == NULL || (type->components > 1 && image->components != (size_t)type->components)) {
         return fail(error, STATUS_INPUT, "%zu components do not fit values of type %d", image->components,
                     image->datatype);
     }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
-    TRY(RESIZE_ARRAY(&bytes, (int64_t)size, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
     memcpy(bytes, header, offset);
     store_values(image, type, bytes + offset);
-    TRY(gzip ? write_gzip(bytes, size, descriptor, error) : descriptor_write(descriptor, bytes, size, error));
-done:
-    free(bytes);
-    return status;
+    return gzip ? write_gzip(bytes, size, descriptor, error)
+                : descriptor_write(descriptor, bytes, size, error);
 }

@@ -100,12 +100,11 @@ static char *names_attribute(const struct mesh_names *names)
 static enum status put_named(struct stream *stream, const char *section, enum element_type type, int64_t rows,
                              const struct mesh_names *names, void *data, struct error *error)
 {
-    char *attributes = names_attribute(names);
+    SCRATCH char *attributes = names_attribute(names);
     if (attributes == NULL) {
         return fail_memory(error, "names");
     }
     enum status status = stream_put(stream, section, type, rows, 1, attributes, data, false, error);
-    free(attributes);
     return status;
 }
 

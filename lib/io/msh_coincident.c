@@ -28,16 +28,15 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
 enum status mesh_check_coincident(struct mesh_draft *draft)
 {
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
-    enum status status = STATUS_OK;
     const struct mesh *mesh = draft->mesh;
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
     double tolerance = COINCIDENT * box_side(&box);
-    struct placed *order = NULL;
-    int32_t *body = NULL;
+    SCRATCH struct placed *order = NULL;
+    SCRATCH int32_t *body = NULL;
     int64_t touching = 0;
-    TRY(NEW_ARRAY(&body, mesh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body, mesh->node_count, draft->error));
     set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
-    TRY(NEW_ARRAY(&order, mesh->node_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&order, mesh->node_count, draft->error));
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].item = n;
         for (int k = 0; k < mesh->dim; k++) {
@@ -56,18 +55,16 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
             if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
                 touching++;
             } else if (farthest <= tolerance) {
-                TRY(fail_coincident(draft, a, b));
+                RETURN_IF_ERROR(fail_coincident(draft, a, b));
             }
         }
     }
     if (touching > 0) {
-        TRY(mesh_add_note(
+        RETURN_IF_ERROR(mesh_add_note(
             draft,
             "nodes at the same place, of different bodies: %lld pairs: the bodies are not joined "
             "there (Coherence Mesh in gmsh joins them)",
             (long long)touching));
     }
-done:
-    FREE_ALL(body, order);
-    return status;
+    return STATUS_OK;
 }

@@ -128,7 +128,7 @@ static void read_element(struct msh_reader *r, int64_t e, struct block *block)
 void msh_read_elements(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
-    struct msh_index tags = {0};
+    FREED_BY(msh_index_free) struct msh_index tags = {0};
     bool blocked = r->version >= 40;
     int64_t found = 0;
     r->kind = "element";
@@ -162,5 +162,4 @@ void msh_read_elements(struct msh_reader *r)
     if (r->status == STATUS_OK) {
         msh_index_make(r, &tags, count, msh->element_tag);
     }
-    msh_index_free(&tags);
 }

@@ -36,12 +36,11 @@ static enum status fail_overlap(const struct mesh_draft *draft, const struct msh
 /* The elements of each group, in the order of the file. */
 static enum status sort_by_group(struct gathering *g)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = g->draft->msh;
-    int64_t *at = NULL;
-    TRY(NEW_ARRAY(&g->group_ptr, msh->group_count + 1, g->draft->error));
-    TRY(NEW_ARRAY(&g->group_idx, msh->member_ptr[msh->element_count], g->draft->error));
-    TRY(NEW_ARRAY(&at, msh->group_count, g->draft->error));
+    SCRATCH int64_t *at = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&g->group_ptr, msh->group_count + 1, g->draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&g->group_idx, msh->member_ptr[msh->element_count], g->draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at, msh->group_count, g->draft->error));
     for (int32_t i = 0; i < msh->group_count; i++) {
         g->group_ptr[i + 1] = g->group_ptr[i] + msh->groups[i].element_count;
         at[i] = g->group_ptr[i];
@@ -51,9 +50,7 @@ static enum status sort_by_group(struct gathering *g)
             g->group_idx[at[msh->member_idx[k]]++] = e;
         }
     }
-done:
-    free(at);
-    return status;
+    return STATUS_OK;
 }
 
 /* Add a node to the set that is being gathered, once; the node may be one that was left out: -1. */
@@ -204,24 +201,21 @@ static int compare_names(const void *left, const void *right)
 /* Names differ within a dimension, but node sets come from several. */
 static enum status check_set_names(const struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     const struct mesh_names *sets = &draft->mesh->node_sets;
-    char **order = NULL;
-    TRY(NEW_ARRAY(&order, sets->count, draft->error));
+    SCRATCH char **order = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&order, sets->count, draft->error));
     for (int32_t i = 0; i < sets->count; i++) {
         order[i] = sets->name[i];
     }
     qsort(order, (size_t)sets->count, sizeof *order, compare_names);
-    for (int32_t i = 1; i < sets->count && status == STATUS_OK; i++) {
+    for (int32_t i = 1; i < sets->count; i++) {
         if (strcmp(order[i], order[i - 1]) == 0) {
-            status = fail(draft->error, STATUS_INPUT,
-                          "physical groups of two dimensions are named '%s', both sets of nodes: rename one",
-                          order[i]);
+            return fail(draft->error, STATUS_INPUT,
+                        "physical groups of two dimensions are named '%s', both sets of nodes: rename one",
+                        order[i]);
         }
     }
-done:
-    free(order);
-    return status;
+    return STATUS_OK;
 }
 
 /* Room for all facets that there can be: a triangle of second order gives four, a quadrangle eight. */

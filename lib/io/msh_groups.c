@@ -222,7 +222,7 @@ static void collect_groups(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
     int64_t count = 0;
-    int64_t *keys = NULL;
+    SCRATCH int64_t *keys = NULL;
     int64_t elements = r->version < 40 ? msh->element_count : 0;
     MSH_NEW(r, &keys, r->name_count + r->physical_count + elements);
     if (r->status != STATUS_OK) {
@@ -245,7 +245,6 @@ static void collect_groups(struct msh_reader *r)
         msh->groups[msh->group_count++] =
             (struct msh_group){.dim = key_dim(keys[i]), .tag = key_tag(keys[i])};
     }
-    free(keys);
 }
 
 /* A copy in which blanks, commas and the like, which cannot stand in lists of names, are underscores; or

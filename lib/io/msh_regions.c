@@ -101,13 +101,12 @@ static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *
  * and cells in two groups are reported. */
 static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
 {
-    enum status status;
     const struct msh *msh = draft->msh;
-    struct keyed_cell *keys = NULL;
+    SCRATCH struct keyed_cell *keys = NULL;
     int64_t count = 0;
     int64_t again = 0;
     int64_t twice = 0;
-    TRY(NEW_ARRAY(&keys, msh->element_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&keys, msh->element_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
         if (is_cell[e]) {
@@ -123,18 +122,18 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
         }
     }
     if (twice > 0) {
-        TRY(mesh_add_note(draft, "cells in two physical groups, taken for the one of the lower tag: %lld",
+        RETURN_IF_ERROR(
+            mesh_add_note(draft, "cells in two physical groups, taken for the one of the lower tag: %lld",
                           (long long)twice));
     }
     if (again > 0) {
-        TRY(mesh_add_note(draft,
+        RETURN_IF_ERROR(
+            mesh_add_note(draft,
                           "cells that stand twice, as for a second physical group, taken once, as the first: "
                           "%lld",
                           (long long)again));
     }
-done:
-    free(keys);
-    return status;
+    return STATUS_OK;
 }
 
 /* A note on each name that is not as in the file. */
@@ -185,10 +184,9 @@ static enum status check_wanted(const struct mesh_draft *draft, const struct mes
  * receives the index of each, or -1. cells_of[] counts the cells of each. */
 static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of[], int32_t region_of_group[])
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = draft->msh;
     struct mesh_names *regions = &draft->mesh->regions;
-    struct mesh_names present = {0};
+    FREED_BY(mesh_names_free) struct mesh_names present = {0};
     const char *unnamed = "body"; /* "unnamed" beside others */
     for (int32_t g = 0; g <= msh->group_count; g++) {
         region_of_group[g] = -1;
@@ -198,47 +196,42 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
         bool named = g < msh->group_count;
         unnamed = named ? "unnamed" : unnamed;
         const char *name = named ? msh->groups[g].name : unnamed;
-        TRY(mesh_add_name(&present, name, draft->error));
+        RETURN_IF_ERROR(mesh_add_name(&present, name, draft->error));
         if (draft->options->regions != NULL && !is_listed(draft->options->regions, name)) {
             continue;
         }
         int32_t same = named ? -1 : mesh_find_name(regions, name, strlen(name));
         region_of_group[g] = same >= 0 ? same : regions->count;
         if (same < 0) {
-            TRY(mesh_add_name(regions, name, draft->error));
+            RETURN_IF_ERROR(mesh_add_name(regions, name, draft->error));
         }
     }
-    TRY(check_wanted(draft, &present));
+    RETURN_IF_ERROR(check_wanted(draft, &present));
     if (cells_of[msh->group_count] > 0 && regions->count > 1) {
-        TRY(mesh_add_note(draft, "cells in no physical group, region '%s': %lld", unnamed,
-                          (long long)cells_of[msh->group_count]));
+        RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %lld", unnamed,
+                                      (long long)cells_of[msh->group_count]));
     }
-done:
-    mesh_names_free(&present);
-    return status;
+    return STATUS_OK;
 }
 
 enum status mesh_pick_regions(struct mesh_draft *draft)
 {
-    enum status status = STATUS_OK;
     const struct msh *msh = draft->msh;
-    int32_t *region_of_group = NULL; /* the last is for cells without a group */
-    int64_t *cells_of = NULL;
-    bool *is_cell = NULL;
-    TRY(NEW_ARRAY(&region_of_group, msh->group_count + 1, draft->error));
-    TRY(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
-    TRY(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
-    TRY(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
-    TRY(note_names(draft));
-    TRY(find_cells(draft, is_cell));
+    SCRATCH int32_t *region_of_group = NULL; /* the last is for cells without a group */
+    SCRATCH int64_t *cells_of = NULL;
+    SCRATCH bool *is_cell = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&region_of_group, msh->group_count + 1, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
+    RETURN_IF_ERROR(note_names(draft));
+    RETURN_IF_ERROR(find_cells(draft, is_cell));
     for (int64_t e = 0; e < msh->element_count; e++) {
         cells_of[cell_group(msh, e)] += is_cell[e];
     }
-    TRY(name_regions(draft, cells_of, region_of_group));
+    RETURN_IF_ERROR(name_regions(draft, cells_of, region_of_group));
     for (int64_t e = 0; e < msh->element_count; e++) {
         draft->region_of[e] = is_cell[e] ? region_of_group[cell_group(msh, e)] : -1;
     }
-done:
-    FREE_ALL(region_of_group, cells_of, is_cell);
-    return status;
+    return STATUS_OK;
 }

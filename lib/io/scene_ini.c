@@ -179,7 +179,7 @@ static int take_entry(void *user, const char *section, const char *key, const ch
 
 enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error)
 {
-    struct textfile text = {0};
+    FREED_BY(textfile_free) struct textfile text = {0};
     *file = (struct ini_file){.path = path};
     RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, error));
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
@@ -188,7 +188,6 @@ enum status ini_read(const char *path, struct owned *words, struct ini_file *fil
     if (reading.status == STATUS_OK && result != 0) { /* nothing that passed look_at_line should fail */
         reading.status = fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result);
     }
-    textfile_free(&text);
     return reading.status;
 }
 

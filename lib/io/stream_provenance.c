@@ -93,7 +93,7 @@ enum status stream_append_provenance(struct stream *stream, const char *line, si
 
 enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[], struct error *error)
 {
-    struct line *line = malloc(sizeof *line);
+    SCRATCH struct line *line = malloc(sizeof *line);
     if (line == NULL) {
         return fail_memory(error, "provenance");
     }
@@ -111,6 +111,5 @@ enum status stream_add_provenance(struct stream *stream, int argc, char *const a
     enum status status =
         line->full ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
                    : stream_append_provenance(stream, line->text, line->length, error);
-    free(line);
     return status;
 }

@@ -142,23 +142,19 @@ static enum status read_binary(struct reader *reader, struct section *section, u
 
 static enum status read_section(struct reader *reader, const char *line, size_t length, struct error *error)
 {
-    struct header header;
+    FREED_BY(header_free) struct header header = {0};
     struct section *section;
     /* The line with its newline; it expires with the next access to the input. */
     uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
     frame_count(reader, line, length + 1);
-    enum status status = STATUS_OK;
-    TRY(header_parse(line, length, &header, error));
+    RETURN_IF_ERROR(header_parse(line, length, &header, error));
     if (stream_find(reader->stream, header.name) != NULL) {
-        TRY(fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", header.name));
+        return fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", header.name);
     }
-    TRY(stream_append(reader->stream, header.name, header.type, header.rows, header.cols, header.attributes,
-                      &section, error));
-    TRY(header.binary ? read_binary(reader, section, crc, error)
-                      : payload_read_text(&reader->input, section, error));
-done:
-    header_free(&header);
-    return status;
+    RETURN_IF_ERROR(stream_append(reader->stream, header.name, header.type, header.rows, header.cols,
+                                  header.attributes, &section, error));
+    return header.binary ? read_binary(reader, section, crc, error)
+                         : payload_read_text(&reader->input, section, error);
 }
 
 /* "# end COUNT" or "# end COUNT crc32=XXXXXXXX", and nothing behind it. */

@@ -64,12 +64,11 @@ static enum status put_text(struct writer *writer, const char *text, struct erro
 static enum status put_header(struct writer *writer, const struct section *section, bool text, uLong *crc,
                               struct error *error)
 {
-    char *line = NULL;
-    enum status status = STATUS_OK;
+    SCRATCH char *line = NULL;
     size_t room = strlen(section->name) + strlen(section->attributes) + 128 + PAYLOAD_ALIGNMENT;
-    TRY(section_validate(section->name, section->type, section->rows, section->cols, section->attributes,
-                         error));
-    TRY(NEW_ARRAY(&line, (int64_t)room, error));
+    RETURN_IF_ERROR(section_validate(section->name, section->type, section->rows, section->cols,
+                                     section->attributes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&line, (int64_t)room, error));
     int printed =
         snprintf(line, room, "# %s %s %" PRId64 " %" PRId64 " enc=%s%s%s", section->name,
                  element_type_name(section->type), section->rows, section->cols, text ? "text" : "bin",
@@ -82,10 +81,7 @@ static enum status put_header(struct writer *writer, const struct section *secti
     }
     line[length++] = '\n';
     *crc = crc32_z(0, (const Bytef *)line, length);
-    TRY(put_frame(writer, line, length, error));
-done:
-    free(line);
-    return status;
+    return put_frame(writer, line, length, error);
 }
 
 static size_t format_element(char *text, const struct section *section, int64_t index)
@@ -206,13 +202,9 @@ static void writer_close(struct writer *writer)
 static enum status write_stream(const struct stream *stream, const char *stopped, int descriptor, bool text,
                                 struct error *error)
 {
-    struct writer writer;
-    enum status status = STATUS_OK;
-    TRY(writer_open(&writer, descriptor, error));
-    TRY(put_stream(&writer, stream, text, stopped, error));
-done:
-    writer_close(&writer);
-    return status;
+    FREED_BY(writer_close) struct writer writer = {0};
+    RETURN_IF_ERROR(writer_open(&writer, descriptor, error));
+    return put_stream(&writer, stream, text, stopped, error);
 }
 
 enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
@@ -228,12 +220,8 @@ enum status stream_write_stopped(const struct stream *stream, const char *reason
 
 enum status stream_write_rows(const struct section *section, int descriptor, struct error *error)
 {
-    struct writer writer;
-    enum status status = STATUS_OK;
-    TRY(writer_open(&writer, descriptor, error));
-    TRY(put_rows(&writer, section, error));
-    TRY(flush(&writer, error));
-done:
-    writer_close(&writer);
-    return status;
+    FREED_BY(writer_close) struct writer writer = {0};
+    RETURN_IF_ERROR(writer_open(&writer, descriptor, error));
+    RETURN_IF_ERROR(put_rows(&writer, section, error));
+    return flush(&writer, error);
 }

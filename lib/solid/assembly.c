@@ -50,17 +50,16 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
 
 static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
 {
-    enum status status;
     struct material_list *materials = &input->materials;
-    int32_t *vertex = NULL;
-    double *coordinate = NULL;
-    bool *at_edge = NULL;
+    SCRATCH int32_t *vertex = NULL;
+    SCRATCH double *coordinate = NULL;
+    SCRATCH bool *at_edge = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        TRY(assembly_soften_ends(input, materials, error));
-        TRY(assembly_edge_nodes(input, &at_edge, error));
+        RETURN_IF_ERROR(assembly_soften_ends(input, materials, error));
+        RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {
-        TRY(list_vertices(input, &vertex, &coordinate, error));
+        RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
     }
     struct smoothed_cells_input smoothed = {.x = input->cells.x,
                                             .cell_node = input->cells.node,
@@ -92,10 +91,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                               .at_edge = at_edge,
                               .smoothed = input->smoothed ? &smoothed : NULL,
                               .ranks = input->ranks};
-    TRY(body_build(&body, &system->body, error));
-done:
-    FREE_ALL(vertex, coordinate, at_edge);
-    return status;
+    return body_build(&body, &system->body, error);
 }
 
 /* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
@@ -139,7 +135,6 @@ void assembly_complete(struct assembly *input)
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
 {
-    enum status status;
     *system = (struct solid_system){.dim = input->cells.dim,
                                     .node_count = input->cells.node_count,
                                     .X = input->cells.x,
@@ -152,21 +147,17 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     input->curve_count = 0;
     constraint_rows_init(&system->rows, system->dim);
     constraint_rows_init(&system->penalties, system->dim);
-    TRY(NEW_ARRAY(&system->factor, system->curve_count, error));
-    TRY(lump_mass(input, system, error));
-    TRY(assembly_add_loads(input, system, error));
-    TRY(build_body(input, system, error));
-    TRY(assembly_complete_gravity(input, system, error));
-    TRY(field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
-    TRY(assembly_add_conditions(input, system, note, error));
-    TRY(assembly_add_points(input, system, note, error));
-    TRY(assembly_add_contacts(input, system, error));
-    TRY(system_share_penalties(system, error));
-done:
-    if (status != STATUS_OK) {
-        system_free(system);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
+    RETURN_IF_ERROR(lump_mass(input, system, error));
+    RETURN_IF_ERROR(assembly_add_loads(input, system, error));
+    RETURN_IF_ERROR(build_body(input, system, error));
+    RETURN_IF_ERROR(assembly_complete_gravity(input, system, error));
+    RETURN_IF_ERROR(
+        field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
+    RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_points(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
+    return system_share_penalties(system, error);
 }
 
 void material_list_free(struct material_list *list)
@@ -209,10 +200,9 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
 static enum status find_faces(const struct assembly *input, int least, bool sliding, bool **held,
                               struct error *error)
 {
-    enum status status;
-    int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
-    TRY(NEW_ARRAY(held, input->boundary.count, error));
-    TRY(NEW_ARRAY(&stamp, input->cells.node_count, error));
+    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
+    RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
         const struct condition *condition = &input->conditions[i];
         if (prescription_directions(condition, input->cells.dim) >= least &&
@@ -220,9 +210,7 @@ static enum status find_faces(const struct assembly *input, int least, bool slid
             mark_faces(input, &condition->facets, i + 1, stamp, *held);
         }
     }
-done:
-    free(stamp);
-    return status;
+    return STATUS_OK;
 }
 
 enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)

@@ -96,7 +96,7 @@ struct assembly {
 void assembly_complete(struct assembly *input);
 
 /* Build the system. `note` receives a remark that is no error, or an empty text. Errors: those of the parts;
- * STATUS_INPUT also for a node of no cell, and for conditions that disagree. On failure nothing is left. */
+ * STATUS_INPUT also for a node of no cell, and for conditions that disagree. */
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 

@@ -216,21 +216,18 @@ done:
 /* Rows on values at the nodes of facets or of sets. */
 static enum status add_nodes(struct prescription *p, struct error *error)
 {
-    enum status status;
     const struct assembly *input = p->input;
     const struct condition *condition = p->condition;
-    struct boundary_averages averages = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
     if (condition->facets.count > 0) {
-        TRY(boundary_nodes_build(&input->face_table, &condition->facets, &input->node_lists, input->node_phi,
-                                 &averages, error));
+        RETURN_IF_ERROR(boundary_nodes_build(&input->face_table, &condition->facets, &input->node_lists,
+                                             input->node_phi, &averages, error));
     } else {
-        TRY(boundary_list_build(input->cells.dim, input->cells.x, condition->nodes, condition->node_count,
-                                &input->node_lists, input->node_phi, &averages, error));
+        RETURN_IF_ERROR(boundary_list_build(input->cells.dim, input->cells.x, condition->nodes,
+                                            condition->node_count, &input->node_lists, input->node_phi,
+                                            &averages, error));
     }
-    TRY(add_all(p, &averages, NULL, averages.count, error));
-done:
-    boundary_averages_free(&averages);
-    return status;
+    return add_all(p, &averages, NULL, averages.count, error);
 }
 
 static enum status add_condition(struct prescription *p, struct error *error)
@@ -270,10 +267,9 @@ done:
 enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                     struct error *note, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct nodal_constraints nodal_constraints = {0};
-    struct held_directions held = {0};
-    TRY(held_build(input->cells.dim, input->cells.node_count, &held, error));
+    FREED_BY(nodal_constraints_free) struct nodal_constraints nodal_constraints = {0};
+    FREED_BY(held_free) struct held_directions held = {0};
+    RETURN_IF_ERROR(held_build(input->cells.dim, input->cells.node_count, &held, error));
     /* Conditions that hold few directions come first: what slides along a plane stays on it to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
         for (int64_t i = 0; i < input->condition_count; i++) {
@@ -285,13 +281,9 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
                                      .number = (int32_t)i};
             if (p.condition->kind != CONDITION_POINTS &&
                 prescription_directions(p.condition, input->cells.dim) == directions) {
-                TRY(add_condition(&p, error));
+                RETURN_IF_ERROR(add_condition(&p, error));
             }
         }
     }
-    TRY(nodal_constraints_check(input, &nodal_constraints, note, error));
-done:
-    nodal_constraints_free(&nodal_constraints);
-    held_free(&held);
-    return status;
+    return nodal_constraints_check(input, &nodal_constraints, note, error);
 }

@@ -85,58 +85,51 @@ static enum status add_between(const struct assembly *input, const struct contac
                                const struct boundary_averages *averages, struct contact *contact,
                                struct error *error)
 {
-    enum status status;
-    struct opposite opposite = {0};
-    int32_t *part = NULL;
+    FREED_BY(opposite_free) struct opposite opposite = {0};
+    SCRATCH int32_t *part = NULL;
     bool any;
     bool itself = condition->facets.facet == condition->opposite.facet;
-    TRY(NEW_ARRAY(&part, input->cells.node_count, error));
-    TRY(opposite_parts(&input->cells, part, error));
-    TRY(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
-    TRY(contact_between_build(points, averages, input->cells.dim, input->cells.node_count,
-                              input->face_table.per_face, &opposite, part, itself ? 0 : condition->sign,
-                              condition->stiffness, !condition->whole, contact, &any, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, input->cells.node_count, error));
+    RETURN_IF_ERROR(opposite_parts(&input->cells, part, error));
+    RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
+    RETURN_IF_ERROR(contact_between_build(
+        points, averages, input->cells.dim, input->cells.node_count, input->face_table.per_face, &opposite,
+        part, itself ? 0 : condition->sign, condition->stiffness, !condition->whole, contact, &any, error));
     if (!any && !condition->whole) {
-        status = fail(error, STATUS_INPUT,
-                      "%s: no facet faces another one at rest: name groups whose outsides look at each other",
-                      condition->where);
+        return fail(error, STATUS_INPUT,
+                    "%s: no facet faces another one at rest: name groups whose outsides look at each other",
+                    condition->where);
     }
-done:
-    free(part);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_contact(const struct assembly *input, int32_t number, struct solid_system *system,
                                struct error *error)
 {
-    enum status status;
     const struct contact_condition *condition = &input->contacts[number];
     bool between = condition->opposite.count > 0;
-    struct rigid_surface surface = {0};
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
     struct boundary_averages *points = &system->contact_points[number],
                              *averages = &system->contact_averages[number];
     struct contact *contact = &system->contacts[number];
     system->contact_count++;
-    TRY(build_points(input, &condition->facets, between, points, averages, error));
+    RETURN_IF_ERROR(build_points(input, &condition->facets, between, points, averages, error));
     if (between) {
-        TRY(add_between(input, condition, points, averages, contact, error));
+        RETURN_IF_ERROR(add_between(input, condition, points, averages, contact, error));
     } else {
-        TRY(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip, &surface,
-                        error));
-        status = contact_build(points, averages->count > 0 ? averages : NULL, system->X, system->dim,
-                               &surface, condition->stiffness, contact, error);
-        if (status != STATUS_OK) {
-            return fail_in(error, status, "%s", condition->where);
-        }
+        RETURN_IF_ERROR(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip,
+                                    &surface, error));
+        RETURN_IF_ERROR(fail_in(error,
+                                contact_build(points, averages->count > 0 ? averages : NULL, system->X,
+                                              system->dim, &surface, condition->stiffness, contact, error),
+                                "%s", condition->where));
     }
     if (condition->stiffness == 0.0) {
         contact_set_stiffness(contact, (averages->count > 0 ? points_share : 1.0) *
                                            assembly_penalty_modulus(system, penalty_factor));
     }
     contact->section = number;
-    TRY(add_motion(condition, system, &contact->motion, error));
-done:
-    return status;
+    return add_motion(condition, system, &contact->motion, error);
 }
 
 enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,

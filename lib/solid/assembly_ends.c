@@ -23,25 +23,20 @@ static const double end_stiffness = 0.85;
 static enum status find_ends(const struct assembly *input, enum boundary_end kind, int least, bool **end,
                              struct error *error)
 {
-    enum status status;
-    bool *held = NULL, *touched = NULL;
-    TRY(assembly_held_faces(input, least, &held, error));
-    TRY(assembly_held_faces(input, 1, &touched, error));
-    TRY(NEW_ARRAY(end, input->cells.node_count, error));
-    TRY(boundary_find_ends(&input->face_table, kind, held, touched, *end, error));
-done:
-    FREE_ALL(held, touched);
-    return status;
+    SCRATCH bool *held = NULL, *touched = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, least, &held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &touched, error));
+    RETURN_IF_ERROR(NEW_ARRAY(end, input->cells.node_count, error));
+    return boundary_find_ends(&input->face_table, kind, held, touched, *end, error);
 }
 
 /* softer[cells.count]: cells that have a node on a smooth end, and are not beneath held facets. */
 static enum status mark_cells(const struct assembly *input, bool *softer, struct error *error)
 {
-    enum status status;
     int corners = input->cells.dim + 1;
-    bool *held = NULL, *end = NULL;
-    TRY(assembly_held_faces(input, 1, &held, error));
-    TRY(find_ends(input, BOUNDARY_END_SMOOTH, 1, &end, error));
+    SCRATCH bool *held = NULL, *end = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    RETURN_IF_ERROR(find_ends(input, BOUNDARY_END_SMOOTH, 1, &end, error));
     for (int64_t i = 0; i < input->cells.count * corners; i++) {
         softer[i / corners] = softer[i / corners] || end[input->cells.node[i]];
     }
@@ -50,9 +45,7 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
             softer[input->boundary.cell[2 * f]] = false;
         }
     }
-done:
-    FREE_ALL(held, end);
-    return status;
+    return STATUS_OK;
 }
 
 /* Append the material m as cells at smooth ends have it. */
@@ -68,15 +61,14 @@ static void add_softened(struct material_list *list, int32_t m)
 enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
                                  struct error *error)
 {
-    enum status status;
     const int32_t *cell = input->point_cell;
-    bool *softer = NULL;
-    int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
-    TRY(RESIZE_ARRAY(&list->items, 2 * list->count, error));
-    TRY(RESIZE_ARRAY(&list->section, 2 * list->count, error));
-    TRY(NEW_ARRAY(&softer, input->cells.count, error));
-    TRY(NEW_ARRAY(&softened, list->count, error));
-    TRY(mark_cells(input, softer, error));
+    SCRATCH bool *softer = NULL;
+    SCRATCH int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, 2 * list->count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->section, 2 * list->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&softer, input->cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&softened, list->count, error));
+    RETURN_IF_ERROR(mark_cells(input, softer, error));
     for (int64_t q = 0; q < input->point_count; q++) {
         int32_t m = list->of_point[q];
         if (!softer[cell[q]]) {
@@ -88,9 +80,7 @@ enum status assembly_soften_ends(const struct assembly *input, struct material_l
         }
         list->of_point[q] = (int32_t)softened[m];
     }
-done:
-    FREE_ALL(softer, softened);
-    return status;
+    return STATUS_OK;
 }
 
 /* In three dimensions only: triangles are right to .2 % as they are. A clamped side ends where it meets a

@@ -44,18 +44,18 @@ static bool weighs_later(const struct assembly *input)
 
 static enum status add_gravity(const struct assembly *input, struct solid_system *system, struct error *error)
 {
-    enum status status;
     int dim = system->dim;
-    double *force, *mass = NULL;
-    TRY(new_load(system, input->gravity_curve, &force, error));
+    double *force;
+    SCRATCH double *mass = NULL;
+    RETURN_IF_ERROR(new_load(system, input->gravity_curve, &force, error));
     /* In time by the lumped mass, so that a free body falls as one. */
     for (int64_t i = 0; input->in_time && i < system->node_count * dim; i++) {
         force[i] = system->lumped_mass[i / dim] * input->gravity[i % dim];
     }
     if (input->in_time || weighs_later(input)) {
-        goto done;
+        return STATUS_OK;
     }
-    TRY(share_mass(input, &mass, error));
+    RETURN_IF_ERROR(share_mass(input, &mass, error));
     for (int64_t r = 0; r < input->lists.count; r++) {
         for (int64_t i = input->lists.ptr[r]; i < input->lists.ptr[r + 1]; i++) {
             for (int a = 0; a < dim; a++) {
@@ -63,25 +63,23 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
             }
         }
     }
-done:
-    free(mass);
-    return status;
+    return STATUS_OK;
 }
 
 enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
                                       struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct body *body = &system->body;
     const struct average_table *faces = &body->cells.averages.given[0];
     int dim = system->dim;
-    double *force, *mass = NULL, *by_place = NULL;
+    double *force;
+    SCRATCH double *mass = NULL, *by_place = NULL;
     if (!assembly_has_gravity(input) || !weighs_later(input)) {
         return STATUS_OK;
     }
     force = system->loads[0].force;
-    TRY(share_mass(input, &mass, error));
-    TRY(NEW_ARRAY(&by_place, system->node_count * dim, error));
+    RETURN_IF_ERROR(share_mass(input, &mass, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&by_place, system->node_count * dim, error));
     for (int64_t r = 0; r < faces->row_count; r++) {
         for (int64_t i = faces->ptr[r]; i < faces->ptr[r + 1]; i++) {
             int64_t place = body->node_place[faces->idx[i]];
@@ -94,19 +92,16 @@ enum status assembly_complete_gravity(const struct assembly *input, struct solid
     for (int64_t i = 0; i < system->node_count * dim; i++) {
         force[i] = by_place[body->node_place[i / dim] * dim + i % dim];
     }
-done:
-    FREE_ALL(mass, by_place);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_traction(const struct assembly *input, const struct load *load,
                                 struct solid_system *system, struct error *error)
 {
-    enum status status;
-    struct boundary_averages averages = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
     double *force;
-    TRY(boundary_averages_build(&input->face_table, &load->facets, &averages, error));
-    TRY(new_load(system, load->curve, &force, error));
+    RETURN_IF_ERROR(boundary_averages_build(&input->face_table, &load->facets, &averages, error));
+    RETURN_IF_ERROR(new_load(system, load->curve, &force, error));
     for (int64_t a = 0; a < averages.count; a++) {
         struct average average = average_of_boundary(&averages, a);
         double amount[3];
@@ -115,9 +110,7 @@ static enum status add_traction(const struct assembly *input, const struct load 
         }
         average_spread(&average, system->dim, amount, force);
     }
-done:
-    boundary_averages_free(&averages);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_force(const struct assembly *input, const struct load *load,

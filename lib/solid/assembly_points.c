@@ -148,12 +148,11 @@ static double usual_displacement(const struct measured *measured)
 /* The energy scale of the springs, if there are any. */
 static enum status set_energy(struct point_condition *p, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct measured *measured = p->measured;
     struct measured_region region = {.body_size = p->input->extent, .model_error = p->condition->model_error};
-    bool *seen = NULL;
+    SCRATCH bool *seen = NULL;
     double points = 0.0;
-    TRY(NEW_ARRAY(&seen, p->system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, p->system->node_count, error));
     for (int64_t i = 0; i < measured->count; i++) {
         int32_t node = nearest_node(p, i);
         for (int64_t k = p->condition->field.ptr[i];
@@ -168,7 +167,7 @@ static enum status set_energy(struct point_condition *p, struct error *error)
         }
     }
     if (!(points > 0.0)) {
-        goto done;
+        return STATUS_OK;
     }
     region.shear_modulus /= points;
     region.volume /= points;
@@ -176,42 +175,35 @@ static enum status set_energy(struct point_condition *p, struct error *error)
         region.model_error = usual_displacement(measured);
     }
     if (!(region.model_error > 0.0)) {
-        status = fail(error, STATUS_INPUT,
-                      "%s: points %s: all that was measured is 0: say by model_error how far off the scene "
-                      "may be without them, m",
-                      p->condition->where, p->condition->table);
-        goto done;
+        return fail(error, STATUS_INPUT,
+                    "%s: points %s: all that was measured is 0: say by model_error how far off the scene "
+                    "may be without them, m",
+                    p->condition->where, p->condition->table);
     }
     p->energy = measured_energy(measured, &region);
-done:
-    free(seen);
-    return status;
+    return STATUS_OK;
 }
 
 /* Exact rows from `first` on, one for each component that is known, that leave each other or the sections
  * before too little. */
 static enum status check_rows(const struct point_condition *p, int64_t first, struct error *error)
 {
-    enum status status;
     const struct constraint_rows *rows = &p->system->rows;
     int dim = p->measured->dim;
     int64_t row = first;
-    bool *dependent = NULL;
-    TRY(NEW_ARRAY(&dependent, rows->count, error));
-    TRY(measured_dependent(rows, p->system->node_count, dependent, error));
+    SCRATCH bool *dependent = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&dependent, rows->count, error));
+    RETURN_IF_ERROR(measured_dependent(rows, p->system->node_count, dependent, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
         for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {
             if (!isnan(p->measured->u[i * dim + a]) && dependent[row++]) {
-                status = fail_at(p, i, error,
-                                 "too many points for the nodes there, or one on what another section holds: "
-                                 "leave it out, give standard deviations, or refine the cloud");
-                goto done;
+                return fail_at(p, i, error,
+                               "too many points for the nodes there, or one on what another section holds: "
+                               "leave it out, give standard deviations, or refine the cloud");
             }
         }
     }
-done:
-    free(dependent);
-    return status;
+    return STATUS_OK;
 }
 
 /* How far what a row prescribes is off what was measured at a point, along the row's direction; 0 where the
@@ -277,22 +269,19 @@ static enum status compare_near(const struct point_condition *p, int64_t i, cons
 
 static enum status compare_held(const struct point_condition *p, struct error *error)
 {
-    enum status status;
-    struct point_grid grid = {0};
-    struct index_list near = {0};
-    double *x = NULL, *radius = NULL;
-    TRY(grid_of_rows(p, &grid, &x, &radius, error));
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    SCRATCH double *x = NULL, *radius = NULL;
+    RETURN_IF_ERROR(grid_of_rows(p, &grid, &x, &radius, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
         near.count = 0;
         if (!(p->measured->deviation[i] > 0.0)) {
-            TRY(point_grid_query(&grid, p->measured->x + i * p->measured->dim, 1.0, &near, error));
-            TRY(compare_near(p, i, &near, error));
+            RETURN_IF_ERROR(
+                point_grid_query(&grid, p->measured->x + i * p->measured->dim, 1.0, &near, error));
+            RETURN_IF_ERROR(compare_near(p, i, &near, error));
         }
     }
-done:
-    point_grid_free(&grid);
-    FREE_ALL(near.index, x, radius);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_condition(struct point_condition *p, struct error *note, struct error *error)

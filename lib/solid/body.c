@@ -25,34 +25,32 @@ static enum material_model model_of(const struct body_input *input, int64_t poin
  * curve, too. */
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
-    int32_t *model = NULL;
-    int64_t *root = NULL;
-    TRY(NEW_ARRAY(&model, input->point_count, error));
-    TRY(NEW_ARRAY(&body->order, input->point_count, error));
-    TRY(NEW_ARRAY(&body->node_order, input->node_count, error));
-    TRY(NEW_ARRAY(&body->node_place, input->node_count, error));
+    SCRATCH int32_t *model = NULL;
+    SCRATCH int64_t *root = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&model, input->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order, input->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->node_place, input->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
         model[q] = (int32_t)model_of(input, q);
     }
-    TRY(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
+    RETURN_IF_ERROR(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
     if (body->smoothed) {
-        TRY(NEW_ARRAY(&root, input->point_count, error));
-        TRY(merged_cells_find(input, root, error));
-        TRY(merged_cells_order(root, body, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
+        RETURN_IF_ERROR(merged_cells_find(input, root, error));
+        RETURN_IF_ERROR(merged_cells_order(root, body, error));
     }
     for (int64_t n = 0; n < input->node_count; n++) {
         body->node_order[n] = n;
     }
     if (input->node_x != NULL) {
-        TRY(renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->node_order, error));
+        RETURN_IF_ERROR(
+            renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->node_order, error));
     }
     for (int64_t n = 0; n < input->node_count; n++) {
         body->node_place[body->node_order[n]] = (int32_t)n;
     }
-done:
-    FREE_ALL(model, root);
-    return status;
+    return STATUS_OK;
 }
 
 /* Per-point data in the body's order. */
@@ -139,28 +137,25 @@ static enum status copy_rows(const struct body_input *input, const struct body *
 /* The table of gradients at points. */
 static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     int64_t rows = body->point_count * body->dim;
-    bool *wanted = NULL;
+    SCRATCH bool *wanted = NULL;
     if (rows > INT32_MAX) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
     }
-    TRY(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count, &body->rows.matrix,
-                  error));
+    RETURN_IF_ERROR(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count,
+                              &body->rows.matrix, error));
     if (share->ranks != NULL) {
-        TRY(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node,
-                      &body->rows.columns, error));
-        TRY(sparse_rows_used(&body->rows.columns, &wanted, error));
+        RETURN_IF_ERROR(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node,
+                                  &body->rows.columns, error));
+        RETURN_IF_ERROR(sparse_rows_used(&body->rows.columns, &wanted, error));
     }
-    TRY(body_share_rows(body, wanted, error));
-    TRY(stretches_of(share->begin_point * body->dim, share->end_point * body->dim, NULL, &share->values,
-                     error));
-    TRY(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
+    RETURN_IF_ERROR(body_share_rows(body, wanted, error));
+    RETURN_IF_ERROR(stretches_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
+                                 &share->values, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
     body->pair_count = input->ptr[body->point_count];
-done:
-    free(wanted);
-    return status;
+    return STATUS_OK;
 }
 
 /* Waiting for each other costs threads some microseconds a step: each must have more to do than that. A pair
@@ -176,26 +171,23 @@ static int worthwhile_threads(const struct body *body)
  */
 static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status = STATUS_OK;
     const struct smoothed_cells_input *cells = input->smoothed;
-    int64_t of_faces = cells->face_ptr[cells->faces->row_count], *each = NULL;
+    int64_t of_faces = cells->face_ptr[cells->faces->row_count];
+    SCRATCH int64_t *each = NULL;
     body->pair_count = cells->node_ptr[body->node_count];
     if (cells->face_reader != NULL) {
-        TRY(ranks_list(input->ranks, of_faces, &each, error));
+        RETURN_IF_ERROR(ranks_list(input->ranks, of_faces, &each, error));
         of_faces = 0;
         for (int r = 0; r < input->ranks->count; r++) {
             of_faces += each[r];
         }
     }
     body->pair_count += of_faces;
-done:
-    free(each);
-    return status;
+    return STATUS_OK;
 }
 
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     *body = (struct body){.dim = input->dim,
                           .node_count = input->node_count,
                           .point_count = input->point_count,
@@ -207,28 +199,24 @@ enum status body_build(const struct body_input *input, struct body *body, struct
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
                     (long long)body->point_count);
     }
-    TRY(order_all(input, body, error));
-    TRY(cut_blocks(input, body, error));
-    TRY(body_share_cut(input, body, error));
-    TRY(copy_points(input, body, error));
+    RETURN_IF_ERROR(order_all(input, body, error));
+    RETURN_IF_ERROR(cut_blocks(input, body, error));
+    RETURN_IF_ERROR(body_share_cut(input, body, error));
+    RETURN_IF_ERROR(copy_points(input, body, error));
     if (body->averaged) {
-        TRY(nodal_volumes_build(input, body, error));
+        RETURN_IF_ERROR(nodal_volumes_build(input, body, error));
     }
     if (!body->smoothed) {
-        TRY(copy_gradients(input, body, error));
+        RETURN_IF_ERROR(copy_gradients(input, body, error));
     } else {
-        TRY(count_pairs(input, body, error));
-        TRY(smoothed_cells_build(input->smoothed, body, error));
+        RETURN_IF_ERROR(count_pairs(input, body, error));
+        RETURN_IF_ERROR(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);
-    TRY(row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
-    TRY(body_share_nodes(body, error));
-    TRY(body_make_bounds(body, error));
-done:
-    if (status != STATUS_OK) {
-        body_free(body);
-    }
-    return status;
+    RETURN_IF_ERROR(
+        row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
+    RETURN_IF_ERROR(body_share_nodes(body, error));
+    return body_make_bounds(body, error);
 }
 
 void body_free(struct body *body)

@@ -56,29 +56,26 @@ static enum status list_points(struct body *body, struct error *error)
 
 enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
-    double *work = NULL, *node_work = NULL;
+    SCRATCH double *work = NULL, *node_work = NULL;
     int rank = ranks_rank(input->ranks);
     share->ranks = input->ranks;
-    TRY(NEW_ARRAY(&work, body->block_count, error));
-    TRY(NEW_ARRAY(&node_work, body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&work, body->block_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&node_work, body->node_count, error));
     if (share->ranks != NULL) {
         measure_blocks(input, body, work);
         measure_nodes(input, body, node_work);
     }
-    TRY(ranks_share(share->ranks, body->block_count, work, &share->block_first, error));
-    TRY(ranks_share(share->ranks, body->node_count, node_work, &share->node_first, error));
-    TRY(list_points(body, error));
+    RETURN_IF_ERROR(ranks_share(share->ranks, body->block_count, work, &share->block_first, error));
+    RETURN_IF_ERROR(ranks_share(share->ranks, body->node_count, node_work, &share->node_first, error));
+    RETURN_IF_ERROR(list_points(body, error));
     share->begin_block = share->block_first[rank];
     share->end_block = share->block_first[rank + 1];
     share->begin_point = share->point_first[rank];
     share->end_point = share->point_first[rank + 1];
     share->begin_node = share->node_first[rank];
     share->end_node = share->node_first[rank + 1];
-done:
-    FREE_ALL(work, node_work);
-    return status;
+    return STATUS_OK;
 }
 
 static int owner_of_point(const void *body, int64_t point)
@@ -89,31 +86,28 @@ static int owner_of_point(const void *body, int64_t point)
 
 enum status body_share_volumes(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     const struct nodal_volumes *volumes = &body->volumes;
     int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
-    bool *wanted = NULL;
+    SCRATCH bool *wanted = NULL;
     int64_t slices = (volumes->count + NODAL_PRESSURE_ROWS - 1) / NODAL_PRESSURE_ROWS;
-    TRY(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
-    TRY(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
+    RETURN_IF_ERROR(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
     for (int r = 0; r <= ranks_count(share->ranks); r++) {
         int64_t row = share->slice_first[r] * NODAL_PRESSURE_ROWS;
         share->volume_first[r] = row < volumes->count ? row : volumes->count;
     }
     if (share->ranks != NULL) {
-        TRY(NEW_ARRAY(&wanted, body->point_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->point_count, error));
         int64_t begin = volumes->ptr[share->volume_first[rank]];
         int64_t end = volumes->ptr[share->volume_first[rank + 1]];
         for (int64_t i = begin; i < end; i++) {
             wanted[volumes->slot[i] / vertices] = true;
         }
-        TRY(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body, &share->strains,
-                       error));
+        RETURN_IF_ERROR(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body,
+                                   &share->strains, error));
     }
-done:
-    free(wanted);
-    return status;
+    return STATUS_OK;
 }
 
 static int owner_of_volume(const void *body, int64_t volume)
@@ -124,16 +118,15 @@ static int owner_of_volume(const void *body, int64_t volume)
 
 enum status body_share_pressures(struct body *body, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct body_share *share = &body->share;
     const struct nodal_pressures *pressures = &body->volumes.pressures;
     const int64_t *first = share->slice_first + ranks_rank(share->ranks);
     int vertices = body->dim + 1;
-    bool *wanted = NULL;
+    SCRATCH bool *wanted = NULL;
     if (share->ranks == NULL) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&wanted, body->volumes.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->volumes.count, error));
     for (int64_t i = pressures->ptr[first[0]] * NODAL_PRESSURE_ROWS;
          i < pressures->ptr[first[1]] * NODAL_PRESSURE_ROWS; i++) {
         wanted[pressures->idx[i]] = true;
@@ -141,11 +134,8 @@ enum status body_share_pressures(struct body *body, struct error *error)
     for (int64_t i = share->begin_point * vertices; i < share->end_point * vertices; i++) {
         wanted[body->volumes.of_point[i]] = true;
     }
-    TRY(halo_build(share->ranks, body->volumes.count, wanted, 1, owner_of_volume, body, &share->pressures,
-                   error));
-done:
-    free(wanted);
-    return status;
+    return halo_build(share->ranks, body->volumes.count, wanted, 1, owner_of_volume, body, &share->pressures,
+                      error);
 }
 
 static int64_t row_count(const struct body *body)
@@ -234,12 +224,11 @@ static bool has_sent(const struct block *block, const bool *is_sent)
 /* The order of own blocks. */
 static enum status order_blocks(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
-    bool *is_sent = NULL;
+    SCRATCH bool *is_sent = NULL;
     int64_t border = 0, inner = 0;
-    TRY(NEW_ARRAY(&is_sent, body->point_count, error));
-    TRY(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
     mark_sent(body, &share->strains, point_itself, is_sent);
     mark_sent(body, &share->corners, point_of_corner, is_sent);
     if (!body->smoothed) {
@@ -252,31 +241,25 @@ static enum status order_blocks(struct body *body, struct error *error)
         bool at_border = has_sent(&body->blocks[b], is_sent);
         share->block[at_border ? border++ : share->border_count + inner++] = b;
     }
-done:
-    free(is_sent);
-    return status;
+    return STATUS_OK;
 }
 
 /* Of the rows that are summed here those for others, and the rest. */
 static enum status order_sums(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     int64_t rows = row_count(body);
-    bool *is_sent = NULL, *is_inner = NULL;
-    TRY(NEW_ARRAY(&is_sent, rows, error));
-    TRY(NEW_ARRAY(&is_inner, rows, error));
+    SCRATCH bool *is_sent = NULL, *is_inner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&is_inner, rows, error));
     for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
         is_sent[share->rows.send[i]] = true;
     }
     for (int64_t r = 0; r < rows; r++) {
         is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
     }
-    TRY(stretches_of(0, rows, is_sent, &share->sums, error));
-    TRY(stretches_of(0, rows, is_inner, &share->inner_sums, error));
-done:
-    FREE_ALL(is_sent, is_inner);
-    return status;
+    RETURN_IF_ERROR(stretches_of(0, rows, is_sent, &share->sums, error));
+    return stretches_of(0, rows, is_inner, &share->inner_sums, error);
 }
 
 static int owner_of_corner(const void *body, int64_t corner)
@@ -287,24 +270,20 @@ static int owner_of_corner(const void *body, int64_t corner)
 /* The corners that the rows that are summed here take. */
 static enum status share_corners(struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
     int64_t rows = row_count(body);
-    bool *sums = NULL, *corners = NULL;
-    TRY(NEW_ARRAY(&sums, rows, error));
-    TRY(NEW_ARRAY(&corners, 2 * averages->corner_count, error));
+    SCRATCH bool *sums = NULL, *corners = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&sums, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&corners, 2 * averages->corner_count, error));
     for (int64_t r = 0; r < rows; r++) {
         sums[r] = owner_of_row(body, r) == share->ranks->rank;
         for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && sums[r]; i++) {
             corners[averages->corner[i]] = true;
         }
     }
-    TRY(halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
-                   owner_of_corner, body, &share->corners, error));
-done:
-    FREE_ALL(sums, corners);
-    return status;
+    return halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
+                      owner_of_corner, body, &share->corners, error);
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
@@ -325,17 +304,13 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
 
 enum status body_share_nodes(struct body *body, struct error *error)
 {
-    enum status status;
     const struct sparse *matrix = &body->rows.matrix;
-    bool *wanted = NULL;
-    TRY(NEW_ARRAY(&wanted, body->node_count, error));
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->node_count, error));
     for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
         wanted[matrix->idx[i]] = true;
     }
-    TRY(stretches_of(0, body->node_count, wanted, &body->share.placed, error));
-done:
-    free(wanted);
-    return status;
+    return stretches_of(0, body->node_count, wanted, &body->share.placed, error);
 }
 
 bool body_share_has_node(const struct body *body, int64_t node)

@@ -7,7 +7,6 @@
 enum status cell_functions_make(const struct body *body, struct cell_functions *functions,
                                 struct error *error)
 {
-    enum status status;
     const struct sparse *matrix = &body->rows.matrix;
     int64_t most = 0;
     *functions = (struct cell_functions){0};
@@ -22,14 +21,9 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
         }
         most = sum > most ? sum : most;
     }
-    TRY(NEW_ARRAY(&functions->slot, body->node_count, error));
-    TRY(NEW_ARRAY(&functions->node, most, error));
-    TRY(NEW_ARRAY(&functions->gradient, most * body->dim, error));
-done:
-    if (status != STATUS_OK) {
-        cell_functions_free(functions);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&functions->slot, body->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&functions->node, most, error));
+    return NEW_ARRAY(&functions->gradient, most * body->dim, error);
 }
 
 void cell_functions_free(struct cell_functions *functions)

@@ -70,16 +70,15 @@ static enum status add_centre(struct coarse_space *coarse, const struct neighbou
 static enum status pick_centres(struct coarse_space *coarse, const struct neighbours *neighbours,
                                 struct error *error)
 {
-    enum status status;
-    struct queue queue = {0};
-    double *least = NULL;
+    FREED_BY(queue_free) struct queue queue = {0};
+    SCRATCH double *least = NULL;
     int64_t next = 0;
-    TRY(NEW_ARRAY(&least, coarse->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&least, coarse->node_count, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         least[n] = INFINITY;
     }
     for (int64_t c = 0; c < coarse->centre_count; c++) {
-        TRY(add_centre(coarse, neighbours, c, next, &queue, error));
+        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, error));
         for (int64_t n = 0; n < coarse->node_count; n++) {
             least[n] = fmin(least[n], coarse->share[n][c]);
         }
@@ -88,10 +87,7 @@ static enum status pick_centres(struct coarse_space *coarse, const struct neighb
         }
     }
     coarse->radius = reach * least[next];
-done:
-    queue_free(&queue);
-    free(least);
-    return status;
+    return STATUS_OK;
 }
 
 /* Quartic spline of a distance. */
@@ -118,22 +114,17 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
                                const struct neighbours *neighbours, int64_t centre_count,
                                struct coarse_space *coarse, struct error *error)
 {
-    enum status status = STATUS_OK;
     *coarse = (struct coarse_space){.dim = dim,
                                     .node_count = node_count,
                                     .X = X,
                                     .centre_count = centre_count,
                                     .count = centre_count * (dim + 1)};
     if (centre_count > 0) {
-        TRY(NEW_ARRAY(&coarse->share, node_count, error));
-        TRY(pick_centres(coarse, neighbours, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, node_count, error));
+        RETURN_IF_ERROR(pick_centres(coarse, neighbours, error));
         share_unity(coarse);
     }
-done:
-    if (status != STATUS_OK) {
-        coarse_space_free(coarse);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void coarse_space_free(struct coarse_space *coarse)

@@ -58,10 +58,9 @@ static enum status compare(const struct assembly *input, const struct nodal_cons
 enum status nodal_constraints_check(const struct assembly *input, struct nodal_constraints *nodal_constraints,
                                     struct error *note, struct error *error)
 {
-    enum status status;
-    double *largest = NULL;
+    SCRATCH double *largest = NULL;
     note->text[0] = '\0';
-    TRY(NEW_ARRAY(&largest, input->condition_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&largest, input->condition_count, error));
     for (int64_t c = 0; c < nodal_constraints->count; c++) {
         double *most = &largest[nodal_constraints->list[c].condition];
         *most = fmax(*most, fabs(nodal_constraints->list[c].value));
@@ -80,15 +79,12 @@ enum status nodal_constraints_check(const struct assembly *input, struct nodal_c
                 continue;
             }
             if (!(jump(first, second, input->cells.dim) <= largest_jump * most)) {
-                status = STATUS_INPUT;
-                goto done;
+                return STATUS_INPUT;
             }
             if (note->text[0] == '\0') {
                 *note = *error;
             }
         }
     }
-done:
-    free(largest);
-    return status;
+    return STATUS_OK;
 }

@@ -139,16 +139,16 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
 static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                             int64_t **ptr, int64_t **column, double **value, struct error *error)
 {
-    enum status status;
     const struct sparse lists = {rows->list_count, node_count, rows->ptr, rows->idx, rows->phi};
-    struct sparse of_node = {0};
-    int64_t *touched = NULL, *last = NULL, capacity = 0, at = 0; /* last: the list that touched each last */
-    double *sum = NULL;
-    TRY(sparse_transpose(&lists, &of_node, error));
-    TRY(NEW_ARRAY(ptr, rows->count + 1, error));
-    TRY(NEW_ARRAY(&touched, rows->list_count, error));
-    TRY(NEW_ARRAY(&last, rows->list_count, error));
-    TRY(NEW_ARRAY(&sum, rows->list_count, error));
+    FREED_BY(sparse_free) struct sparse of_node = {0};
+    SCRATCH int64_t *touched = NULL, *last = NULL;
+    int64_t capacity = 0, at = 0; /* last: the list that touched each last */
+    SCRATCH double *sum = NULL;
+    RETURN_IF_ERROR(sparse_transpose(&lists, &of_node, error));
+    RETURN_IF_ERROR(NEW_ARRAY(ptr, rows->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&touched, rows->list_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&last, rows->list_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sum, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         int64_t count = 0;
         for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
@@ -172,8 +172,8 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
                     }
                     if (at == capacity) {
                         capacity = at * 2 + 1024;
-                        TRY(RESIZE_ARRAY(column, capacity, error));
-                        TRY(RESIZE_ARRAY(value, capacity, error));
+                        RETURN_IF_ERROR(RESIZE_ARRAY(column, capacity, error));
+                        RETURN_IF_ERROR(RESIZE_ARRAY(value, capacity, error));
                     }
                     (*column)[at] = s;
                     (*value)[at++] = cosine * sum[touched[t]];
@@ -182,55 +182,44 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
             (*ptr)[r + 1] = at;
         }
     }
-done:
-    sparse_free(&of_node);
-    FREE_ALL(touched, last, sum);
-    return status;
+    return STATUS_OK;
 }
 
 enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                                  double least, struct envelope *factor, struct error *error)
 {
-    enum status status;
-    int64_t *ptr = NULL, *column = NULL;
-    double *value = NULL;
-    TRY(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    TRY(envelope_factorise(rows->count, ptr, column, value, least, factor, error));
-done:
-    FREE_ALL(ptr, column, value);
-    return status;
+    SCRATCH int64_t *ptr = NULL, *column = NULL;
+    SCRATCH double *value = NULL;
+    RETURN_IF_ERROR(assemble(rows, node_count, mass, &ptr, &column, &value, error));
+    return envelope_factorise(rows->count, ptr, column, value, least, factor, error);
 }
 
 /* Of several processes: what each does, of about the same work, and the nodes that its rows of L^T need. */
 static enum status share(struct constraint *constraint, bool **wanted, struct error *error)
 {
-    enum status status;
     const struct constraint_rows *rows = constraint->rows;
     const struct ranks *ranks = constraint->inverse->ranks;
-    double *work = NULL;
-    TRY(inverse_factor_wanted(constraint->inverse, wanted, error));
-    TRY(NEW_ARRAY(&work, rows->list_count, error));
+    SCRATCH double *work = NULL;
+    RETURN_IF_ERROR(inverse_factor_wanted(constraint->inverse, wanted, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&work, rows->list_count, error));
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
     }
-    TRY(ranks_share(ranks, rows->list_count, work, &constraint->list_first, error));
-    TRY(NEW_ARRAY(&constraint->row_first, ranks->count + 1, error));
+    RETURN_IF_ERROR(ranks_share(ranks, rows->list_count, work, &constraint->list_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&constraint->row_first, ranks->count + 1, error));
     for (int r = 0; r <= ranks->count; r++) {
         constraint->row_first[r] = rows->first[constraint->list_first[r]];
     }
-    TRY(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
+    RETURN_IF_ERROR(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
     constraint->ranks = ranks;
-done:
-    free(work);
-    return status;
+    return STATUS_OK;
 }
 
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                              const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
-    enum status status;
-    bool *wanted = NULL;
+    SCRATCH bool *wanted = NULL;
     *constraint = (struct constraint){.node_count = node_count,
                                       .rows = rows,
                                       .mass = mass,
@@ -239,20 +228,15 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
     if (rows->count == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&constraint->multiplier, rows->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
     if (inverse != NULL) {
-        TRY(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
         rows = inverse_rows;
     }
-    TRY(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    TRY(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error) : STATUS_OK);
-    TRY(constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error));
-done:
-    free(wanted);
-    if (status != STATUS_OK) {
-        constraint_free(constraint);
-    }
-    return status;
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
+    RETURN_IF_ERROR(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error)
+                                                              : STATUS_OK);
+    return constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error);
 }
 
 void constraint_free(struct constraint *constraint)

@@ -21,7 +21,6 @@ static void weigh(struct sparse *lists, const double *mass, const bool *wanted)
 enum status constraint_nodes_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
                                    const bool *wanted, struct constraint_nodes *nodes, struct error *error)
 {
-    enum status status;
     static int64_t none[1]; /* of no rows */
     const struct sparse by_list = {.row_count = rows->list_count,
                                    .column_count = node_count,
@@ -29,18 +28,14 @@ enum status constraint_nodes_build(const struct constraint_rows *rows, int64_t n
                                    .idx = rows->idx,
                                    .value = rows->phi};
     *nodes = (struct constraint_nodes){.rows = rows};
-    TRY(NEW_ARRAY(&nodes->on_list, rows->list_count * rows->dim, error));
-    TRY(NEW_ARRAY(&nodes->used, rows->list_count, error));
-    TRY(sparse_transpose(&by_list, &nodes->lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&nodes->on_list, rows->list_count * rows->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&nodes->used, rows->list_count, error));
+    RETURN_IF_ERROR(sparse_transpose(&by_list, &nodes->lists, error));
     weigh(&nodes->lists, mass, wanted);
     for (int64_t i = 0; i < nodes->lists.ptr[node_count]; i++) {
         nodes->used[nodes->lists.idx[i]] = true;
     }
-done:
-    if (status != STATUS_OK) {
-        constraint_nodes_free(nodes);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void constraint_nodes_free(struct constraint_nodes *nodes)

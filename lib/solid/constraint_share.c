@@ -8,13 +8,13 @@
 /* null[count * dropped]: for each row that was dropped, the combination of rows that is zero. */
 static enum status null_rows(const struct constraint *constraint, double *null, struct error *error)
 {
-    enum status status;
     const struct constraint_rows *rows = constraint->rows;
-    int64_t size = constraint->node_count * rows->dim, *dropped = NULL;
-    double *unit = NULL, *u = NULL;
-    TRY(NEW_ARRAY(&dropped, constraint->factor.dropped, error));
-    TRY(NEW_ARRAY(&unit, rows->count, error));
-    TRY(NEW_ARRAY(&u, size, error));
+    int64_t size = constraint->node_count * rows->dim;
+    SCRATCH int64_t *dropped = NULL;
+    SCRATCH double *unit = NULL, *u = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&dropped, constraint->factor.dropped, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&unit, rows->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
     envelope_dropped(&constraint->factor, dropped);
     for (int64_t d = 0; d < constraint->factor.dropped; d++) {
         double *combination = null + d * rows->count;
@@ -26,9 +26,7 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
         envelope_solve(&constraint->factor, combination);
         combination[dropped[d]] -= 1.0;
     }
-done:
-    FREE_ALL(dropped, unit, u);
-    return status;
+    return STATUS_OK;
 }
 
 /* scale[count] = the diagonal of G M^-1 G^T */
@@ -47,18 +45,17 @@ static void diagonal(const struct constraint *constraint, double *scale)
 
 enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t dropped = constraint->factor.dropped, count = dropped > 0 ? constraint->rows->count : 0;
-    double *null = NULL, *scale = NULL, *gram = NULL, *amount = NULL;
+    SCRATCH double *null = NULL, *scale = NULL, *gram = NULL, *amount = NULL;
     if (dropped == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&null, count * dropped, error));
-    TRY(NEW_ARRAY(&scale, count, error));
-    TRY(null_rows(constraint, null, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&null, count * dropped, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&scale, count, error));
+    RETURN_IF_ERROR(null_rows(constraint, null, error));
     diagonal(constraint, scale);
-    TRY(NEW_ARRAY(&gram, dropped * dropped, error));
-    TRY(NEW_ARRAY(&amount, dropped, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&gram, dropped * dropped, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&amount, dropped, error));
     for (int64_t i = 0; i < dropped; i++) {
         for (int64_t r = 0; r < count; r++) {
             double part = scale[r] * null[i * count + r];
@@ -70,8 +67,7 @@ enum status constraint_share_out(const struct constraint *constraint, double *fo
     }
     /* Each combination has a row of its own: positive definite. */
     if (!dense_factorise(dropped, gram)) {
-        status = fail(error, STATUS_VERDICT, "constraints: the shares of dependent conditions are singular");
-        goto done;
+        return fail(error, STATUS_VERDICT, "constraints: the shares of dependent conditions are singular");
     }
     dense_solve(dropped, gram, amount);
     for (int64_t i = 0; i < dropped; i++) {
@@ -79,7 +75,5 @@ enum status constraint_share_out(const struct constraint *constraint, double *fo
             force[r] -= amount[i] * null[i * count + r];
         }
     }
-done:
-    FREE_ALL(null, scale, gram, amount);
-    return status;
+    return STATUS_OK;
 }

@@ -79,20 +79,19 @@ static enum status check_side(const struct contact *contact, struct error *error
 
 enum status contact_allocate(struct contact *contact, double stiffness, struct error *error)
 {
-    enum status status;
     int64_t count = contact->count, dim = contact->dim;
-    TRY(NEW_ARRAY(&contact->stiffness, count, error));
-    TRY(NEW_ARRAY(&contact->rest, count * dim, error));
-    TRY(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count * dim, error));
-    TRY(NEW_ARRAY(&contact->behind, count, error));
-    TRY(NEW_ARRAY(&contact->checked_x, count * dim, error));
-    TRY(NEW_ARRAY(&contact->checked_distance, count, error));
-    TRY(NEW_ARRAY(&contact->checked_normal, count * dim, error));
-    TRY(NEW_ARRAY(&contact->held, count * dim, error));
-    TRY(NEW_ARRAY(&contact->gap, count, error));
-    TRY(NEW_ARRAY(&contact->pressure, count, error));
-    TRY(NEW_ARRAY(&contact->normal, count * dim, error));
-    TRY(NEW_ARRAY(&contact->view, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->stiffness, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->rest, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->behind, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_x, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_distance, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_normal, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->held, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->gap, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->pressure, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->normal, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->view, count, error));
     for (int64_t p = 0; p < count; p++) {
         contact->gap[p] = INFINITY;
         contact->stiffness[p] = stiffness;
@@ -100,26 +99,19 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
     for (int64_t i = 0; i < count * dim; i++) {
         contact->checked_x[i] = INFINITY; /* no search yet: it may be in contact from the start */
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status contact_build(const struct boundary_averages *points, const struct boundary_averages *averages,
                           const double *X, int dim, struct rigid_surface *surface, double stiffness,
                           struct contact *contact, struct error *error)
 {
-    enum status status;
     *contact = (struct contact){
         .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
     *surface = (struct rigid_surface){0};
-    TRY(contact_allocate(contact, stiffness, error));
-    TRY(contact_rest_place(contact, X, error));
-    TRY(check_side(contact, error));
-done:
-    if (status != STATUS_OK) {
-        contact_free(contact);
-    }
-    return status;
+    RETURN_IF_ERROR(contact_allocate(contact, stiffness, error));
+    RETURN_IF_ERROR(contact_rest_place(contact, X, error));
+    return check_side(contact, error);
 }
 
 void contact_set_stiffness(struct contact *contact, double modulus)
@@ -167,15 +159,13 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
     };
-    enum status status;
-    TRY(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
-    TRY(contact_between_state(contact, prefix, state, error));
+    RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
     if (contact->modulus > 0.0) {
         contact_set_stiffness(contact, contact->modulus);
     }
     contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether point p was, at its last search, in front of the tangent plane of the surface at the point closest

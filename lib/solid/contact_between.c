@@ -313,21 +313,18 @@ static bool begin(struct contact *contact, bool far)
 
 static enum status allocate(struct contact *contact, int64_t values, struct error *error)
 {
-    enum status status;
     struct contact_between *between = contact->between;
     int64_t count = contact->count;
     between->values = values;
-    TRY(NEW_ARRAY(&between->part, count, error));
-    TRY(NEW_ARRAY(&between->begin, count, error));
-    TRY(NEW_ARRAY(&between->before, values, error));
-    TRY(NEW_ARRAY(&between->checked_way, count, error));
-    TRY(NEW_ARRAY(&between->checked_free, count, error));
-    TRY(NEW_ARRAY(&between->taken_facet, count, error));
-    TRY(NEW_ARRAY(&between->taken_weight, count * 3, error));
-    TRY(NEW_ARRAY(&between->now, values, error));
-    TRY(NEW_ARRAY(&between->view, count, error));
-done:
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&between->part, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->begin, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->before, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->checked_way, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->checked_free, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->taken_facet, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->taken_weight, count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->now, values, error));
+    return NEW_ARRAY(&between->view, count, error);
 }
 
 enum status contact_between_build(const struct boundary_averages *points,
@@ -360,8 +357,5 @@ enum status contact_between_build(const struct boundary_averages *points,
     *any = begin(contact, far);
 done:
     opposite_free(opposite);
-    if (status != STATUS_OK) {
-        contact_free(contact);
-    }
     return status;
 }

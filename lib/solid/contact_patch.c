@@ -44,27 +44,26 @@ static void mark_nodes(int dim, const struct facet_set *set, int64_t node_count,
 static enum status find_inside(const struct contact *contact, const struct facet_set *set,
                                const struct cells *cells, struct contact_patch *patch, struct error *error)
 {
-    enum status status;
     int dim = contact->dim;
     int64_t count = contact->surface.vertex_count;
-    struct rigid_surface facets = {0};
-    double *corners = NULL, *place = NULL, *spacing = NULL;
-    bool *outside = NULL;
-    TRY(NEW_ARRAY(&place, count * dim, error));
-    TRY(NEW_ARRAY(&outside, count, error));
+    FREED_BY(rigid_free) struct rigid_surface facets = {0};
+    SCRATCH double *corners = NULL, *place = NULL, *spacing = NULL;
+    SCRATCH bool *outside = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&place, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, count, error));
     for (int64_t v = 0; v < count; v++) {
         rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place + v * dim);
     }
-    TRY(NEW_ARRAY(&spacing, cells->node_count, error));
-    TRY(field_spacing(cells, spacing, error));
-    TRY(field_outside(cells, spacing, 0.0, count, place, outside, error));
-    TRY(NEW_ARRAY(&corners, set->count * dim * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(field_outside(cells, spacing, 0.0, count, place, outside, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&corners, set->count * dim * dim, error));
     for (int64_t i = 0; i < set->count * dim; i++) {
         for (int a = 0; a < dim; a++) {
             corners[i * dim + a] = cells->x[(int64_t)set->facet[i] * dim + a];
         }
     }
-    TRY(rigid_build(dim, set->count, corners, false, &facets, error));
+    RETURN_IF_ERROR(rigid_build(dim, set->count, corners, false, &facets, error));
     for (int64_t v = 0; v < count; v++) {
         double depth = outside[v] ? 0.0 : rigid_closest(&facets, place + v * dim, INFINITY).distance;
         if (depth > patch->inside) {
@@ -74,10 +73,7 @@ static enum status find_inside(const struct contact *contact, const struct facet
             }
         }
     }
-done:
-    rigid_free(&facets);
-    FREE_ALL(corners, place, spacing, outside);
-    return status;
+    return STATUS_OK;
 }
 
 enum status contact_patch_find(const struct contact *contact, const struct facet_set *set,

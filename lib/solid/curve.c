@@ -53,24 +53,19 @@ static gsl_interp *make_spline(const struct load_curve *curve)
 enum status curve_tabulate(struct load_curve *curve, int64_t count, const double *points, double end,
                            struct error *error)
 {
-    enum status status = STATUS_OK;
     *curve = (struct load_curve){.kind = CURVE_TABLE, .end = end, .count = count};
-    TRY(check_points(count, points, end, error));
-    TRY(NEW_ARRAY(&curve->time, count, error));
-    TRY(NEW_ARRAY(&curve->factor, count, error));
+    RETURN_IF_ERROR(check_points(count, points, end, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&curve->time, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&curve->factor, count, error));
     for (int64_t i = 0; i < count; i++) {
         curve->time[i] = points[2 * i];
         curve->factor[i] = points[2 * i + 1];
     }
     curve->spline = make_spline(curve);
     if (curve->spline == NULL) {
-        TRY(fail_memory(error, "load curve"));
+        return fail_memory(error, "load curve");
     }
-done:
-    if (status != STATUS_OK) {
-        curve_free(curve);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 double curve_value(const struct load_curve *curve, double s)

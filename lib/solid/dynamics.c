@@ -195,23 +195,23 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
                          double *v, double *row_force, struct energy_log *log, struct dynamics_report *report,
                          struct error *error)
 {
-    enum status status;
+    FREED_BY(dynamics_release)
     struct dynamics d = {.system = system,
                          .options = options,
                          .report = report,
                          .size = system->node_count * system->dim,
                          .log = log};
     *report = (struct dynamics_report){.least_jacobian = 1.0};
-    TRY(dynamics_allocate(&d, error));
-    TRY(system_constrain(system, system->lumped_mass, &d.constraint, error));
+    RETURN_IF_ERROR(dynamics_allocate(&d, error));
+    RETURN_IF_ERROR(system_constrain(system, system->lumped_mass, &d.constraint, error));
     if (options->restored != NULL) {
-        TRY(dynamics_visit(&d, options->restored, error));
+        RETURN_IF_ERROR(dynamics_visit(&d, options->restored, error));
     } else {
         begin(&d, u, v);
     }
     int64_t first = report->steps;
     report->outcome = march(&d, error);
-    TRY(d.failure);
+    RETURN_IF_ERROR(d.failure);
     report->last_good = report->outcome == DYNAMICS_DRIFTED ? -1.0 : report->time;
     if (report->outcome == DYNAMICS_INVERTED) {
         report->last_good = report->steps > first ? report->time - d.previous_step : -1.0;
@@ -226,9 +226,7 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
     }
     if (row_force != NULL && system->rows.count > 0) {
         memcpy(row_force, d.constraint.multiplier, (size_t)system->rows.count * sizeof *row_force);
-        TRY(constraint_share_out(&d.constraint, row_force, error));
+        RETURN_IF_ERROR(constraint_share_out(&d.constraint, row_force, error));
     }
-done:
-    dynamics_release(&d);
-    return status;
+    return STATUS_OK;
 }

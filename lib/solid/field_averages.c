@@ -142,7 +142,6 @@ static enum status list_corners(int dim, struct field_averages *averages, struct
 enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
-    enum status status;
     const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
     int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
     int64_t looks = input->corner_count * (FACE_ROWS(input->dim) + 1);
@@ -150,32 +149,26 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     if (rows > INT32_MAX / stride || looks > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
-    TRY(NEW_ARRAY(&averages->of_corner, looks, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
-    TRY(match_corners(input, averages, error));
-    TRY(list_corners(input->dim, averages, error));
-done:
-    if (status != STATUS_OK) {
-        field_averages_free(averages);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, looks, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
+    RETURN_IF_ERROR(match_corners(input, averages, error));
+    return list_corners(input->dim, averages, error);
 }
 
 enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
                                        struct error *error)
 {
-    enum status status = STATUS_OK;
     struct sparse *fetched = &averages->fetched;
     struct average_table *faces = &averages->given[0];
     const int64_t *ptr = matrix->ptr;
     int64_t at = 0, begin = 0;
-    bool *kept = NULL;
+    SCRATCH bool *kept = NULL;
     if (fetched->ptr == NULL) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&kept, fetched->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&kept, fetched->row_count, error));
     for (int64_t r = 0; r < fetched->row_count; r++) {
         kept[faces->order[r]] = ptr[r] == ptr[r + 1];
     }
@@ -186,13 +179,11 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
         begin = end;
         fetched->ptr[f + 1] = at += length;
     }
-    TRY(RESIZE_ARRAY(&fetched->idx, at + 1, error));
-    TRY(RESIZE_ARRAY(&fetched->value, at + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->idx, at + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->value, at + 1, error));
     faces->idx = fetched->idx;
     faces->phi = fetched->value;
-done:
-    free(kept);
-    return status;
+    return STATUS_OK;
 }
 
 void field_averages_free(struct field_averages *averages)

@@ -78,25 +78,23 @@ static void part_nodes(const struct fold_input *input, int64_t part, int32_t nod
 /* The cells around each ring. */
 static enum status list_cells(struct folds *folds, struct error *error)
 {
-    enum status status;
     int corners = folds->input.dim + 1;
     int64_t count = folds->input.cell_count * (corners == 3 ? 3 : 6);
-    int32_t *ring = NULL, *part = NULL, node[4];
-    TRY(NEW_ARRAY(&ring, count, error));
+    SCRATCH int32_t *ring = NULL, *part = NULL;
+    int32_t node[4];
+    RETURN_IF_ERROR(NEW_ARRAY(&ring, count, error));
     for (int64_t i = 0; i < count; i++) {
         part_nodes(&folds->input, i, node);
         ring[i] = find_ring(folds, node);
     }
-    TRY(lists_by_row(count, 1, ring, folds->ring_count, &folds->ring_ptr, &part, error));
+    RETURN_IF_ERROR(lists_by_row(count, 1, ring, folds->ring_count, &folds->ring_ptr, &part, error));
     count = folds->ring_ptr[folds->ring_count];
-    TRY(NEW_ARRAY(&folds->ring_cell, count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->ring_cell, count * corners, error));
     for (int64_t i = 0; i < count; i++) {
         part_nodes(&folds->input, part[i], node);
         memcpy(folds->ring_cell + i * corners, node, (size_t)corners * sizeof *node);
     }
-done:
-    FREE_ALL(ring, part);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status build_rings(struct folds *folds, const struct fold_ring *sides, struct error *error)
@@ -185,41 +183,35 @@ static enum status find_rims(struct folds *folds, const struct fold_ring *sides,
 
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
-    enum status status;
-    struct fold_ring *sides = NULL;
-    double *u = NULL;
-    bool *stopped = NULL;
+    SCRATCH struct fold_ring *sides = NULL;
+    SCRATCH double *u = NULL;
+    SCRATCH bool *stopped = NULL;
     int64_t size = input->node_count * input->dim;
     *folds = (struct folds){.input = *input};
     struct box box = box_of(input->dim, input->node_count, input->x);
     folds->extent = box_diagonal(&box);
-    TRY(NEW_ARRAY(&folds->y, size, error));
-    TRY(NEW_ARRAY(&folds->boxes, input->facet_count, error));
-    TRY(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
-    TRY(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
-    TRY(list_sides(input, &sides, error));
-    TRY(build_rings(folds, sides, error));
-    TRY(find_supports(folds, sides, error));
-    TRY(find_rims(folds, sides, error));
-    TRY(NEW_ARRAY(&u, size, error));
-    TRY(NEW_ARRAY(&stopped, input->node_count, error));
-    TRY(folds_find_bodies(folds, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
+    RETURN_IF_ERROR(list_sides(input, &sides, error));
+    RETURN_IF_ERROR(build_rings(folds, sides, error));
+    RETURN_IF_ERROR(find_supports(folds, sides, error));
+    RETURN_IF_ERROR(find_rims(folds, sides, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stopped, input->node_count, error));
+    RETURN_IF_ERROR(folds_find_bodies(folds, error));
     struct fold at_rest = folds_find(folds, u, stopped);
     if (at_rest.kind != FOLD_CROSSING && at_rest.kind != FOLD_WITHIN) {
         at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
         if (folds->body_count > 1) {
-            TRY(folds_look_for_overlaps(folds, true, &at_rest, error));
+            RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
         }
     }
     if (at_rest.kind == FOLD_CROSSING || at_rest.kind == FOLD_WITHIN) {
         folds->at_rest = at_rest;
     }
-done:
-    FREE_ALL(sides, u, stopped);
-    if (status != STATUS_OK) {
-        folds_free(folds);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void folds_free(struct folds *folds)

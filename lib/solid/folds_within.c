@@ -124,23 +124,22 @@ static bool is_poor(const struct folds *folds, int64_t cell)
 enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
                                     struct error *error)
 {
-    enum status status = STATUS_OK;
     int dim = folds->input.dim;
     int64_t count = folds->input.cell_count;
-    struct point_grid grid = {0};
-    struct index_list near = {0};
-    double *middle = NULL, *radius = NULL;
-    TRY(NEW_ARRAY(&middle, count * dim, error));
-    TRY(NEW_ARRAY(&radius, count, error));
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    SCRATCH double *middle = NULL, *radius = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&middle, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, count, error));
     for (int64_t c = 0; c < count; c++) {
         find_middle(folds, folds->y, c, middle + c * dim);
         radius[c] = round_off * folds->extent;
     }
-    TRY(point_grid_build(&grid, dim, count, middle, radius, error));
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, count, middle, radius, error));
     for (int64_t c = 0; c < count; c++) {
         struct box box = box_around(folds, c);
         near.count = 0;
-        TRY(point_grid_query_box(&grid, box.low, box.high, 1.0, &near, error));
+        RETURN_IF_ERROR(point_grid_query_box(&grid, box.low, box.high, 1.0, &near, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t other = near.index[i];
             bool apart =
@@ -153,10 +152,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
             }
         }
     }
-done:
-    point_grid_free(&grid);
-    FREE_ALL(near.index, middle, radius);
-    return status;
+    return STATUS_OK;
 }
 
 enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold, struct error *error)

@@ -265,16 +265,16 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
                             const double *residual, int most_iterations, const double *start, double *scratch,
                             struct spectrum *spectrum, struct error *error)
 {
-    enum status status;
-    double *diagonal = NULL, *off_diagonal = NULL, last = INFINITY, largest = 0.0;
+    SCRATCH double *diagonal = NULL, *off_diagonal = NULL;
+    double last = INFINITY, largest = 0.0;
     int next_check = first_check;
     *spectrum = (struct spectrum){.lowest = INFINITY};
-    TRY(NEW_ARRAY(&diagonal, most_iterations, error));
-    TRY(NEW_ARRAY(&off_diagonal, most_iterations, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, most_iterations, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, most_iterations, error));
     struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     if (!lanczos_begin(&l)) {
         spectrum->lowest = spectrum->largest = 1.0;
-        goto done;
+        return STATUS_OK;
     }
     for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
         lanczos_step(&l, k, diagonal, off_diagonal);
@@ -292,28 +292,25 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
             next_check = (int)ceil(next_check * check_growth);
         }
     }
-done:
-    FREE_ALL(diagonal, off_diagonal);
-    return status;
+    return STATUS_OK;
 }
 
 enum status system_unstable_mode(struct solid_system *system, struct preconditioner *p, const double *u,
                                  const double *residual, const struct spectrum *spectrum, const double *start,
                                  double *scratch, struct stability *stability, struct error *error)
 {
-    enum status status;
     int count = spectrum->iterations;
     int64_t size = system->node_count * system->dim;
-    double *diagonal = NULL, *off_diagonal = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
+    SCRATCH double *diagonal = NULL, *off_diagonal = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
     *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
     if (!(spectrum->lowest < least_told * spectrum->largest)) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&diagonal, count, error));
-    TRY(NEW_ARRAY(&off_diagonal, count, error));
-    TRY(NEW_ARRAY(&share, count, error));
-    TRY(NEW_ARRAY(&pivot, count, error));
-    TRY(NEW_ARRAY(&mode, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pivot, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mode, size, error));
     struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* the matrix first, */
@@ -340,7 +337,5 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
     }
     stability->least = stability->least < least_told ? stability->least : 0.0;
     stability->node = most_moved(system->dim, system->node_count, mode);
-done:
-    FREE_ALL(diagonal, off_diagonal, share, pivot, mode);
-    return status;
+    return STATUS_OK;
 }

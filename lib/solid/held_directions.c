@@ -7,15 +7,9 @@
 
 enum status held_build(int dim, int64_t node_count, struct held_directions *held, struct error *error)
 {
-    enum status status;
     *held = (struct held_directions){.dim = dim};
-    TRY(NEW_ARRAY(&held->count, node_count, error));
-    TRY(NEW_ARRAY(&held->axis, node_count * dim * dim, error));
-done:
-    if (status != STATUS_OK) {
-        held_free(held);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&held->count, node_count, error));
+    return NEW_ARRAY(&held->axis, node_count * dim * dim, error);
 }
 
 void held_free(struct held_directions *held)

@@ -70,19 +70,15 @@ static enum status add_rows(const struct solid_system *system, int64_t first, in
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
 {
-    enum status status;
-    bool *wanted = NULL;
-    TRY(NEW_ARRAY(&wanted, system->node_count, error));
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, system->node_count, error));
     for (int64_t p = first; p < last; p++) {
         for (int64_t k = 0; k < length[p]; k++) {
             wanted[rows->idx[p * MOST_ENTRIES + k]] = true;
         }
     }
-    TRY(system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
-                                         : lower_add(wanted, lower, error));
-done:
-    free(wanted);
-    return status;
+    return system->body.share.ranks != NULL ? lower_fetch(wanted, lower, error)
+                                            : lower_add(wanted, lower, error);
 }
 
 /* Rows of the nodes from `first` to before `last` in the body's order, the one at place p at
@@ -90,16 +86,15 @@ done:
 static enum status make_rows(const struct solid_system *system, int64_t first, int64_t last,
                              struct lower *lower, struct sparse *rows, int64_t *length, struct error *error)
 {
-    enum status status;
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
-    struct placed *near = NULL;
+    SCRATCH struct placed *near = NULL;
     int64_t most = 0;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
     }
-    TRY(NEW_ARRAY(&near, most * chunks.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&near, most * chunks.count, error));
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
@@ -107,15 +102,13 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
                 choose(system, lower, (int32_t)node[p], near + c * most, rows->idx + p * MOST_ENTRIES);
         }
     }
-    TRY(add_rows(system, first, last, rows, length, lower, error));
+    RETURN_IF_ERROR(add_rows(system, first, last, rows, length, lower, error));
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t p = first; p < last; p++) {
         int64_t at = p * MOST_ENTRIES;
         solve_row(lower, length[p], rows->idx + at, rows->value + at);
     }
-done:
-    free(near);
-    return status;
+    return STATUS_OK;
 }
 
 /* All own rows, by stretches of so many nodes, for which alone S is there. What a node without stiffness has
@@ -148,7 +141,7 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
                                struct error *error)
 {
     int count = ranks_count(share->ranks);
-    int64_t *first = NULL;
+    SCRATCH int64_t *first = NULL;
     ranks_gather(share->ranks, length, sizeof *length, share->node_first);
     for (int64_t p = 0; p < rows->row_count; p++) {
         rows->ptr[p + 1] = rows->ptr[p] + length[p];
@@ -164,7 +157,6 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
     }
     ranks_gather(share->ranks, rows->idx, sizeof *rows->idx, first);
     ranks_gather(share->ranks, rows->value, sizeof *rows->value, first);
-    free(first);
     return STATUS_OK;
 }
 
@@ -200,32 +192,24 @@ static int owner(const void *factor, int64_t node)
 enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
                                     struct inverse_factor *factor, struct error *error)
 {
-    enum status status;
-    struct lower lower = {0};
-    struct sparse by_place = {0};
+    FREED_BY(lower_free) struct lower lower = {0};
+    FREED_BY(sparse_free) struct sparse by_place = {0};
     const struct body_share *share = &system->body.share;
-    int64_t nodes = system->node_count, *length = NULL;
-    bool *wanted = NULL;
+    int64_t nodes = system->node_count;
+    SCRATCH int64_t *length = NULL;
+    SCRATCH bool *wanted = NULL;
     *factor = (struct inverse_factor){.ranks = share->ranks};
-    TRY(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
-    TRY(lower_begin(system, &lower, error));
-    TRY(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
-    TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(make_own_rows(system, stretch, &lower, &by_place, length, error));
-    TRY(gather_rows(share, length, &by_place, error));
+    RETURN_IF_ERROR(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
+    RETURN_IF_ERROR(lower_begin(system, &lower, error));
+    RETURN_IF_ERROR(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
+    RETURN_IF_ERROR(make_own_rows(system, stretch, &lower, &by_place, length, error));
+    RETURN_IF_ERROR(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
-    TRY(sort_rows(&system->body, &by_place, &factor->rows, error));
-    TRY(sparse_transpose(&factor->rows, &factor->transposed, error));
-    TRY(inverse_factor_wanted(factor, &wanted, error));
-    TRY(halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error));
-done:
-    FREE_ALL(wanted, length);
-    sparse_free(&by_place);
-    lower_free(&lower);
-    if (status != STATUS_OK) {
-        inverse_factor_free(factor);
-    }
-    return status;
+    RETURN_IF_ERROR(sort_rows(&system->body, &by_place, &factor->rows, error));
+    RETURN_IF_ERROR(sparse_transpose(&factor->rows, &factor->transposed, error));
+    RETURN_IF_ERROR(inverse_factor_wanted(factor, &wanted, error));
+    return halo_build(factor->ranks, nodes, wanted, 3, owner, factor, &factor->halo, error);
 }
 
 void inverse_factor_free(struct inverse_factor *factor)
@@ -299,15 +283,14 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
                                           const struct constraint_rows *rows,
                                           struct constraint_rows *transformed, struct error *error)
 {
-    enum status status;
     const struct sparse *matrix = &factor->transposed;
-    int64_t *at = NULL;
-    int32_t *idx = NULL;
-    double *phi = NULL;
+    SCRATCH int64_t *at = NULL;
+    SCRATCH int32_t *idx = NULL;
+    SCRATCH double *phi = NULL;
     constraint_rows_init(transformed, rows->dim);
-    TRY(NEW_ARRAY(&at, matrix->row_count, error));
-    TRY(NEW_ARRAY(&idx, matrix->row_count, error));
-    TRY(NEW_ARRAY(&phi, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&idx, matrix->row_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, matrix->row_count, error));
     memset(at, -1, (size_t)matrix->row_count * sizeof *at);
     for (int64_t l = 0, r = 0; l < rows->list_count; l++) {
         struct average average = constraint_rows_average(rows, r);
@@ -328,14 +311,10 @@ enum status inverse_factor_transform_rows(const struct inverse_factor *factor,
             at[idx[i]] = -1;
         }
         for (; r < rows->first[l + 1]; r++) {
-            TRY(constraint_rows_add(transformed, length, idx, phi, rows->direction + r * rows->dim,
-                                    rows->target[r], rows->curve[r], rows->section[r], rows->node[r], error));
+            RETURN_IF_ERROR(constraint_rows_add(transformed, length, idx, phi,
+                                                rows->direction + r * rows->dim, rows->target[r],
+                                                rows->curve[r], rows->section[r], rows->node[r], error));
         }
     }
-done:
-    FREE_ALL(at, idx, phi);
-    if (status != STATUS_OK) {
-        constraint_rows_free(transformed);
-    }
-    return status;
+    return STATUS_OK;
 }

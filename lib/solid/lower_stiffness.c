@@ -106,29 +106,24 @@ static void drop_pieces(struct lower *lower)
 
 enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct error *error)
 {
-    enum status status;
     size_t nodes = (size_t)lower->stiffness.system->node_count;
-    int32_t *place = NULL;
+    SCRATCH int32_t *place = NULL;
     drop_pieces(lower);
     memset(lower->begin, 0, nodes * sizeof *lower->begin);
     memset(lower->end, 0, nodes * sizeof *lower->end);
-    TRY(NEW_ARRAY(&place, last - first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, last - first, error));
     for (int64_t p = first; p < last; p++) {
         place[p - first] = (int32_t)p;
     }
-    TRY(make_pieces(place, last - first, lower, error));
-done:
-    free(place);
-    return status;
+    return make_pieces(place, last - first, lower, error);
 }
 
 enum status lower_add(const bool *wanted, struct lower *lower, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = lower->stiffness.system;
-    int32_t *place = NULL;
+    SCRATCH int32_t *place = NULL;
     int64_t count = 0;
-    TRY(NEW_ARRAY(&place, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, system->node_count, error));
     for (int64_t p = 0; p < system->node_count; p++) {
         int64_t i = system->body.node_order[p];
         if (wanted[i] && lower->begin[i] == lower->end[i]) {
@@ -136,11 +131,9 @@ enum status lower_add(const bool *wanted, struct lower *lower, struct error *err
         }
     }
     if (count > 0) {
-        TRY(make_pieces(place, count, lower, error));
+        RETURN_IF_ERROR(make_pieces(place, count, lower, error));
     }
-done:
-    free(place);
-    return status;
+    return STATUS_OK;
 }
 
 bool lower_set_least(struct lower *lower)
@@ -178,19 +171,19 @@ double lower_entry(const struct lower *lower, int32_t i, int32_t j)
 
 enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = lower->stiffness.system;
     const struct ranks *ranks = system->body.share.ranks;
     int64_t nodes = system->node_count;
-    struct halo halo = {0};
-    double *length = NULL, *value = NULL;
-    int32_t *idx = NULL;
-    int64_t *send_first = NULL, *receive_first = NULL, at = 0;
+    FREED_BY(halo_free) struct halo halo = {0};
+    SCRATCH double *length = NULL, *value = NULL;
+    SCRATCH int32_t *idx = NULL;
+    SCRATCH int64_t *send_first = NULL, *receive_first = NULL;
+    int64_t at = 0;
     struct lower_piece *fetched = &lower->piece[lower->piece_count++];
-    TRY(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
-    TRY(NEW_ARRAY(&length, nodes, error));
-    TRY(NEW_ARRAY(&send_first, ranks->count + 1, error));
-    TRY(NEW_ARRAY(&receive_first, ranks->count + 1, error));
+    RETURN_IF_ERROR(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&send_first, ranks->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&receive_first, ranks->count + 1, error));
     for (int64_t i = 0; i < nodes; i++) {
         length[i] = (double)(lower->end[i] - lower->begin[i]);
     }
@@ -209,9 +202,9 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
             lower->end[node] = receive_first[r + 1];
         }
     }
-    TRY(make_room(fetched, receive_first[ranks->count], error));
-    TRY(NEW_ARRAY(&idx, send_first[ranks->count], error));
-    TRY(NEW_ARRAY(&value, send_first[ranks->count], error));
+    RETURN_IF_ERROR(make_room(fetched, receive_first[ranks->count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&idx, send_first[ranks->count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&value, send_first[ranks->count], error));
     for (int64_t i = 0; i < halo.send_first[ranks->count]; i++) {
         struct lower_row row = lower_row(lower, halo.send[i]);
         memcpy(idx + at, row.idx, (size_t)row.count * sizeof *idx);
@@ -221,10 +214,7 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
     ranks->exchange(ranks, sizeof *idx, idx, send_first, fetched->idx, receive_first);
     ranks->exchange(ranks, sizeof *value, value, send_first, fetched->value, receive_first);
     fetched->count = receive_first[ranks->count];
-done:
-    halo_free(&halo);
-    FREE_ALL(length, send_first, receive_first, idx, value);
-    return status;
+    return STATUS_OK;
 }
 
 void lower_free(struct lower *lower)

@@ -99,11 +99,10 @@ enum status measured_compare(const struct measured *measured, double same, struc
                              struct measured_pair *others, struct measured_pair *repeated,
                              struct error *error)
 {
-    enum status status;
-    struct placed *sorted = NULL; /* points by their first coordinates */
+    SCRATCH struct placed *sorted = NULL; /* points by their first coordinates */
     double window = fmax(same, farthest_apart(measured));
     *exact = *others = *repeated = (struct measured_pair){.first = -1, .second = -1};
-    TRY(NEW_ARRAY(&sorted, measured->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sorted, measured->count, error));
     for (int64_t i = 0; i < measured->count; i++) {
         sorted[i] = (struct placed){measured->x[i * measured->dim], i};
     }
@@ -122,19 +121,16 @@ enum status measured_compare(const struct measured *measured, double same, struc
             }
         }
     }
-done:
-    free(sorted);
-    return status;
+    return STATUS_OK;
 }
 
 enum status measured_dependent(const struct constraint_rows *rows, int64_t node_count, bool *dependent,
                                struct error *error)
 {
-    enum status status;
-    struct envelope factor = {0};
-    int64_t *dropped = NULL;
-    double *mass = NULL;
-    TRY(NEW_ARRAY(&mass, node_count, error));
+    FREED_BY(envelope_free) struct envelope factor = {0};
+    SCRATCH int64_t *dropped = NULL;
+    SCRATCH double *mass = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&mass, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         mass[n] = 1.0;
     }
@@ -142,16 +138,13 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
         dependent[r] = false;
     }
     if (rows->count == 0) {
-        goto done;
+        return STATUS_OK;
     }
-    TRY(constraint_factorise(rows, node_count, mass, least_independent, &factor, error));
-    TRY(NEW_ARRAY(&dropped, factor.dropped, error));
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_independent, &factor, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&dropped, factor.dropped, error));
     envelope_dropped(&factor, dropped);
     for (int64_t d = 0; d < factor.dropped; d++) {
         dependent[dropped[d]] = true;
     }
-done:
-    envelope_free(&factor);
-    FREE_ALL(dropped, mass);
-    return status;
+    return STATUS_OK;
 }

@@ -43,18 +43,17 @@ static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell
 
 enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error)
 {
-    enum status status;
     const struct smoothed_cells_input *smoothed = input->smoothed;
     const struct faces *faces = smoothed->faces;
     const struct cells cells = {input->dim, input->node_count, smoothed->x, input->point_count,
                                 smoothed->cell_node};
-    bool *poor = NULL;
-    double *volume = NULL;
-    int64_t *partner = NULL, *size = NULL;
-    TRY(NEW_ARRAY(&poor, cells.count, error));
-    TRY(NEW_ARRAY(&volume, cells.count, error));
-    TRY(NEW_ARRAY(&partner, cells.count, error));
-    TRY(NEW_ARRAY(&size, cells.count, error));
+    SCRATCH bool *poor = NULL;
+    SCRATCH double *volume = NULL;
+    SCRATCH int64_t *partner = NULL, *size = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&poor, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volume, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&size, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
         partner[c] = c;
         size[c] = 1;
@@ -77,26 +76,24 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
         root[c] = end == c || size[end] < MERGED_MOST_CELLS ? end : c;
         size[end] += root[c] != c;
     }
-done:
-    FREE_ALL(poor, volume, partner, size);
-    return status;
+    return STATUS_OK;
 }
 
 enum status merged_cells_order(const int64_t *root, struct body *body, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct smoothed_cells *smoothed = &body->cells;
-    int64_t cells = body->point_count, at = 0, *first = NULL, *next = NULL;
+    int64_t cells = body->point_count, at = 0;
+    SCRATCH int64_t *first = NULL, *next = NULL;
     for (int64_t c = 0; c < cells; c++) {
         smoothed->merged_count += root[c] != c;
     }
     if (smoothed->merged_count == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&first, cells, error)); /* lists of the cells that go to each, 0: none */
-    TRY(NEW_ARRAY(&next, cells, error));
-    TRY(NEW_ARRAY(&smoothed->group, cells, error));
-    TRY(NEW_ARRAY(&smoothed->group_end, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells that go to each, 0: none */
+    RETURN_IF_ERROR(NEW_ARRAY(&next, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group_end, cells, error));
     for (int64_t c = cells - 1; c >= 0; c--) {
         if (root[c] != c) {
             next[c] = first[root[c]];
@@ -122,9 +119,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
             smoothed->group_end[q] = (int32_t)at;
         }
     }
-done:
-    FREE_ALL(first, next);
-    return status;
+    return STATUS_OK;
 }
 
 /* The means of rows over a group of cells, or what their sum puts on each, w_i / W of it. */

@@ -120,26 +120,24 @@ static void set_columns(const struct body *body, int64_t *seen, struct nodal_pre
 
 enum status nodal_pressures_build(struct body *body, struct error *error)
 {
-    enum status status;
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    int64_t count = body->volumes.count, *seen = NULL, rows;
-    TRY(NEW_ARRAY(&seen, count, error));
+    int64_t count = body->volumes.count, rows;
+    SCRATCH int64_t *seen = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
-    TRY(lay_out(body, pressures, seen, error));
+    RETURN_IF_ERROR(lay_out(body, pressures, seen, error));
     rows = pressures->slices * ROWS;
-    TRY(NEW_ARRAY(&pressures->inverse, rows, error));
-    TRY(NEW_ARRAY(&pressures->held, rows, error));
-    TRY(NEW_ARRAY(&pressures->change, rows, error));
-    TRY(NEW_ARRAY(&pressures->weight, rows, error));
-    TRY(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
-    TRY(NEW_ARRAY(&pressures->entry, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->inverse, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->held, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->change, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->weight, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->entry, count, error));
     memset(seen, -1, (size_t)count * sizeof *seen);
     set_columns(body, seen, pressures);
-    TRY(body_share_pressures(body, error));
+    RETURN_IF_ERROR(body_share_pressures(body, error));
     body_limit_bulk(body, INFINITY);
-done:
-    free(seen);
-    return status;
+    return STATUS_OK;
 }
 
 /* The values of A, with S^-1 and the weights. */

@@ -76,18 +76,17 @@ static enum status sum_moduli(const bool *at_edge, struct body *body, struct err
 
 enum status nodal_volumes_build(const struct body_input *input, struct body *body, struct error *error)
 {
-    enum status status;
     struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
     int64_t slots = body->point_count * vertices;
-    struct placed *keys = NULL;
-    bool *at_edge = NULL; /* points of cells with a node at an edge and others */
-    TRY(NEW_ARRAY(&keys, slots, error));
-    TRY(NEW_ARRAY(&volumes->of_point, slots, error));
-    TRY(NEW_ARRAY(&volumes->share, slots, error));
-    TRY(NEW_ARRAY(&volumes->slot, slots, error));
-    TRY(NEW_ARRAY(&volumes->strain, body->point_count, error));
-    TRY(NEW_ARRAY(&at_edge, body->point_count, error));
+    SCRATCH struct placed *keys = NULL;
+    SCRATCH bool *at_edge = NULL; /* points of cells with a node at an edge and others */
+    RETURN_IF_ERROR(NEW_ARRAY(&keys, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->of_point, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->share, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->slot, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->strain, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at_edge, body->point_count, error));
     for (int64_t s = 0; s < slots; s++) {
         int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
         int32_t material = body->material[q];
@@ -99,17 +98,14 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
             at_edge[q] = share_out(input, body, q, volumes->share + q * vertices);
         }
     }
-    TRY(number_volumes(volumes, keys, slots, error));
+    RETURN_IF_ERROR(number_volumes(volumes, keys, slots, error));
     if (input->at_edge != NULL) {
-        TRY(sum_moduli(at_edge, body, error));
+        RETURN_IF_ERROR(sum_moduli(at_edge, body, error));
     }
-    TRY(body_share_volumes(body, error));
-    TRY(nodal_pressures_build(body, error));
-    TRY(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
-    TRY(NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
-done:
-    FREE_ALL(keys, at_edge);
-    return status;
+    RETURN_IF_ERROR(body_share_volumes(body, error));
+    RETURN_IF_ERROR(nodal_pressures_build(body, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
+    return NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error);
 }
 
 double nodal_volume_modulus(const struct material *material)

@@ -20,34 +20,31 @@ enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 
 enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
 {
-    enum status status;
     int corners = cells->dim + 1;
-    int32_t *of_cell = NULL, count;
-    bool *seen = NULL;
-    TRY(NEW_ARRAY(&of_cell, cells->count, error));
-    TRY(NEW_ARRAY(&seen, cells->node_count, error));
-    TRY(cells_parts(cells, of_cell, &count, error));
+    SCRATCH int32_t *of_cell = NULL;
+    int32_t count;
+    SCRATCH bool *seen = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&of_cell, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, cells->node_count, error));
+    RETURN_IF_ERROR(cells_parts(cells, of_cell, &count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int32_t node = cells->node[i], here = of_cell[i / corners];
         part[node] = !seen[node] || part[node] == here ? here : -1;
         seen[node] = true;
     }
-done:
-    FREE_ALL(of_cell, seen);
-    return status;
+    return STATUS_OK;
 }
 
 /* 3D: what is beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are none. */
 static enum status join_edges(struct opposite *opposite, struct error *error)
 {
-    enum status status;
     struct rigid_surface *surface = &opposite->surface;
     int64_t count = surface->facet_count * 3;
-    struct half_edge *edges = NULL;
-    TRY(NEW_ARRAY(&edges, count, error));
-    TRY(NEW_ARRAY(&opposite->across, count, error));
-    TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
-    TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
+    SCRATCH struct half_edge *edges = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&edges, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->across, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_normal, count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_is_rim, count, error));
     for (int64_t slot = 0; slot < count; slot++) {
         opposite->across[slot] = slot;
     }
@@ -63,42 +60,36 @@ static enum status join_edges(struct opposite *opposite, struct error *error)
             opposite->across[edges[first + 1].slot] = edges[first].slot;
         }
     }
-done:
-    free(edges);
-    return status;
+    return STATUS_OK;
 }
 
 /* 2D: ends of the curves. */
 static enum status find_ends(struct opposite *opposite, struct error *error)
 {
-    enum status status;
     struct rigid_surface *surface = &opposite->surface;
-    int8_t *at = NULL;
-    TRY(NEW_ARRAY(&at, surface->vertex_count, error));
+    SCRATCH int8_t *at = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&at, surface->vertex_count, error));
     for (int64_t c = 0; c < surface->facet_count * 2; c++) {
         at[surface->facet[c]] = (int8_t)(at[surface->facet[c]] < 2 ? at[surface->facet[c]] + 1 : 2);
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         surface->is_rim[v] = at[v] < 2;
     }
-done:
-    free(at);
-    return status;
+    return STATUS_OK;
 }
 
 /* Vertices in the order of the rows, and the facets by them. */
 static enum status number_vertices(struct opposite *opposite, const struct face_table *table,
                                    const struct facet_set *set, struct error *error)
 {
-    enum status status;
     struct rigid_surface *surface = &opposite->surface;
     int dim = table->dim;
-    int32_t *number = NULL;
+    SCRATCH int32_t *number = NULL;
     surface->vertex_count = opposite->rows.count;
-    TRY(NEW_ARRAY(&number, table->node_count, error));
-    TRY(NEW_ARRAY(&surface->vertex, surface->vertex_count * dim, error));
-    TRY(NEW_ARRAY(&surface->facet, surface->facet_count * dim, error));
-    TRY(NEW_ARRAY(&opposite->rest, surface->vertex_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&number, table->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, surface->vertex_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, surface->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->rest, surface->vertex_count * dim, error));
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         const double *x = table->x + (int64_t)opposite->rows.node[v] * dim;
         number[opposite->rows.node[v]] = (int32_t)v;
@@ -110,9 +101,7 @@ static enum status number_vertices(struct opposite *opposite, const struct face_
     }
     struct box box = box_of(dim, surface->vertex_count, surface->vertex);
     surface->extent = box_diagonal(&box);
-done:
-    free(number);
-    return status;
+    return STATUS_OK;
 }
 
 /* What is known of the facets at rest. */
@@ -211,28 +200,23 @@ static void refit(struct opposite *opposite)
 enum status opposite_build(const struct face_table *table, const struct facet_set *set, const int32_t *part,
                            bool itself, struct opposite *opposite, struct error *error)
 {
-    enum status status;
     *opposite = (struct opposite){.itself = itself};
     struct rigid_surface *surface = &opposite->surface;
     surface->dim = table->dim;
     surface->facet_count = set->count;
-    TRY(boundary_corners_build(table, set, &opposite->rows, error));
-    TRY(number_vertices(opposite, table, set, error));
-    TRY(NEW_ARRAY(&opposite->stiffness, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&opposite->load, surface->vertex_count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->normal, set->count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
-    TRY(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
-    TRY(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
-    TRY(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
-    TRY(measure_rest(opposite, set, part, error));
-    TRY(rigid_grow_tree(surface, error));
+    RETURN_IF_ERROR(boundary_corners_build(table, set, &opposite->rows, error));
+    RETURN_IF_ERROR(number_vertices(opposite, table, set, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->stiffness, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->load, surface->vertex_count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, set->count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
+    RETURN_IF_ERROR(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
+    RETURN_IF_ERROR(measure_rest(opposite, set, part, error));
+    RETURN_IF_ERROR(rigid_grow_tree(surface, error));
     refit(opposite);
-done:
-    if (status != STATUS_OK) {
-        opposite_free(opposite);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void opposite_free(struct opposite *opposite)

@@ -26,14 +26,13 @@ static int64_t centre_count(const struct solid_system *system)
 /* L^-T Z of the scalar coarse fields, by rows. */
 static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
 {
-    enum status status;
     const struct ranks *ranks = p->factor.ranks;
     int64_t nodes = p->node_count, *first = NULL;
     int field[COARSE_MOST_AT_NODE];
     double value[COARSE_MOST_AT_NODE];
-    TRY(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
+    RETURN_IF_ERROR(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
     first = p->field_first;
-    TRY(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
         int count = coarse_space_at_node(&p->coarse, n, field, value);
         for (int k = 0; k < count; k++) {
@@ -46,8 +45,7 @@ static enum status transform_fields(struct preconditioner *p, int threads, struc
         inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
     }
     ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
@@ -64,41 +62,35 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
                                  struct error *error)
 {
-    enum status status;
     int64_t cells;
     *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
     p->has_rigid_mode = system_has_rigid_mode(system);
     for (int64_t c = 0; c < system->contact_count; c++) {
         p->contact_node_count += contact_nodes(&system->contacts[c])->count;
     }
-    TRY(NEW_ARRAY(&p->mass, system->node_count, error));
-    TRY(NEW_ARRAY(&p->stiffness, system->node_count, error));
-    TRY(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
-                           coarse ? centre_count(system) : 0, &p->coarse, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->mass, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
+    RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
+                                       coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
     cells = p->size * p->size;
-    TRY(NEW_ARRAY(&p->active, p->contact_node_count, error));
-    TRY(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
-    TRY(NEW_ARRAY(&p->creased, p->contact_node_count, error));
-    TRY(NEW_ARRAY(&p->turned, p->contact_node_count, error));
-    TRY(NEW_ARRAY(&p->idle, 2 * p->contact_node_count, error));
-    TRY(NEW_ARRAY(&p->patience, 2 * p->contact_node_count, error));
-    TRY(NEW_ARRAY(&p->body, cells, error));
-    TRY(NEW_ARRAY(&p->weight, cells, error));
-    TRY(NEW_ARRAY(&p->free_weight, cells, error));
-    TRY(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
-    TRY(NEW_ARRAY(&p->inverse, cells, error));
-    TRY(NEW_ARRAY(&p->capacitance_inverse, cells, error));
-    TRY(NEW_ARRAY(&p->amount, 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->creased, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->turned, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->idle, 2 * p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->patience, 2 * p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->free_weight, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
     if (coarse && system_has_inverse(system)) {
-        TRY(build_inverse(system, p, error));
+        RETURN_IF_ERROR(build_inverse(system, p, error));
     }
-    TRY(ranks_share(p->factor.ranks, p->size, NULL, &p->column_first, error));
-done:
-    if (status != STATUS_OK) {
-        preconditioner_free(p);
-    }
-    return status;
+    return ranks_share(p->factor.ranks, p->size, NULL, &p->column_first, error);
 }
 
 void preconditioner_free(struct preconditioner *p)

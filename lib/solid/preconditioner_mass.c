@@ -75,15 +75,14 @@ void preconditioner_add_row(const struct preconditioner *p, const struct average
  * Each process computes some columns. */
 static enum status weigh_conditions(struct preconditioner *p, struct error *error)
 {
-    enum status status;
     const struct ranks *ranks = p->factor.ranks;
     const struct constraint_rows *rows = p->constraint.rows;
     const int64_t *first = p->column_first;
     int64_t size = p->size;
-    double *conditions = NULL, *solved = NULL; /* solved: by columns */
+    SCRATCH double *conditions = NULL, *solved = NULL; /* solved: by columns */
     memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
-    TRY(NEW_ARRAY(&conditions, rows->count * size, error));
-    TRY(NEW_ARRAY(&solved, rows->count * size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&conditions, rows->count * size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&solved, rows->count * size, error));
     for (int64_t r = 0; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
         preconditioner_add_row(p, &average, rows->direction + r * p->dim, conditions + r * size);
@@ -108,9 +107,7 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
             p->held[r * size + k] = solved[k * rows->count + r];
         }
     }
-done:
-    FREE_ALL(conditions, solved);
-    return status;
+    return STATUS_OK;
 }
 
 enum status preconditioner_set_mass(struct preconditioner *p, const struct solid_system *system,

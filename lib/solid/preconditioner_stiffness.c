@@ -210,16 +210,15 @@ static void make_symmetric(int64_t n, double *matrix)
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t values = p->node_count * p->dim;
-    double *at_u = NULL, *moved = NULL, *force = NULL;
+    SCRATCH double *at_u = NULL, *moved = NULL, *force = NULL;
     double epsilon = strain * system_node_spacing(system);
     if (p->size == 0) {
         return STATUS_OK;
     }
-    TRY(NEW_ARRAY(&at_u, values, error));
-    TRY(NEW_ARRAY(&moved, values, error));
-    TRY(NEW_ARRAY(&force, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at_u, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&moved, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&force, values, error));
     system_resist(system, u, at_u);
     for (int64_t k = 0; k < p->size; k++) {
         set_field(p, k, moved);
@@ -235,9 +234,7 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     make_symmetric(p->size, p->body);
     p->measured_mass = preconditioner_sum_of_mass(p);
     preconditioner_invert(p, system);
-done:
-    FREE_ALL(at_u, moved, force);
-    return status;
+    return STATUS_OK;
 }
 
 /* Whether the normal has turned since the contact node was counted in. */

@@ -53,14 +53,13 @@ static double apart(const double *row, const double *other, int count)
 
 enum status prescription_check_table(const struct prescription *p, struct error *error)
 {
-    enum status status;
     const struct condition *condition = p->condition;
     int dim = p->input->cells.dim;
     int64_t count = condition->row_count;
     double largest = 0.0, same = round_off * p->input->extent / condition->unit;
-    struct placed *sorted; /* rows by their first coordinates */
+    SCRATCH struct placed *sorted = NULL; /* rows by their first coordinates */
     char place[96];
-    TRY(NEW_ARRAY(&sorted, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sorted, count, error));
     for (int64_t i = 0; i < count; i++) {
         const double zeros[3] = {0.0, 0.0, 0.0};
         sorted[i] = (struct placed){condition->rows[i * 2 * dim], i};
@@ -72,22 +71,20 @@ enum status prescription_check_table(const struct prescription *p, struct error 
             const double *a = condition->rows + sorted[s].item * 2 * dim,
                          *b = condition->rows + sorted[t].item * 2 * dim;
             double difference = apart(a + dim, b + dim, dim);
-            if (apart(a, b, dim) <= same && difference > round_off * largest && status == STATUS_OK) {
+            if (apart(a, b, dim) <= same && difference > round_off * largest) {
                 double at[3] = {0.0, 0.0, 0.0};
                 for (int c = 0; c < dim; c++) {
                     at[c] = b[c] * condition->unit;
                 }
                 point_text(dim, at, place);
-                status = fail(error, STATUS_INPUT,
-                              "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
-                              condition->where, condition->table, (long long)sorted[s].item + 1,
-                              (long long)sorted[t].item + 1, place, difference * condition->unit);
+                return fail(error, STATUS_INPUT,
+                            "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
+                            condition->where, condition->table, (long long)sorted[s].item + 1,
+                            (long long)sorted[t].item + 1, place, difference * condition->unit);
             }
         }
     }
-    free(sorted);
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* Mean of the table over the samples of one average. */

@@ -361,7 +361,7 @@ static enum status resume(struct relaxation *r, struct error *error)
 enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,
                            double *row_force, struct relaxation_report *report, struct error *error)
 {
-    enum status status;
+    FREED_BY(relaxation_release)
     struct relaxation r = {.system = system,
                            .options = options,
                            .report = report,
@@ -374,13 +374,13 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, bulk_limit);
-    TRY(relaxation_allocate(&r, error));
+    RETURN_IF_ERROR(relaxation_allocate(&r, error));
     r.spacing = system_node_spacing(system);
     r.body_size = relaxation_body_size(system);
     r.thickness = relaxation_thickness(system);
-    TRY(options->restored != NULL ? resume(&r, error) : begin(&r, error));
+    RETURN_IF_ERROR(options->restored != NULL ? resume(&r, error) : begin(&r, error));
     report->outcome = iterate(&r, error);
-    TRY(r.failure);
+    RETURN_IF_ERROR(r.failure);
     report->largest_frequency = r.frequency;
     report->largest_move = r.largest_move;
     if (report->outcome == RELAXATION_INVERTED) {
@@ -393,8 +393,5 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     } else {
         r.failure = measure_row_forces(&r, r.u, row_force, error);
     }
-    TRY(r.failure);
-done:
-    relaxation_release(&r);
-    return status;
+    return r.failure;
 }

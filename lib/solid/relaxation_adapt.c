@@ -124,7 +124,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
     (void)preconditioner_follow(&r->preconditioner, r->system, true);
     relaxation_note_new_mass(r);
-    TRY(status);
+    RETURN_IF_ERROR(status);
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
         return r->failure;
     }
@@ -134,8 +134,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
                                                      : least_low2 * spectrum.largest);
     r->measured_frequency = r->frequency;
     r->measured_move = r->largest_move;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* *older becomes what *newer was, and that the state now. */

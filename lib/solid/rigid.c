@@ -33,13 +33,12 @@ static enum status check_corners(const struct rigid_surface *surface, const doub
 static enum status find_coincident(const struct rigid_surface *surface, const double *corners, int64_t *same,
                                    struct error *error)
 {
-    enum status status;
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
     double near = merge_tolerance * surface->extent;
-    struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
-    TRY(NEW_ARRAY(&placed, count, error));
+    SCRATCH struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
+    RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
     for (int64_t c = 0; c < count; c++) {
         placed[c] = (struct placed){vector_dot(dim, direction, corners + c * dim), c};
     }
@@ -55,24 +54,21 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
             }
         }
     }
-done:
-    free(placed);
-    return status;
+    return STATUS_OK;
 }
 
 /* Vertices in the order of their first corner, and the facets' indices into them. */
 static enum status number_vertices(struct rigid_surface *surface, const double *corners, struct error *error)
 {
-    enum status status;
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
-    int64_t *same = NULL;
-    int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
-    TRY(NEW_ARRAY(&same, count, error));
-    TRY(NEW_ARRAY(&number, count, error));
-    TRY(NEW_ARRAY(&surface->vertex, count * dim, error));
-    TRY(NEW_ARRAY(&surface->facet, count, error));
-    TRY(find_coincident(surface, corners, same, error));
+    SCRATCH int64_t *same = NULL;
+    SCRATCH int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&same, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&number, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, count, error));
+    RETURN_IF_ERROR(find_coincident(surface, corners, same, error));
     for (int64_t c = 0; c < count; c++) {
         if (number[same[c]] == 0) {
             memcpy(surface->vertex + surface->vertex_count * dim, corners + c * dim,
@@ -81,9 +77,7 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
         }
         surface->facet[c] = number[same[c]] - 1;
     }
-done:
-    FREE_ALL(same, number);
-    return status;
+    return STATUS_OK;
 }
 
 /* Normal, not unit, of facet f; *size2 is the square of its longest edge. */
@@ -130,24 +124,18 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
 enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                         struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
     *surface = (struct rigid_surface){.dim = dim, .facet_count = facet_count};
     if (facet_count < 1 || facet_count > INT32_MAX / 3) {
         return fail(error, STATUS_INPUT, "rigid surface: %lld facets: none, or too many",
                     (long long)facet_count);
     }
-    TRY(check_corners(surface, corners, error));
+    RETURN_IF_ERROR(check_corners(surface, corners, error));
     struct box box = box_of(dim, facet_count * dim, corners);
     surface->extent = box_diagonal(&box);
-    TRY(number_vertices(surface, corners, error));
-    TRY(make_normals(surface, flip, error));
-    TRY(rigid_join_facets(surface, error));
-    TRY(rigid_grow_tree(surface, error));
-done:
-    if (status != STATUS_OK) {
-        rigid_free(surface);
-    }
-    return status;
+    RETURN_IF_ERROR(number_vertices(surface, corners, error));
+    RETURN_IF_ERROR(make_normals(surface, flip, error));
+    RETURN_IF_ERROR(rigid_join_facets(surface, error));
+    return rigid_grow_tree(surface, error);
 }
 
 void rigid_free(struct rigid_surface *surface)

@@ -162,10 +162,9 @@ static void look_at_bodies(const struct solid_system *system, const struct const
 enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
                                struct rigid_modes *moves, struct error *error)
 {
-    enum status status;
-    struct seen *seen = NULL;
+    SCRATCH struct seen *seen = NULL;
     int dim = system->dim;
-    TRY(NEW_ARRAY(&seen, body_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, body_count, error));
     memset(moves, 0, (size_t)body_count * sizeof *moves);
     for (int64_t b = 0; b < body_count; b++) {
         seen[b].box = box_of(dim, 0, NULL);
@@ -182,9 +181,7 @@ enum status system_rigid_modes(const struct solid_system *system, int64_t body_c
         }
         name_moves(dim, &seen[b], &moves[b]);
     }
-done:
-    free(seen);
-    return status;
+    return STATUS_OK;
 }
 
 bool system_has_rigid_mode(const struct solid_system *system)

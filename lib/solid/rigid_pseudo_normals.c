@@ -24,9 +24,8 @@ static enum status fail_twice(int64_t one, int64_t other, struct error *error)
 /* 2D: no segment stands twice. */
 static enum status check_segments(const struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
-    struct placed *segments = NULL; /* each by its two vertices as one number */
-    TRY(NEW_ARRAY(&segments, surface->facet_count, error));
+    SCRATCH struct placed *segments = NULL; /* each by its two vertices as one number */
+    RETURN_IF_ERROR(NEW_ARRAY(&segments, surface->facet_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         int64_t first = surface->facet[2 * f], second = surface->facet[2 * f + 1];
         segments[f] = (struct placed){(double)(first * surface->vertex_count + second), f};
@@ -34,25 +33,21 @@ static enum status check_segments(const struct rigid_surface *surface, struct er
     qsort(segments, (size_t)surface->facet_count, sizeof *segments, compare_placed);
     for (int64_t i = 1; i < surface->facet_count; i++) {
         if (!(segments[i].place > segments[i - 1].place)) {
-            status = fail_twice(segments[i - 1].item, segments[i].item, error);
-            goto done;
+            return fail_twice(segments[i - 1].item, segments[i].item, error);
         }
     }
-done:
-    free(segments);
-    return status;
+    return STATUS_OK;
 }
 
 /* 2D: normals and rims at the vertices. */
 static enum status join_segments(struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
-    struct meeting {
+    SCRATCH struct meeting {
         int64_t count, last;
         int turn; /* segments that end here less those that begin here */
     } *meetings = NULL;
-    TRY(check_segments(surface, error));
-    TRY(NEW_ARRAY(&meetings, surface->vertex_count, error));
+    RETURN_IF_ERROR(check_segments(surface, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&meetings, surface->vertex_count, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
         for (int k = 0; k < 2; k++) {
             int32_t v = surface->facet[2 * f + k];
@@ -60,8 +55,7 @@ static enum status join_segments(struct rigid_surface *surface, struct error *er
             meetings[v].count++;
             meetings[v].turn += k == 0 ? -1 : 1;
             if (meetings[v].count == 2 && meetings[v].turn != 0) {
-                status = fail_sides(meetings[v].last, f, error);
-                goto done;
+                return fail_sides(meetings[v].last, f, error);
             }
             meetings[v].last = f;
         }
@@ -69,9 +63,7 @@ static enum status join_segments(struct rigid_surface *surface, struct error *er
     for (int64_t v = 0; v < surface->vertex_count; v++) {
         surface->is_rim[v] = meetings[v].count == 1;
     }
-done:
-    free(meetings);
-    return status;
+    return STATUS_OK;
 }
 
 static int compare_edges(const void *left, const void *right)
@@ -147,20 +139,17 @@ static enum status join_edge(struct rigid_surface *surface, const struct half_ed
 
 static enum status join_edges(struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
     int64_t count = surface->facet_count * 3;
-    struct half_edge *edges = NULL;
-    TRY(NEW_ARRAY(&edges, count, error));
-    TRY(NEW_ARRAY(&surface->edge_normal, count * 3, error));
-    TRY(NEW_ARRAY(&surface->edge_is_rim, count, error));
+    SCRATCH struct half_edge *edges = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&edges, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_normal, count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_is_rim, count, error));
     rigid_list_edges(surface, edges);
     for (int64_t first = 0, last; first < count; first = last) {
         last = rigid_edge_end(edges, first, count);
-        TRY(join_edge(surface, edges + first, last - first, error));
+        RETURN_IF_ERROR(join_edge(surface, edges + first, last - first, error));
     }
-done:
-    free(edges);
-    return status;
+    return STATUS_OK;
 }
 
 /* 3D: the angle of facet f at its corner k. */

@@ -52,12 +52,11 @@ static void grow(struct rigid_surface *surface, struct placed *placed, int64_t f
 
 enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error)
 {
-    enum status status;
     int64_t count = surface->facet_count;
-    struct placed *placed = NULL;
-    TRY(NEW_ARRAY(&placed, count, error));
-    TRY(NEW_ARRAY(&surface->branch, 2 * count, error));
-    TRY(NEW_ARRAY(&surface->in_order, count, error));
+    SCRATCH struct placed *placed = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->branch, 2 * count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->in_order, count, error));
     for (int64_t f = 0; f < count; f++) {
         placed[f].item = f;
     }
@@ -65,7 +64,5 @@ enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error)
     for (int64_t i = 0; i < count; i++) {
         surface->in_order[i] = (int32_t)placed[i].item;
     }
-done:
-    free(placed);
-    return status;
+    return STATUS_OK;
 }

@@ -88,24 +88,21 @@ static enum status make_stripe(const struct sparse *table, const int32_t *range,
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                 struct error *error)
 {
-    enum status status;
     const struct sparse *table = transposed_table(rows);
-    int32_t *count = NULL, *range = NULL;
+    SCRATCH int32_t *count = NULL, *range = NULL;
     if (table->column_count > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
     }
-    TRY(NEW_ARRAY(&count, table->column_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&count, table->column_count, error));
     for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
         count[table->idx[i]]++;
     }
-    TRY(cut_columns(rows, count, begin, end, threads, error));
-    TRY(row_operator_ranges(rows, &range, error));
+    RETURN_IF_ERROR(cut_columns(rows, count, begin, end, threads, error));
+    RETURN_IF_ERROR(row_operator_ranges(rows, &range, error));
     for (int s = 0; s < threads; s++) {
-        TRY(make_stripe(table, range, &rows->stripes[s], error));
+        RETURN_IF_ERROR(make_stripe(table, range, &rows->stripes[s], error));
     }
-done:
-    FREE_ALL(count, range);
-    return status;
+    return STATUS_OK;
 }
 
 void row_operator_free(struct row_operator *rows)
@@ -161,11 +158,11 @@ enum status row_operator_transpose(const struct row_operator *rows, const int32_
                                    const int32_t *column, int64_t count, int32_t *slot,
                                    struct sparse *transposed, struct error *error)
 {
-    enum status status;
     const struct sparse *table = transposed_table(rows);
-    int64_t *next = NULL, sum = 0;
+    SCRATCH int64_t *next = NULL;
+    int64_t sum = 0;
     *transposed = (struct sparse){0};
-    TRY(NEW_ARRAY(&next, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
     for (int64_t c = 0; c < count; c++) {
         slot[column[c]] = (int32_t)c;
     }
@@ -173,13 +170,11 @@ enum status row_operator_transpose(const struct row_operator *rows, const int32_
     for (int64_t c = 0; c < count; c++) {
         sum += next[c];
     }
-    TRY(sparse_new(count, table->row_count, sum, transposed, error));
+    RETURN_IF_ERROR(sparse_new(count, table->row_count, sum, transposed, error));
     for (int64_t c = 0; c < count; c++) {
         transposed->ptr[c + 1] = transposed->ptr[c] + next[c];
         next[c] = transposed->ptr[c];
     }
     visit_columns(table, range, column, count, slot, next, transposed);
-done:
-    free(next);
-    return status;
+    return STATUS_OK;
 }

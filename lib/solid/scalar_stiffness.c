@@ -76,15 +76,14 @@ static struct average fields_of(const struct scalar_stiffness *stiffness, const 
 
 static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
 {
-    enum status status;
     const struct solid_system *system = stiffness->system;
-    struct sparse by_bond = {0};
+    FREED_BY(sparse_free) struct sparse by_bond = {0};
     double unused;
     int64_t entries = 0, at = 0;
     for (int64_t b = 0; b < stiffness->bond_count; b++) {
         entries += bond_at(system, b, &unused).length;
     }
-    TRY(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
+    RETURN_IF_ERROR(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
     for (int64_t b = 0; b < stiffness->bond_count; b++) {
         struct average bond = bond_at(system, b, &stiffness->bond_stiffness[b]);
         for (int64_t i = 0; i < bond.length; i++, at++) {
@@ -93,31 +92,21 @@ static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *
         }
         by_bond.ptr[b + 1] = at;
     }
-    TRY(sparse_transpose(&by_bond, &stiffness->bonds, error));
-done:
-    sparse_free(&by_bond);
-    return status;
+    return sparse_transpose(&by_bond, &stiffness->bonds, error);
 }
 
 enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
                                   struct error *error)
 {
-    enum status status;
     const struct body *body = &system->body;
     *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
-        status = fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
-        goto done;
+        return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
     }
-    TRY(row_operator_ranges(&body->rows, &stiffness->range, error));
-    TRY(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
-    TRY(list_bonds(stiffness, error));
-done:
-    if (status != STATUS_OK) {
-        scalar_stiffness_free(stiffness);
-    }
-    return status;
+    RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
+    return list_bonds(stiffness, error);
 }
 
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)

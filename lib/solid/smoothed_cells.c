@@ -61,9 +61,8 @@ static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
 static enum status match_corners(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
                                  const int64_t *order, int32_t *row_of_corner, struct error *error)
 {
-    enum status status;
-    int64_t *cell_place = NULL;
-    TRY(NEW_ARRAY(&cell_place, cell_count, error));
+    SCRATCH int64_t *cell_place = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&cell_place, cell_count, error));
     for (int64_t q = 0; q < cell_count; q++) {
         cell_place[order[q]] = q;
     }
@@ -84,24 +83,20 @@ static enum status match_corners(const struct smoothed_cells_input *input, int d
     }
     for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
         if (row_of_corner[i * rows] < 0) {
-            status = fail(error, STATUS_INPUT,
-                          "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
-                          (long long)order[i / (dim + 1)]);
-            goto done;
+            return fail(error, STATUS_INPUT,
+                        "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
+                        (long long)order[i / (dim + 1)]);
         }
     }
-done:
-    free(cell_place);
-    return status;
+    return STATUS_OK;
 }
 
 /* x[row_count * dim]: the points of the rows. STATUS_INPUT where the mean of a face's is not its centroid. */
 static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
-    enum status status;
     int dim = faces->dim, rows = FACE_ROWS(dim);
-    double *points = NULL;
-    TRY(NEW_ARRAY(&points, face_row_point(faces, faces->row_count) * dim, error));
+    SCRATCH double *points = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&points, face_row_point(faces, faces->row_count) * dim, error));
     face_rows_points(faces, nodes, points);
     for (int64_t r = 0; r < faces->row_count; r++) {
         int64_t first = face_row_point(faces, r), count = face_row_point(faces, r + 1) - first;
@@ -121,14 +116,11 @@ static enum status place_rows(const struct faces *faces, const double *nodes, do
             size = fmax(size, fabs(middle[a] - first));
         }
         if (!(off <= 1e-6 * size)) {
-            status = fail(error, STATUS_INPUT,
-                          "faces.row: row %lld: not those of this face: run ipoints again", (long long)f);
-            goto done;
+            return fail(error, STATUS_INPUT, "faces.row: row %lld: not those of this face: run ipoints again",
+                        (long long)f);
         }
     }
-done:
-    free(points);
-    return status;
+    return STATUS_OK;
 }
 
 /* A given table of shape functions: its section, what a row stands for, and the points of the rows. With
@@ -198,12 +190,11 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
                               const struct body *body, const int64_t *order, bool *wanted,
                               struct error *error)
 {
-    enum status status;
     const struct field_averages *averages = &body->cells.averages;
-    bool *touched = NULL, *in_order = NULL;
-    TRY(NEW_ARRAY(&touched, averages->row_count, error));
-    TRY(body_share_values(body, &in_order, error));
-    TRY(read_rows_with(rows, body_share_owner, body, wanted, error));
+    SCRATCH bool *touched = NULL, *in_order = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&touched, averages->row_count, error));
+    RETURN_IF_ERROR(body_share_values(body, &in_order, error));
+    RETURN_IF_ERROR(read_rows_with(rows, body_share_owner, body, wanted, error));
     for (int64_t r = 0; r < averages->row_count; r++) {
         int64_t n = r < input->faces->row_count ? -1 : body->node_order[r - input->faces->row_count];
         touched[r] = n < 0 && wanted[order[r]];
@@ -215,16 +206,13 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
     for (int64_t f = 0; f < input->faces->row_count; f++) {
         wanted[order[f]] = wanted[order[f]] || in_order[f];
     }
-done:
-    FREE_ALL(touched, in_order);
-    return status;
+    return STATUS_OK;
 }
 
 /* Fetch the rows of the face table that this process needs, where none has read all of it. */
 static enum status fetch_faces(const struct smoothed_cells_input *input, struct body *body,
                                struct average_table *faces, struct error *error)
 {
-    enum status status;
     struct sparse *fetched = &body->cells.averages.fetched;
     const struct read_rows rows = {.ranks = body->share.ranks,
                                    .row_count = input->faces->row_count,
@@ -233,19 +221,17 @@ static enum status fetch_faces(const struct smoothed_cells_input *input, struct 
                                    .idx = input->face_idx,
                                    .value = input->face_phi,
                                    .reader = input->face_reader};
-    bool *wanted = NULL;
-    TRY(NEW_ARRAY(&wanted, input->faces->row_count, error));
-    TRY(list_faces(input, &rows, body, faces->order, wanted, error));
-    TRY(read_rows_fetch(&rows, wanted, fetched, error));
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, input->faces->row_count, error));
+    RETURN_IF_ERROR(list_faces(input, &rows, body, faces->order, wanted, error));
+    RETURN_IF_ERROR(read_rows_fetch(&rows, wanted, fetched, error));
     faces->ptr = fetched->ptr;
     faces->idx = fetched->idx;
     faces->phi = fetched->value;
     if (input->copied != NULL) {
         input->copied(input->context);
     }
-done:
-    free(wanted);
-    return status;
+    return STATUS_OK;
 }
 
 /* One process: copy all rows. */
@@ -264,24 +250,22 @@ static enum status copy_all(const struct smoothed_cells_input *input,
 static enum status copy_shares(const struct smoothed_cells_input *input, struct field_averages_input *tables,
                                struct body *body, struct error *error)
 {
-    enum status status;
     struct body_share *share = &body->share;
     struct field_averages *averages = &body->cells.averages;
     struct row_operator *rows = &body->rows;
-    bool *needed = NULL, *used = NULL;
+    SCRATCH bool *needed = NULL, *used = NULL;
     if (input->face_reader != NULL) {
-        TRY(fetch_faces(input, body, &tables->tables[0], error));
+        RETURN_IF_ERROR(fetch_faces(input, body, &tables->tables[0], error));
     }
-    TRY(body_share_values(body, &needed, error));
-    TRY(stretches_of(0, averages->row_count, needed, &share->values, error));
-    TRY(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
-    TRY(field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
-    TRY(sparse_rows_used(&rows->columns, &used, error));
-    TRY(body_share_rows(body, used, error));
+    RETURN_IF_ERROR(body_share_values(body, &needed, error));
+    RETURN_IF_ERROR(stretches_of(0, averages->row_count, needed, &share->values, error));
+    RETURN_IF_ERROR(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
+    RETURN_IF_ERROR(
+        field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
+    RETURN_IF_ERROR(sparse_rows_used(&rows->columns, &used, error));
+    RETURN_IF_ERROR(body_share_rows(body, used, error));
     memcpy(averages->given, tables->tables, sizeof averages->given);
-done:
-    FREE_ALL(needed, used);
-    return status;
+    return STATUS_OK;
 }
 
 /* Build the rows of the faces and of the nodes. The corners of a face's row are those opposite the face; the
@@ -289,28 +273,27 @@ done:
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
                                   struct error *error)
 {
-    enum status status;
     struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, corners = dim + 1;
     const struct faces *faces = input->faces;
-    int64_t *order = NULL;
-    int32_t *node_of_corner = NULL, *row_of_corner = NULL;
-    double *x = NULL;
-    TRY(NEW_ARRAY(&row_of_corner, body->point_count * corners * FACE_ROWS(dim), error));
-    TRY(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
-    TRY(NEW_ARRAY(&x, faces->row_count * dim, error));
-    TRY(place_rows(faces, input->x, x, error));
+    SCRATCH int64_t *order = NULL;
+    SCRATCH int32_t *node_of_corner = NULL, *row_of_corner = NULL;
+    SCRATCH double *x = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&row_of_corner, body->point_count * corners * FACE_ROWS(dim), error));
+    RETURN_IF_ERROR(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, faces->row_count * dim, error));
+    RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
     const struct given_table rows = {
         "face.phi",      "row",           input->face_reader, ranks_rank(body->share.ranks),
         input->face_ptr, input->face_idx, input->face_phi,    x};
     const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
                                       input->node_idx, input->node_phi, input->x};
-    status = check_table(&rows, faces->row_count, dim, input->x, error);
-    TRY(input->face_reader != NULL ? ranks_agree(body->share.ranks, status, error) : status);
-    TRY(check_table(&nodes, body->node_count, dim, input->x, error));
-    TRY(NEW_ARRAY(&order, faces->row_count, error));
-    TRY(renumber_morton(dim, faces->row_count, x, NULL, order, error));
-    TRY(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
+    enum status checked = check_table(&rows, faces->row_count, dim, input->x, error);
+    RETURN_IF_ERROR(input->face_reader != NULL ? ranks_agree(body->share.ranks, checked, error) : checked);
+    RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&order, faces->row_count, error));
+    RETURN_IF_ERROR(renumber_morton(dim, faces->row_count, x, NULL, order, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
                (size_t)corners * sizeof *node_of_corner);
@@ -324,32 +307,24 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
                                                       input->face_idx, input->face_phi, row_of_corner},
                                                      {body->node_count, body->node_order, input->node_ptr,
                                                       input->node_idx, input->node_phi, node_of_corner}}};
-    TRY(field_averages_build(&tables, averages, error));
+    RETURN_IF_ERROR(field_averages_build(&tables, averages, error));
     if (body->share.ranks == NULL) {
-        TRY(copy_all(input, &tables, body, error));
+        RETURN_IF_ERROR(copy_all(input, &tables, body, error));
     } else {
-        TRY(copy_shares(input, &tables, body, error));
+        RETURN_IF_ERROR(copy_shares(input, &tables, body, error));
         averages->face_order = array_take(&order);
     }
-done:
-    FREE_ALL(node_of_corner, row_of_corner, order, x);
-    return status;
+    return STATUS_OK;
 }
 
 enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
                                  struct error *error)
 {
-    enum status status;
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
-    TRY(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
-    TRY(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
-    TRY(build_averages(input, body, error));
-done:
-    if (status != STATUS_OK) {
-        smoothed_cells_free(smoothed);
-    }
-    return status;
+    RETURN_IF_ERROR(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
+    return build_averages(input, body, error);
 }
 
 void smoothed_cells_free(struct smoothed_cells *smoothed)

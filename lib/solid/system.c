@@ -98,13 +98,13 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
 static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
                                  struct error *error)
 {
-    enum status status;
     const struct constraint_rows *rows = &system->rows;
-    double *u = NULL, *factor = NULL, largest = 0.0, worst = 0.0;
+    SCRATCH double *u = NULL, *factor = NULL;
+    double largest = 0.0, worst = 0.0;
     int64_t size = system->node_count * system->dim, row = 0, worst_row = -1;
     enum { TIMES = 5 };
-    TRY(NEW_ARRAY(&u, size, error));
-    TRY(NEW_ARRAY(&factor, system->curve_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor, system->curve_count, error));
     for (int64_t r = 0; r < rows->count; r++) {
         largest = fmax(largest, fabs(rows->target[r]));
     }
@@ -125,11 +125,9 @@ static enum status check_dropped(const struct solid_system *system, struct const
         }
     }
     if (worst_row >= 0) {
-        status = fail_at_row(system, worst_row, worst, error);
+        return fail_at_row(system, worst_row, worst, error);
     }
-done:
-    FREE_ALL(u, factor);
-    return status;
+    return STATUS_OK;
 }
 
 enum status system_constrain(const struct solid_system *system, const double *mass,

@@ -21,20 +21,16 @@ enum status system_append_penalty(struct solid_system *system, const struct aver
 
 enum status system_share_penalties(struct solid_system *system, struct error *error)
 {
-    enum status status;
     const struct body *body = &system->body;
-    bool *own = NULL;
+    SCRATCH bool *own = NULL;
     if (body->share.ranks != NULL) {
-        TRY(NEW_ARRAY(&own, body->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&own, body->node_count, error));
         for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
             own[body->node_order[p]] = true;
         }
     }
-    TRY(constraint_nodes_build(&system->penalties, body->node_count, NULL, own, &system->penalty_nodes,
-                               error));
-done:
-    free(own);
-    return status;
+    return constraint_nodes_build(&system->penalties, body->node_count, NULL, own, &system->penalty_nodes,
+                                  error);
 }
 
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)

@@ -146,22 +146,17 @@ static enum status check_lists(const struct stream *stream, const char *prefix, 
 /* Regions, facets and node sets. */
 static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
 {
-    struct cell_regions regions = {0};
-    struct named_facets facets = {0};
-    struct named_sets sets = {0};
-    enum status status = STATUS_OK;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
     if (cells->count > 0 && stream_find(stream, "cells.region") != NULL) {
-        TRY(stream_regions(stream, cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, cells, &regions, error));
     }
     if (cells->node_count > 0) {
-        TRY(stream_facets(stream, false, cells, &facets, error));
-        TRY(stream_sets(stream, false, cells->node_count, &sets, error));
+        RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
+        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
     }
-done:
-    names_free(&regions.names);
-    names_free(&facets.names);
-    names_free(&sets.names);
-    return status;
+    return STATUS_OK;
 }
 
 /* Faces, and what has a row for each of the rows or points that they ask for. */

@@ -10,36 +10,34 @@
 enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                              struct error *error)
 {
-    enum status status;
     struct cells cells;
-    struct cell_regions regions = {0};
-    int32_t *of_region = NULL, named = 0; /* the place of each region in the list, from 1; 0: it has none */
-    char *list = strdup(names), *rest = list;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    SCRATCH int32_t *of_region = NULL;
+    int32_t named = 0; /* the place of each region in the list, from 1; 0: it has none */
+    SCRATCH char *list = strdup(names);
+    char *rest = list;
     *side = NULL;
-    TRY(list == NULL ? fail_memory(error, "regions") : STATUS_OK);
-    TRY(stream_cells(stream, true, &cells, error));
-    TRY(stream_regions(stream, &cells, &regions, error));
-    TRY(NEW_ARRAY(&of_region, regions.names.count, error));
+    RETURN_IF_ERROR(list == NULL ? fail_memory(error, "regions") : STATUS_OK);
+    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(stream_regions(stream, &cells, &regions, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&of_region, regions.names.count, error));
     for (char *name; (name = strsep(&rest, ",")) != NULL;) {
         int64_t region = names_find(&regions.names, name);
         if (region < 0) {
-            TRY(fail(error, STATUS_INPUT, "--interface: no region '%s'; there are: %s", name,
-                     regions.names.list));
+            return fail(error, STATUS_INPUT, "--interface: no region '%s'; there are: %s", name,
+                        regions.names.list);
         }
         if (of_region[region] > 0) {
-            TRY(fail(error, STATUS_INPUT, "--interface: region '%s' stands twice", name));
+            return fail(error, STATUS_INPUT, "--interface: region '%s' stands twice", name);
         }
         of_region[region] = ++named;
     }
-    TRY(NEW_ARRAY(side, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(side, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
         int32_t place = of_region[regions.of_cell[c]];
         (*side)[c] = place > 0 ? place - 1 : named;
     }
-done:
-    FREE_ALL(list, of_region);
-    names_free(&regions.names);
-    return status;
+    return STATUS_OK;
 }
 
 enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,

@@ -113,14 +113,10 @@ static enum status adaptive_cell_points(const struct stream *stream, const struc
                                         const struct cells *cells, struct adaptive_points *points,
                                         struct error *error)
 {
-    enum status status;
-    double *radius = NULL;
-    TRY(NEW_ARRAY(&radius, cells->node_count, error));
-    TRY(adaptive_radii(stream, options, cells, radius, error));
-    TRY(adaptive_points_build(&options->refinement, cells, radius, points, error));
-done:
-    free(radius);
-    return status;
+    SCRATCH double *radius = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells->node_count, error));
+    RETURN_IF_ERROR(adaptive_radii(stream, options, cells, radius, error));
+    return adaptive_points_build(&options->refinement, cells, radius, points, error);
 }
 
 static enum status put_points(struct stream *stream, int dim, const char *rule,
@@ -140,59 +136,53 @@ static enum status put_points(struct stream *stream, int dim, const char *rule,
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
                              struct error *error)
 {
-    enum status status;
     int dim = cells->dim;
-    struct faces faces = {0};
-    double *x = NULL;
+    FREED_BY(faces_free) struct faces faces = {0};
+    SCRATCH double *x = NULL;
     char attributes[64];
-    TRY(faces_build(cells, boundary_only, &faces, error));
+    RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
     int64_t count = faces.count, points = face_row_point(&faces, faces.row_count);
-    TRY(NEW_ARRAY(&x, points * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, points * dim, error));
     face_rows_points(&faces, cells->x, x);
-    TRY(stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
-    TRY(stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", array_take(&faces.cell), true, error));
+    RETURN_IF_ERROR(
+        stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
+    RETURN_IF_ERROR(
+        stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", array_take(&faces.cell), true, error));
     if (faces.row != NULL) {
-        TRY(stream_put(stream, "faces.row", TYPE_I4, count, FACE_ROWS(dim), "", array_take(&faces.row), true,
-                       error));
+        RETURN_IF_ERROR(stream_put(stream, "faces.row", TYPE_I4, count, FACE_ROWS(dim), "",
+                                   array_take(&faces.row), true, error));
     }
-    TRY(stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
-                   array_take(&x), true, error));
-done:
-    faces_free(&faces);
-    free(x);
-    return status;
+    return stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                      array_take(&x), true, error);
 }
 
 enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,
                           struct error *error)
 {
-    enum status status = STATUS_OK;
     struct cells cells;
-    struct adaptive_points points = {0};
+    FREED_BY(adaptive_points_free) struct adaptive_points points = {0};
     bool lattice = options->lattice[0] > 0;
     int per_cell = options->smoothed ? 1 : options->gauss_points;
     char rule[32];
     *unresolved = 0;
-    TRY(lattice ? stream_nodes(stream, &cells.dim, &cells.node_count, &cells.x, error)
-                : stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(lattice ? stream_nodes(stream, &cells.dim, &cells.node_count, &cells.x, error)
+                            : stream_cells(stream, true, &cells, error));
     if (lattice) {
         snprintf(rule, sizeof rule, "lattice");
-        TRY(lattice_points(&cells, options->lattice, &points, error));
+        RETURN_IF_ERROR(lattice_points(&cells, options->lattice, &points, error));
     } else if (options->adaptive) {
         snprintf(rule, sizeof rule, "adaptive");
-        TRY(adaptive_cell_points(stream, options, &cells, &points, error));
+        RETURN_IF_ERROR(adaptive_cell_points(stream, options, &cells, &points, error));
         *unresolved = points.unresolved;
     } else {
         snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
-        TRY(cell_points(&cells, per_cell, &points, error));
+        RETURN_IF_ERROR(cell_points(&cells, per_cell, &points, error));
     }
     /* What was made from other points is void. */
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
-    TRY(put_points(stream, cells.dim, rule, &points, error));
+    RETURN_IF_ERROR(put_points(stream, cells.dim, rule, &points, error));
     if (!lattice) {
-        TRY(put_faces(stream, &cells, !options->smoothed, error));
+        RETURN_IF_ERROR(put_faces(stream, &cells, !options->smoothed, error));
     }
-done:
-    adaptive_points_free(&points);
-    return status;
+    return STATUS_OK;
 }

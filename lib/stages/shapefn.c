@@ -59,25 +59,23 @@ static enum status view_points(const struct stream *stream, const char *section,
 static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
                             const char *prefix, const char *phi_name, bool gradients, struct error *error)
 {
-    enum status status;
     struct tabulated of;
-    double *phi = NULL, *dphi = NULL;
+    SCRATCH double *phi = NULL, *dphi = NULL;
     char attributes[64];
-    TRY(view_points(stream, section, prefix, &of, error));
+    RETURN_IF_ERROR(view_points(stream, section, prefix, &of, error));
     int64_t pairs = of.lists.ptr[of.lists.count];
-    TRY(NEW_ARRAY(&phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, pairs, error));
     if (gradients) {
-        TRY(NEW_ARRAY(&dphi, pairs * mls->dim, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&dphi, pairs * mls->dim, error));
     }
-    TRY(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, section, phi, dphi, error));
-    TRY(stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", array_take(&phi), true, error));
+    RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, section, phi, dphi, error));
+    RETURN_IF_ERROR(stream_put(stream, phi_name, TYPE_F8, pairs, 1, "", array_take(&phi), true, error));
     if (gradients) {
-        TRY(stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
-                       vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true, error));
+        RETURN_IF_ERROR(stream_put(stream, "shape.dphi", TYPE_F8, pairs, mls->dim,
+                                   vector_attributes(mls->dim, "1/m", attributes), array_take(&dphi), true,
+                                   error));
     }
-done:
-    FREE_ALL(phi, dphi);
-    return status;
+    return STATUS_OK;
 }
 
 /* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
@@ -94,38 +92,36 @@ static enum status put_table(struct stream *stream, const char *prefix, int64_t 
  * points of faces has served. */
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
-    enum status status;
     struct cells cells;
     struct faces faces;
     struct tabulated of;
-    struct face_averages averages = {0};
-    int64_t *ptr = NULL;
-    int32_t *idx = NULL;
-    TRY(stream_cells(stream, true, &cells, error));
-    TRY(stream_faces(stream, &cells, &faces, error));
-    TRY(view_points(stream, "facepoints.x", "facepoint", &of, error));
+    FREED_BY(face_averages_free) struct face_averages averages = {0};
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
+    RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_row_point(&faces, faces.row_count)) {
-        TRY(fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again"));
+        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
     }
-    TRY(shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
+    RETURN_IF_ERROR(
+        shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
     if (smoothed) {
-        TRY(put_table(stream, "face", faces.row_count, &averages.ptr, &averages.idx, &averages.phi, error));
+        RETURN_IF_ERROR(
+            put_table(stream, "face", faces.row_count, &averages.ptr, &averages.idx, &averages.phi, error));
     }
     int64_t rows = face_row_point(&faces, faces.boundary_count), pairs = of.lists.ptr[rows];
-    TRY(NEW_ARRAY(&ptr, rows + 1, error));
-    TRY(NEW_ARRAY(&idx, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&ptr, rows + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&idx, pairs, error));
     memcpy(ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *ptr);
     memcpy(idx, of.lists.idx, (size_t)pairs * sizeof *idx);
-    TRY(put_table(stream, "boundary", rows, &ptr, &idx, &averages.boundary_phi, error));
+    RETURN_IF_ERROR(put_table(stream, "boundary", rows, &ptr, &idx, &averages.boundary_phi, error));
     for (int64_t s = stream->section_count - 1; s >= 0; s--) {
         if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
             stream_remove(stream, stream->sections[s].name);
         }
     }
-done:
-    face_averages_free(&averages);
-    FREE_ALL(ptr, idx);
-    return status;
+    return STATUS_OK;
 }
 
 enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error)

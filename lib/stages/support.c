@@ -11,20 +11,16 @@
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
                                int64_t node_count, const double *x, double *radius, struct error *error)
 {
-    enum status status;
     struct cells cells;
-    double *spacing = NULL;
-    TRY(NEW_ARRAY(&spacing, node_count, error));
-    TRY(stream_cells(stream, false, &cells, error));
+    SCRATCH double *spacing = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, node_count, error));
+    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (cells.count > 0) {
-        TRY(cells_node_spacing(&cells, spacing, error));
+        RETURN_IF_ERROR(cells_node_spacing(&cells, spacing, error));
     } else {
-        TRY(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
+        RETURN_IF_ERROR(nodes_spacing(options->mls.dim, node_count, x, spacing, error));
     }
-    TRY(support_radii(options, node_count, spacing, radius, error));
-done:
-    free(spacing);
-    return status;
+    return support_radii(options, node_count, spacing, radius, error);
 }
 
 enum status stage_radii(const struct stream *stream, const struct support_options *options,
@@ -38,14 +34,10 @@ enum status stage_radii(const struct stream *stream, const struct support_option
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
-    enum status status;
-    double *radius = NULL;
-    TRY(NEW_ARRAY(&radius, node_count, error));
-    TRY(stage_radii(stream, options, node_count, x, radius, error));
-    TRY(stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error));
-done:
-    free(radius);
-    return status;
+    SCRATCH double *radius = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
+    RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
+    return stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error);
 }
 
 /* Points of one section, in those cells: lists PREFIX.ptr, .idx, .widen, and what the report calls them. */
@@ -61,12 +53,11 @@ static enum status put_lists(struct stream *stream, const struct support_options
 {
     const struct section *points = listed->points;
     const char *prefix = listed->prefix;
-    enum status status;
-    struct support_lists lists = {0};
+    FREED_BY(support_free) struct support_lists lists = {0};
     char vector[64];
     int64_t count = points->rows;
-    TRY(support_space_lists(options, space, &listed->places, count, points->data, points->name, &lists,
-                            error));
+    RETURN_IF_ERROR(support_space_lists(options, space, &listed->places, count, points->data, points->name,
+                                        &lists, error));
     int64_t pairs = lists.ptr[count];
     report->list[report->lists++] = (struct list_report){.what = listed->called,
                                                          .points = count,
@@ -76,19 +67,17 @@ static enum status put_lists(struct stream *stream, const struct support_options
                                                          .widened = lists.widened,
                                                          .around = lists.around_count,
                                                          .widest = lists.widest};
-    TRY(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
-    TRY(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
-    TRY(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));
     if (lists.around_count > 0) {
-        TRY(stream_put_member(stream, prefix, "around", TYPE_I8, lists.around_count, 1, "",
-                              &lists.around_pair, error));
-        TRY(stream_put_member(stream, prefix, "image", TYPE_F8, lists.around_count, points->cols,
-                              vector_attributes((int)points->cols, "m", vector), &lists.around_offset,
-                              error));
+        RETURN_IF_ERROR(stream_put_member(stream, prefix, "around", TYPE_I8, lists.around_count, 1, "",
+                                          &lists.around_pair, error));
+        RETURN_IF_ERROR(stream_put_member(stream, prefix, "image", TYPE_F8, lists.around_count, points->cols,
+                                          vector_attributes((int)points->cols, "m", vector),
+                                          &lists.around_offset, error));
     }
-done:
-    support_free(&lists);
-    return status;
+    return STATUS_OK;
 }
 
 /* The cells of the integration points; to be found by place where there is no such section. */
@@ -140,34 +129,30 @@ static enum status places_of_face_points(const struct stream *stream, const stru
 static enum status renew_rows(struct stream *stream, const struct cells *cells, const int32_t *side,
                               struct error *error)
 {
-    enum status status;
     struct faces faces;
-    int32_t *row = NULL;
-    double *x = NULL;
+    SCRATCH int32_t *row = NULL;
+    SCRATCH double *x = NULL;
     char attributes[64];
     int dim = cells->dim;
-    TRY(stream_faces(stream, cells, &faces, error));
+    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
     if (!faces_may_share(&faces)) {
         return STATUS_OK;
     }
-    TRY(face_rows_number(cells->node_count, side, &faces, error));
+    RETURN_IF_ERROR(face_rows_number(cells->node_count, side, &faces, error));
     row = faces.row;
     int64_t points = face_row_point(&faces, faces.row_count);
-    TRY(NEW_ARRAY(&x, points * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, points * dim, error));
     face_rows_points(&faces, cells->x, x);
-    TRY(stream_put(stream, "faces.row", TYPE_I4, faces.count, dim, "", array_take(&row), true, error));
-    TRY(stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
-                   array_take(&x), true, error));
-done:
-    FREE_ALL(row, x);
-    return status;
+    RETURN_IF_ERROR(
+        stream_put(stream, "faces.row", TYPE_I4, faces.count, dim, "", array_take(&row), true, error));
+    return stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
+                      array_take(&x), true, error);
 }
 
 enum status stage_support(struct stream *stream, const struct support_options *options,
                           struct support_report *report, struct error *error)
 {
-    enum status status;
-    struct support_space space = {0};
+    FREED_BY(support_space_free) struct support_space space = {0};
     int dim;
     int64_t node_count;
     const double *x;
@@ -175,48 +160,46 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     struct support_options actual = *options;
     struct cells cells;
     struct listed listed;
-    int64_t *face_ptr = NULL;
-    int32_t *face_cell = NULL;
+    SCRATCH int64_t *face_ptr = NULL;
+    SCRATCH int32_t *face_cell = NULL;
     *report = (struct support_report){0};
     bool had_sides = stream_find(stream, "support.side") != NULL;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    TRY(stream_nodes(stream, &dim, &node_count, &x, error));
-    TRY(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
-    TRY(stream_cells(stream, false, &cells, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (cells.count == 0) {
         actual.reach = REACH_DISTANCE;
     }
     report->reach = actual.reach;
-    TRY(put_radii(stream, &actual, node_count, x, error));
+    RETURN_IF_ERROR(put_radii(stream, &actual, node_count, x, error));
     if (actual.side != NULL) {
-        TRY(stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
+        RETURN_IF_ERROR(
+            stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    TRY(stage_own_part(stream, node_count, &actual, error));
-    TRY(support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
+    RETURN_IF_ERROR(stage_own_part(stream, node_count, &actual, error));
+    RETURN_IF_ERROR(
+        support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        TRY(places_of_points(stream, &cells, points->rows, &listed.places, error));
-        TRY(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(places_of_points(stream, &cells, points->rows, &listed.places, error));
+        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        TRY(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        RETURN_IF_ERROR(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
         if (had_sides || actual.side != NULL) {
-            TRY(renew_rows(stream, &cells, actual.side, error));
+            RETURN_IF_ERROR(renew_rows(stream, &cells, actual.side, error));
             facepoints = stream_find(stream, "facepoints.x");
         }
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
-        TRY(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell, &listed.places,
-                                  error));
-        TRY(put_lists(stream, &actual, &space, &listed, report, error));
+        RETURN_IF_ERROR(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell,
+                                              &listed.places, error));
+        RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     listed = (struct listed){.points = stream_find(stream, "nodes.x"),
                              .places = {.nodes = true},
                              .prefix = "node",
                              .called = "nodes"};
-    TRY(put_lists(stream, &actual, &space, &listed, report, error));
-done:
-    FREE_ALL(face_ptr, face_cell);
-    support_space_free(&space);
-    return status;
+    return put_lists(stream, &actual, &space, &listed, report, error);
 }

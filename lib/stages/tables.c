@@ -38,16 +38,14 @@ static enum status read_table(const struct stream *stream, const char *prefix, c
                               int64_t rows, int64_t node_count, struct neighbours *lists, const double **phi,
                               struct error *error)
 {
-    enum status status;
     const struct section *section;
-    TRY(stream_need(stream, values, TYPE_F8, cols, "shapefn", &section, error));
-    TRY(stream_neighbours(stream, prefix, rows, node_count, lists, error));
+    RETURN_IF_ERROR(stream_need(stream, values, TYPE_F8, cols, "shapefn", &section, error));
+    RETURN_IF_ERROR(stream_neighbours(stream, prefix, rows, node_count, lists, error));
     if (section->rows != lists->ptr[rows]) {
-        status = fail(error, STATUS_INPUT, "%s: does not fit %s.idx: run shapefn again", values, prefix);
+        return fail(error, STATUS_INPUT, "%s: does not fit %s.idx: run shapefn again", values, prefix);
     }
     *phi = section->data;
-done:
-    return status;
+    return STATUS_OK;
 }
 
 /* The tables over points or faces, over the boundary, and over the nodes. */

@@ -297,3 +297,18 @@ const char *vector_attributes(int dim, const char *unit, char text[64])
     snprintf(text, 64, "unit=%s cols=%s", unit, dim == 2 ? "x,y" : "x,y,z");
     return text;
 }
+
+void cell_regions_free(struct cell_regions *regions)
+{
+    names_free(&regions->names);
+}
+
+void named_facets_free(struct named_facets *facets)
+{
+    names_free(&facets->names);
+}
+
+void named_sets_free(struct named_sets *sets)
+{
+    names_free(&sets->names);
+}

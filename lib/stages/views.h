@@ -19,17 +19,17 @@ MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, st
 MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
                                     const struct section **field, struct error *error);
 
-/* The region of each cell: of_cell[cells.count], each below names.count; names are to be freed, also on
- * failure. */
+/* The region of each cell: of_cell[cells.count], each below names.count; to be freed, also on failure. */
 struct cell_regions {
     const int32_t *of_cell;
     struct names names;
 };
 MUST_CHECK enum status stream_regions(const struct stream *stream, const struct cells *cells,
                                       struct cell_regions *regions, struct error *error);
+void cell_regions_free(struct cell_regions *regions);
 
 /* Named facets of the boundary, checked: facet[count * dim] nodes of the cells, group[count] a name for each.
- * count is 0 when there are none, an error if they are needed; names are to be freed, also on failure. */
+ * count is 0 when there are none, an error if they are needed; to be freed, also on failure. */
 struct named_facets {
     int64_t count;
     const int32_t *facet, *group;
@@ -37,15 +37,17 @@ struct named_facets {
 };
 MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
                                      struct named_facets *facets, struct error *error);
+void named_facets_free(struct named_facets *facets);
 
 /* Named sets of nodes, checked: a list, ascending, for each name. No names when there are none, an error if
- * they are needed; names are to be freed, also on failure. */
+ * they are needed; to be freed, also on failure. */
 struct named_sets {
     struct neighbours lists;
     struct names names;
 };
 MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, int64_t node_count,
                                    struct named_sets *sets, struct error *error);
+void named_sets_free(struct named_sets *sets);
 
 /* Faces of the cells, checked; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,

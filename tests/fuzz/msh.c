@@ -37,7 +37,7 @@ static void require_sound(const struct msh *msh, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     struct mesh mesh;
     struct error error = {""};
     if (!is_accepted(msh_parse(&msh, (const char *)data, size, &error), &error)) {
@@ -51,6 +51,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             mesh_free(&mesh);
         }
     }
-    msh_free(&msh);
     return 0;
 }

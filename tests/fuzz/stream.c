@@ -66,7 +66,7 @@ static void count(void *context, const char *text)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct stream mapped, read;
+    FREED_BY(stream_free) struct stream mapped = {0}, read = {0};
     struct error error = {""}, read_error = {""};
     int file = file_of_bytes(data, size, NULL);
     enum status status = stream_read(&mapped, file, "input", &error);
@@ -89,7 +89,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         REQUIRE(strcmp(error.text, read_error.text) == 0);
         REQUIRE(mapped.section_count == 0 && read.section_count == 0);
     }
-    stream_free(&mapped);
-    stream_free(&read);
     return 0;
 }

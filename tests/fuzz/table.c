@@ -14,7 +14,7 @@
 /* Names are there, no number has two, and each is found as it stands. */
 static void try_labels(const char *path)
 {
-    struct label_table table;
+    FREED_BY(label_table_free) struct label_table table = {0};
     struct error error = {""};
     if (!is_accepted(label_table_read(path, &table, &error), &error)) {
         REQUIRE(table.name_count == 0 && table.range_count == 0);
@@ -34,20 +34,18 @@ static void try_labels(const char *path)
             REQUIRE(strcmp(table.name[n].text, table.name[k].text) != 0);
         }
     }
-    label_table_free(&table);
 }
 
 /* Rows of measured points in a plane: what is open is in the columns that may be. */
 static void try_points(const char *path)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error = {""};
     if (is_accepted(table_read_open(path, 4, 5, 2, 4, &table, &error), &error)) {
         for (int64_t i = 0; i < table.rows * table.cols; i++) {
             REQUIRE(isfinite(table.values[i]) || (i % table.cols / 2 == 1 && isnan(table.values[i])));
         }
     }
-    table_free(&table);
 }
 
 static void require_table(const struct table *table)
@@ -64,7 +62,7 @@ static void require_table(const struct table *table)
 
 static void try_curve(const struct table *table)
 {
-    struct load_curve curve;
+    FREED_BY(curve_free) struct load_curve curve = {0};
     struct error error = {""};
     if (is_accepted(curve_tabulate(&curve, table->rows, table->values, 1.0, &error), &error)) {
         for (int i = -1; i <= 11; i++) {
@@ -72,19 +70,17 @@ static void try_curve(const struct table *table)
             (void)curve_rate(&curve, i * 0.1);
         }
     }
-    curve_free(&curve);
 }
 
 static void try_triangles(const struct table *table)
 {
-    struct rigid_surface surface;
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
     struct error error = {""};
     if (is_accepted(rigid_build(3, table->rows, table->values, false, &surface, &error), &error)) {
         static const double origin[3];
         struct rigid_contact contact = rigid_closest(&surface, origin, INFINITY);
         REQUIRE(!contact.found || !isnan(contact.gap));
     }
-    rigid_free(&surface);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

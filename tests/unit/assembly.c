@@ -83,10 +83,10 @@ TEST(linear_field_by_table)
  * lets them slide. */
 TEST(held_faces)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     struct error error;
-    int32_t *low, *high;
-    bool *held, *slides;
+    SCRATCH int32_t *low = NULL, *high = NULL;
+    SCRATCH bool *held = NULL, *slides = NULL;
     int64_t count = 0;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
@@ -106,19 +106,14 @@ TEST(held_faces)
         count += held[f];
     }
     assert_int_equal(count, 8);
-    free(held);
-    free(slides);
-    free(low);
-    free(high);
-    lattice_free(&l);
 }
 
 /* Two conditions that share a corner: far apart an error that names both, a little apart a note. */
 TEST(shared_corners)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     struct error error, note;
-    int32_t *low, *side;
+    SCRATCH int32_t *low = NULL, *side = NULL;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
     struct condition conditions[] = {
@@ -135,9 +130,6 @@ TEST(shared_corners)
     conditions[0].components[1] = 1e-3;
     GOOD(assemble(&l, conditions, 2, &note, &error));
     assert_string_equal(note.text, "");
-    free(low);
-    free(side);
-    lattice_free(&l);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -8,7 +8,7 @@
 static void check_rigid_motion(const struct sample *sample, const struct setup *setup, struct random *random)
 {
     int64_t count = sample->cloud.node_count * sample->dim;
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *force = zeros(count, sizeof *force);
     double scale =
         50.0 * setup->material[0].shear_modulus * (sample->dim == 2 ? 1.0 : sample_size) * sample_size;
@@ -23,7 +23,6 @@ static void check_rigid_motion(const struct sample *sample, const struct setup *
         AT_MOST(largest(force, count), 1e-12 * scale);
         NEAR_TO(body_energy(&body, u), 0.0, 1e-12 * scale);
     }
-    body_free(&body);
 }
 
 TEST(rigid_motion)
@@ -35,7 +34,7 @@ TEST(rigid_motion)
 static void check_gradient(const struct sample *sample, const struct setup *setup, struct random *random)
 {
     int64_t count = sample->cloud.node_count * sample->dim;
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, force);
@@ -53,7 +52,6 @@ static void check_gradient(const struct sample *sample, const struct setup *setu
         }
         NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
     }
-    body_free(&body);
 }
 
 TEST(force_is_gradient)
@@ -66,7 +64,7 @@ static void check_balance(const struct sample *sample, const struct setup *setup
 {
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim;
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *force = zeros(count, sizeof *force);
     double *u = deformed_field(sample, &body, force, random);
     double sum[3] = {0.0}, moment[3] = {0.0}, size;
@@ -86,7 +84,6 @@ static void check_balance(const struct sample *sample, const struct setup *setup
         NEAR_TO(sum[a], 0.0, 1e-12 * size);
         NEAR_TO(moment[a], 0.0, 1e-12 * size * sample_size);
     }
-    body_free(&body);
 }
 
 TEST(balance)
@@ -101,7 +98,7 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
     static const double plane[9] = {1.2, 0.3, 0, -0.1, 0.9, 0, 0, 0, 1};
     static const double space[9] = {1.2, 0.3, 0.1, -0.1, 0.9, 0.2, 0.05, -0.3, 1.1};
     const double *A = sample->dim == 2 ? plane : space;
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *u = linear_field(sample, A, (double[]){0.1, 0.2, -0.3}), C[9], J = determinant(A), energy = 0.0;
     double *F = zeros(sample->assembly.point_count * 9, sizeof *F);
     double *P = zeros(sample->assembly.point_count * 9, sizeof *P);
@@ -131,7 +128,6 @@ static void check_linear(const struct sample *sample, const struct setup *setup,
         volume += body.weight[q];
     }
     NEAR_TO(volume, pow(sample_size, sample->dim), 1e-15);
-    body_free(&body);
 }
 
 TEST(linear_fields)
@@ -158,6 +154,7 @@ static void fault_of_smoothing(void)
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "face.phi: row 7: not the shape functions at this row: run shapefn again");
+    body_free(&body);
     *changed = before;
     changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
@@ -165,11 +162,13 @@ static void fault_of_smoothing(void)
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text,
                         "node.phi: node 5: not the shape functions at this node: run shapefn again");
+    body_free(&body);
     *changed = before;
     struct faces fewer = sample->assembly.faces;
     fewer.count--;
     smoothed.faces = &fewer;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "lacks a face: run ipoints for smoothed cells");
+    body_free(&body);
     struct faces wrong = sample->assembly.faces;
     wrong.row = array_or_fail(wrong.count, sizeof *wrong.row);
     for (int64_t f = 0; f < wrong.count; f++) {
@@ -177,6 +176,7 @@ static void fault_of_smoothing(void)
     }
     smoothed.faces = &wrong;
     FAILS(body_build(&input, &body, &error), STATUS_INPUT, "faces.row: row ");
+    body_free(&body);
     free(wrong.row);
 }
 
@@ -202,11 +202,12 @@ TEST(faults)
                                .material_count = 1};
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "points.weight: row 1: no weight or no neighbours");
-    assert_null(body.order);
+    body_free(&body);
     ptr[1] = 1;
     weight[0] = (double)NAN;
     assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
     assert_string_equal(error.text, "points.weight: row 0: no weight or no neighbours");
+    body_free(&body);
     weight[0] = 1.0;
     GOOD(body_build(&input, &body, &error));
     body_free(&body);

@@ -45,7 +45,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
 {
     int64_t count = sample->cloud.node_count * sample->dim;
     static const char *const sets[] = {"plain", "avx2", "avx512"};
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
     double *u = deformed_field(sample, &body, force, random);
     (void)body_force(&body, u, expected);
@@ -61,7 +61,6 @@ static void check_instructions(const struct sample *sample, const struct setup *
             NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
         }
     }
-    body_free(&body);
 }
 
 TEST(instructions)
@@ -273,7 +272,7 @@ TEST(nodal_pressures)
 /* Nodal volumes of no size, between two materials of a group, count for nothing. */
 TEST(empty_volumes)
 {
-    struct body body;
+    FREED_BY(body_free) struct body body = {0};
     struct error error;
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
                                    make_material(MATERIAL_NEO_HOOKEAN, 6000.0)};
@@ -298,7 +297,6 @@ TEST(empty_volumes)
         assert_true(isfinite(force[i]));
     }
     assert_true(body_energy(&body, u) > 0.0);
-    body_free(&body);
 }
 
 /* The bound of the stiffness, at rest and deformed: no diagonal entry exceeds it, and at rest, but for the
@@ -348,7 +346,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
 {
     int dim = sample->dim;
     int64_t count = sample->cloud.node_count * dim, nodes = sample->cloud.node_count;
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *force = zeros(count, sizeof *force), *F = zeros(sample->assembly.point_count * 9, sizeof *F);
     double *u = random_field(sample, 1e-4, random);
     for (int round = 0; round < 4; round++) {
@@ -382,7 +380,6 @@ static void check_inversion(const struct sample *sample, const struct setup *set
         touched = touched || sample->idx[i] == 3 / dim;
     }
     assert_true(touched || setup->faces); /* faces are worked on in groups: a neighbour may have it first */
-    body_free(&body);
 }
 
 TEST(inversion)

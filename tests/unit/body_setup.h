@@ -54,7 +54,7 @@ static inline struct body make_body(const struct sample *sample, const struct se
     struct body body;
     struct error error;
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
-    int32_t *material;
+    SCRATCH int32_t *material = NULL;
     ARRAY(material, sample->assembly.point_count);
     for (int64_t q = 0; q < sample->assembly.point_count; q++) {
         material[q] = material_at(sample, setup, q);
@@ -66,7 +66,6 @@ static inline struct body make_body(const struct sample *sample, const struct se
     input.at_edge = setup->at_edge;
     input.group = setup->group;
     GOOD(body_build(&input, &body, &error));
-    free(material);
     return body;
 }
 

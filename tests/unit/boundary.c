@@ -239,7 +239,7 @@ TEST(other_vertex_orders)
 /* In 3D two facets that touch at one node only do not share its boundary average. */
 TEST(touching_facets)
 {
-    struct sample sample = make_sample(3, true, 4);
+    FREED_BY(sample_free) struct sample sample = make_sample(3, true, 4);
     struct facet_set side = facets_of_side(&sample, 0);
     int pairs[4] = {0};
     for (int64_t f = 1; f < side.count; f++) {
@@ -256,7 +256,6 @@ TEST(touching_facets)
         boundary_averages_free(&averages);
     }
     assert_true(pairs[0] > 0 && pairs[1] > 0 && pairs[2] > 0);
-    sample_free(&sample);
 }
 
 /* Boundary averages stay whole on a curve that turns gently. */
@@ -502,18 +501,20 @@ TEST(faults)
         memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
-        assert_null(averages.node);
+        boundary_averages_free(&averages);
         /* Nodes that are no face at all, and none that exist. */
         facets[dim] = facets[dim + 1] = facets[0];
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        boundary_averages_free(&averages);
         facets[dim] = (int32_t)sample.cloud.node_count;
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, dim == 2 ? "facets: no node 16" : "facets: no node 64");
+        boundary_averages_free(&averages);
         facets[dim] = -1;
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: no node -1");
-        assert_null(averages.phi);
+        boundary_averages_free(&averages);
         sample_free(&sample);
     }
 }

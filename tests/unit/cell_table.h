@@ -23,9 +23,9 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
     struct cell_table table = {calloc((size_t)cells->count + 1, sizeof(int64_t)),
                                calloc(most, sizeof(int32_t)), calloc(most, sizeof(double)),
                                calloc(most * (size_t)dim, sizeof(double))};
-    double *sum = calloc((size_t)nodes * 4, sizeof *sum);
-    char *seen = calloc((size_t)nodes, 1), *filled = calloc((size_t)cells->count, 1);
-    int64_t *side = calloc((size_t)(cells->count * (dim + 1)), sizeof *side);
+    SCRATCH double *sum = calloc((size_t)nodes * 4, sizeof *sum);
+    SCRATCH char *seen = calloc((size_t)nodes, 1), *filled = calloc((size_t)cells->count, 1);
+    SCRATCH int64_t *side = calloc((size_t)(cells->count * (dim + 1)), sizeof *side);
     for (int64_t s = 0; s < 2 * faces->count; s++) {
         if (faces->cell[s] >= 0) {
             side[faces->cell[s] * (dim + 1) + filled[faces->cell[s]]++] = s;
@@ -68,10 +68,6 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
         }
         table.ptr[c + 1] = count;
     }
-    free(sum);
-    free(seen);
-    free(filled);
-    free(side);
     return table;
 }
 

@@ -81,7 +81,7 @@ struct result {
 static void run(bool is_dynamic, struct interruption *interruption, const struct state *restored,
                 struct result *result)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     struct error error;
     build(&l);
     assert_true(l.system.rows.count <= 100 && l.system.node_count <= 50);
@@ -119,20 +119,18 @@ static void run(bool is_dynamic, struct interruption *interruption, const struct
         }
         assert_true(pressure > 0);
     }
-    lattice_free(&l);
 }
 
 static void resume(bool is_dynamic, struct interruption *interruption, struct result *result)
 {
     struct error error;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     enum checkpoint_source source;
     int64_t step;
     GOOD(checkpoint_read(file, &identity, &stream, &source, &step, &error));
     assert_int_equal(source, CHECKPOINT_NEWEST);
     struct state state = checkpoint_state(&stream);
     run(is_dynamic, interruption, &state, result);
-    stream_free(&stream);
 }
 
 static void same_bits(bool is_dynamic, int64_t first, int64_t second)
@@ -191,21 +189,20 @@ static enum status visit_pair(void *owner, const struct state *state, struct err
 
 static enum status write_pair(int64_t step, struct error *error)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct pair pair = {.count = step, .number = (double)step / 3};
     stream_init(&stream);
     enum status status = checkpoint_fill(&stream, &identity, step, visit_pair, &pair, error);
     if (status == STATUS_OK) {
         status = checkpoint_write(file, true, &stream, error);
     }
-    stream_free(&stream);
     return status;
 }
 
 /* The step of what can be read, 0 for nothing, -1 on an error, whose text must contain `text`. */
 static int64_t readable(const struct checkpoint_identity *expected, const char *text)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct error error = {""};
     enum checkpoint_source source;
     int64_t step = 0;
@@ -224,7 +221,6 @@ static int64_t readable(const struct checkpoint_identity *expected, const char *
         assert_int_equal(pair.count, step);
         assert_true(pair.number == (double)step / 3);
     }
-    stream_free(&stream);
     return step;
 }
 
@@ -304,7 +300,7 @@ TEST(failures_leave_what_was_there)
 TEST(states_that_do_not_fit)
 {
     struct error error;
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct pair pair = {.count = -1};
     stream_init(&stream);
     struct state empty = checkpoint_state(&stream);
@@ -316,7 +312,6 @@ TEST(states_that_do_not_fit)
     static double two[2];
     GOOD(stream_put(&stream, "state.number", TYPE_F8, 2, 1, "", two, false, &error));
     assert_int_equal(visit_pair(&pair, &empty, &error), STATUS_INPUT);
-    stream_free(&stream);
 }
 
 static int make_folder(void **state)

@@ -49,7 +49,7 @@ TEST(across)
     x[26] = x[30] = 5.0;
     x[28] = x[31] = 6.0;
     struct facet_set set = {CONTACT_NODES - 1, facet};
-    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
+    FREED_BY(contact_free) struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct contact_patch patch;
         struct error error;
@@ -61,7 +61,6 @@ TEST(across)
         assert_int_equal(patch.node, cases[i].node);
         NEAR_TO(patch.thin, cases[i].thin, 1e-15);
     }
-    contact_free(&contact);
 }
 
 /* A square with corners at (0, +-.5) and (+-.5, 0), and bodies from y = low to high whose upper side is in
@@ -76,7 +75,7 @@ TEST(inside)
     struct contact_nodes contact_nodes;
     make_particles(&contact_nodes, 2, 0.5);
     make_samples(&contact_nodes);
-    struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
+    FREED_BY(contact_free) struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
         struct contact_patch patch;
         struct error error;
@@ -87,7 +86,6 @@ TEST(inside)
         NEAR_TO(patch.inside, bodies[i].inside, 1e-12);
         NEAR_TO(patch.place[1], bodies[i].corner, 1e-12);
     }
-    contact_free(&contact);
 }
 
 RUN_TESTS(NULL, NULL)

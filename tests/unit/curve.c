@@ -16,7 +16,7 @@ static void rate_is_derivative(const struct load_curve *curve)
 
 TEST(smooth)
 {
-    struct load_curve curve = curve_of_kind(CURVE_SMOOTH);
+    FREED_BY(curve_free) struct load_curve curve = curve_of_kind(CURVE_SMOOTH);
     NEAR_TO(curve_value(&curve, 0), 0, 0);
     NEAR_TO(curve_value(&curve, 1), 1, 0);
     NEAR_TO(curve_value(&curve, .5), .5, 1e-15);
@@ -29,13 +29,12 @@ TEST(smooth)
         NEAR_TO(curve_value(&curve, s) + curve_value(&curve, 1 - s), 1, 1e-14);
     }
     rate_is_derivative(&curve);
-    curve_free(&curve);
 }
 
 TEST(held_outside)
 {
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
-    struct load_curve table;
+    FREED_BY(curve_free) struct load_curve table = {0};
     struct error error;
     GOOD(curve_tabulate(&table, 4, points, 2, &error));
     for (int kind = CURVE_SMOOTH; kind <= CURVE_TABLE; kind++) {
@@ -47,7 +46,6 @@ TEST(held_outside)
     }
     NEAR_TO(curve_value(&table, 0), 1, 1e-15);
     NEAR_TO(curve_value(&table, 1), 3, 1e-15);
-    curve_free(&table);
 }
 
 TEST(simple)
@@ -66,7 +64,7 @@ TEST(simple)
 TEST(tabulated)
 {
     static const double points[] = {0, 0, .2, 0, .3, 1, .5, 1, 1.2, -.5, 2, -.5, 4, 7};
-    struct load_curve curve;
+    FREED_BY(curve_free) struct load_curve curve = {0};
     struct error error;
     GOOD(curve_tabulate(&curve, 7, points, 4, &error));
     for (int i = 0; i < 7; i++) {
@@ -82,19 +80,16 @@ TEST(tabulated)
         }
     }
     rate_is_derivative(&curve);
-    curve_free(&curve);
-    assert_null(curve.time);
 }
 
 TEST(two_points)
 {
     static const double points[] = {0, 1, 8, 5};
-    struct load_curve curve;
+    FREED_BY(curve_free) struct load_curve curve = {0};
     struct error error;
     GOOD(curve_tabulate(&curve, 2, points, 4, &error));
     NEAR_TO(curve_value(&curve, .5), 2, 1e-15);
     NEAR_TO(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
-    curve_free(&curve);
 }
 
 static void fails(int64_t count, const double *points, double end, const char *expected)

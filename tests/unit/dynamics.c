@@ -73,7 +73,7 @@ TEST(one_oscillator)
     static const double shares[] = {0.1, 0.5, 0.9}, quicker[] = {1.001674, 1.047198, 1.244188};
     enum { STEPS = 8 };
     struct lattice_options options = lattice_defaults(2, 4);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     options.poisson_ratio = 0.3;
     lattice_build(&l, &options);
     double *mode = lattice_vector(&l), *u = lattice_vector(&l), *v = lattice_vector(&l);
@@ -96,7 +96,6 @@ TEST(one_oscillator)
         NEAR_TO(product_of_mass(&l, v, mode) / 1e-7 / frequency, -swing * sin(phase), 1e-4);
         NEAR_TO(report.critical_step * frequency / 2, 1.0, 0.02);
     }
-    lattice_free(&l);
 }
 
 /* Swing of a mode sampled at the frames. */
@@ -136,7 +135,7 @@ static double frequency_of(const struct swing *swing)
 static void vibrate(int axis, double expected)
 {
     struct lattice_options options = lattice_defaults(2, 4);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     options.count[1] = 25;
     options.size[0] = 0.1 * 3 / 24;
     lattice_build(&l, &options);
@@ -159,7 +158,6 @@ static void vibrate(int axis, double expected)
     NEAR_TO(swing.time[399], dynamics.end_time, 1e-12);
     NEAR_TO(frequency_of(&swing) / expected, 1.0, 5e-3);
     AT_MOST(report.largest_drift, 1e-3);
-    lattice_free(&l);
 }
 
 TEST(pressure_wave)
@@ -176,8 +174,8 @@ TEST(shear_wave)
  * closed form and stays. */
 TEST(release)
 {
-    struct lattice l;
-    struct energy_log log = {0};
+    FREED_BY(lattice_free) struct lattice l = {0};
+    FREED_BY(energy_log_free) struct energy_log log = {0};
     int32_t curve = lattice_begin(&l, 3, 5, 0.0, CURVE_STEP);
     lattice_slide(&l, 1u << 0 | 1u << 2 | 1u << 4, curve);
     double *u = lattice_vector(&l);
@@ -205,8 +203,6 @@ TEST(release)
     NEAR_TO(log.rows[0].time, 0, 0);
     NEAR_TO(log.rows[log.count - 1].time, 0.4, 0);
     assert_true(fastest > 0.5 * log.rows[0].internal);
-    energy_log_free(&log);
-    lattice_free(&l);
 }
 
 /* Linear momentum, and the angular one about the origin (2D: its third component). */
@@ -309,8 +305,8 @@ TEST(pushed)
  * The begin at that speed is a blow, whose work counts. */
 TEST(moved_at_constant_speed)
 {
-    struct lattice l;
-    struct energy_log log = {0};
+    FREED_BY(lattice_free) struct lattice l = {0};
+    FREED_BY(energy_log_free) struct energy_log log = {0};
     int32_t curve = lattice_begin(&l, 2, 5, 0.0, CURVE_LINEAR);
     double there = 0.01;
     lattice_prescribe(&l, 15, x_axis, lattice_constant, &there, curve);
@@ -328,16 +324,14 @@ TEST(moved_at_constant_speed)
             NEAR_TO(lattice_field(&l, u, n, 0), 0.01, 0.0005);
         }
     }
-    energy_log_free(&log);
-    lattice_free(&l);
 }
 
 /* Weight put on a confined column at once: it sinks to twice the depth of rest, and returns. */
 TEST(sudden_weight)
 {
     struct lattice_options options = lattice_defaults(2, 3);
-    struct lattice l;
-    struct energy_log log = {0};
+    FREED_BY(lattice_free) struct lattice l = {0};
+    FREED_BY(energy_log_free) struct energy_log log = {0};
     options.count[1] = 11;
     options.size[0] = 0.02;
     lattice_build(&l, &options);
@@ -366,16 +360,14 @@ TEST(sudden_weight)
     }
     NEAR_TO(top / (-2 * rest), 1.0, 0.01);
     assert_true(log.rows[log.count - 1].work > 0);
-    energy_log_free(&log);
-    lattice_free(&l);
 }
 
 /* A block thrown at a rigid floor bounces: the penalty's energy comes back. */
 TEST(bounce)
 {
     struct lattice_options options = lattice_defaults(2, 6);
-    struct lattice l;
-    struct energy_log log = {0};
+    FREED_BY(lattice_free) struct lattice l = {0};
+    FREED_BY(energy_log_free) struct energy_log log = {0};
     struct error error;
     struct rigid_surface floor;
     static const double corners[4] = {-1, -0.01, 1, -0.01};
@@ -408,14 +400,12 @@ TEST(bounce)
     }
     assert_true(contact > 1e-3 * log.rows[0].kinetic);
     NEAR_TO(log.rows[log.count - 1].contact, 0, 0);
-    energy_log_free(&log);
-    lattice_free(&l);
 }
 
 /* What goes wrong has a name. */
 TEST(outcomes)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     int32_t curve = lattice_begin(&l, 2, 5, 0.0, CURVE_STEP);
     lattice_slide(&l, 1u << 2, curve);
     double *u = lattice_vector(&l);
@@ -446,7 +436,6 @@ TEST(outcomes)
     assert_true(report.outcome == DYNAMICS_DRIFTED || report.outcome == DYNAMICS_INVERTED ||
                 report.outcome == DYNAMICS_COLLAPSED);
     assert_true(report.time < 1.0);
-    lattice_free(&l);
 }
 
 static bool stop_at_once(void *context, const struct progress *progress)
@@ -460,7 +449,7 @@ static bool stop_at_once(void *context, const struct progress *progress)
 TEST(stopped_by_the_caller)
 {
     struct lattice_options options = lattice_defaults(2, 4);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     int calls = 0;
     lattice_build(&l, &options);
     double *u = lattice_vector(&l);
@@ -470,13 +459,12 @@ TEST(stopped_by_the_caller)
     struct dynamics_report report = run(&l, &dynamics, u, NULL, NULL);
     assert_int_equal(report.outcome, DYNAMICS_STOPPED);
     assert_int_equal(calls, 1);
-    lattice_free(&l);
 }
 
 /* Conditions that say the same twice are one; ones that disagree are a verdict that names a node. */
 TEST(conditions_twice)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     struct dynamics_report report;
     struct error error;
     int32_t curve = lattice_begin(&l, 2, 4, 0.0, CURVE_SMOOTH);
@@ -488,7 +476,6 @@ TEST(conditions_twice)
     lattice_push(&l, 3, -0.00101, curve);
     FAILS(dynamics_run(&l.system, &dynamics, u, NULL, NULL, NULL, &report, &error), STATUS_VERDICT,
           "the conditions at node");
-    lattice_free(&l);
 }
 
 /* The same bits for any number of threads. */

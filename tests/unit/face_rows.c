@@ -65,8 +65,9 @@ static void check_points(const struct cells *cells, const struct faces *faces)
 /* The cells of a row are those with all of the nodes: of the face, or of the edge. */
 static void check_cells(const struct cells *cells, const struct faces *faces)
 {
-    int64_t *ptr, next = 0;
-    int32_t *cell;
+    SCRATCH int64_t *ptr = NULL;
+    int64_t next = 0;
+    SCRATCH int32_t *cell = NULL;
     int dim = faces->dim;
     struct error error;
     GOOD(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error));
@@ -89,8 +90,6 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
         assert_int_equal(with, ptr[row + 1] - ptr[row]);
         next = own ? next : row + 1;
     }
-    free(ptr);
-    free(cell);
 }
 
 /* Own rows first, in the order of the faces; two faces share one where they share an edge. */

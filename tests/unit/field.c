@@ -113,7 +113,7 @@ TEST(outside_of_cells)
 /* In order, in another order, with two nodes at one place, and moved by more than round-off. */
 TEST(matching)
 {
-    struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
+    FREED_BY(scattered_free) struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
     double *other = zeros(cloud.count * 2, sizeof *other);
     int32_t *match = zeros(cloud.count, sizeof *match);
     char seen[81] = {0};
@@ -146,7 +146,6 @@ TEST(matching)
     memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
     GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
     assert_false(matched);
-    scattered_free(&cloud);
 }
 
 TEST(statistics_of_differences)
@@ -231,10 +230,9 @@ TEST(not_comparable)
     static const double line[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4}, point[] = {1.5, 1.5}, values[10] = {0.0};
     struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
     struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
-    struct field_comparison comparison;
+    FREED_BY(field_comparison_free) struct field_comparison comparison = {0};
     struct error error;
     assert_int_equal(field_compare(&a, &b, NULL, false, &comparison, &error), STATUS_INPUT);
-    field_comparison_free(&comparison);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -256,9 +256,9 @@ TEST(bad_cells)
 /* A ring of radii 1 and 2: facets no farther than asked off the circles; a square's corners are no curves. */
 TEST(facets_near_their_curve)
 {
-    struct cloud ring = lattice(2, 13, 0.0), square = lattice(2, 13, 0.0);
+    FREED_BY(cloud_free) struct cloud ring = lattice(2, 13, 0.0), square = lattice(2, 13, 0.0);
     struct size_field_request request = {.share = 1.0, .most_nodes = 1e9};
-    struct size_field bent, straight, limited;
+    FREED_BY(size_field_free) struct size_field bent = {0}, straight = {0}, limited = {0};
     struct error error;
     for (int64_t n = 0; n < ring.node_count; n++) {
         double r = 2.0 - ring.x[2 * n], angle = 2.0 * ring.x[2 * n + 1];
@@ -288,11 +288,6 @@ TEST(facets_near_their_curve)
     request.sag = 0.0;
     GOOD(size_field_build(&flat, squared, &request, &limited, &error));
     assert_memory_equal(straight.size, limited.size, (size_t)flat.node_count * sizeof(double));
-    size_field_free(&bent);
-    size_field_free(&straight);
-    size_field_free(&limited);
-    cloud_free(&ring);
-    cloud_free(&square);
 }
 
 TEST(nodes_of_no_cell)
@@ -301,10 +296,9 @@ TEST(nodes_of_no_cell)
     static const int32_t node[] = {0, 1, 2};
     struct cells cells = {2, 4, x, 1, node};
     struct size_field_request request = {.share = 1.0, .most_nodes = 100.0};
-    struct size_field field;
+    FREED_BY(size_field_free) struct size_field field = {0};
     struct error error;
     FAILS(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT, "node 3");
-    size_field_free(&field);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -70,7 +70,7 @@ static void finish(struct shape *shape, int axis, double place)
                           .x = shape->x,
                           .count = shape->cells,
                           .node = shape->cell};
-    struct faces faces;
+    FREED_BY(faces_free) struct faces faces = {0};
     struct error error;
     GOOD(cells_check(&cells, &error));
     GOOD(faces_build(&cells, true, &faces, &error));
@@ -91,7 +91,6 @@ static void finish(struct shape *shape, int axis, double place)
                                .facet = shape->facet,
                                .held = shape->held};
     GOOD(folds_build(&input, &shape->folds, &error));
-    faces_free(&faces);
 }
 
 /* n x m quadrangles over [0, 1] x [0, 1], and in 3D two layers over [0, .2]; held at y = 0. */

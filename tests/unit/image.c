@@ -445,7 +445,7 @@ TEST(round_trips)
 /* What a type cannot hold becomes the nearest that it can. */
 TEST(rounding)
 {
-    struct image written;
+    FREED_BY(image_free) struct image written = {0};
     const size_t size[3] = {6, 1, 1};
     static const double values[6] = {-5, 1e9, 1.5001, NAN, 254.4, INFINITY};
     static const double expected[6] = {0, 255, 2, 0, 254, 255};
@@ -461,13 +461,12 @@ TEST(rounding)
     write_and_read(&written, false);
     assert_near(image.values[4], 13, 0);
     image_free(&image);
-    image_free(&written);
 }
 
 /* More than fits the first version, several blocks of compression, and components. */
 TEST(large)
 {
-    struct image written;
+    FREED_BY(image_free) struct image written = {0};
     const size_t size[3] = {40000, 31, 1};
     GOOD(image_new(&written, size, 3, &error));
     written.space = IMAGE_SPACE_SCANNER;
@@ -481,7 +480,6 @@ TEST(large)
     image_free(&image);
     written.datatype = IMAGE_RGBA32;
     assert_int_equal(image_write(&written, 1, false, &error), STATUS_INPUT);
-    image_free(&written);
 }
 
 TEST(full_device)

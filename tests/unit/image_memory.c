@@ -47,9 +47,8 @@ static double *u;
 
 static enum status move(struct error *error)
 {
-    struct motion motion = {0};
+    FREED_BY(motion_free) struct motion motion = {0};
     enum status status = motion_build(&cells, u, false, NULL, &motion, error);
-    motion_free(&motion);
     return status;
 }
 
@@ -57,14 +56,13 @@ TEST(motions)
 {
     struct error error;
     struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
-    struct cloud cloud;
+    FREED_BY(cloud_free) struct cloud cloud = {0};
     static double none[4 * 4 * 4 * 3];
     GOOD(cloud_make(&options, &cloud, &error));
     cells = (struct cells){3, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     u = none;
     GOOD(move(&error));
     fail_each(move, 10);
-    cloud_free(&cloud);
 }
 
 #endif

@@ -106,7 +106,7 @@ static inline struct boundary_averages lattice_averages(const struct lattice *l,
     struct error error;
     struct boundary_averages averages;
     int dim = l->options.dim;
-    int32_t *facet;
+    SCRATCH int32_t *facet = NULL;
     struct facet_set set = {0};
     ARRAY(facet, l->cloud.facet_count * dim);
     for (int64_t f = 0; f < l->cloud.facet_count; f++) {
@@ -116,7 +116,6 @@ static inline struct boundary_averages lattice_averages(const struct lattice *l,
     }
     set.facet = facet;
     GOOD(boundary_averages_build(&l->assembly.face_table, &set, &averages, &error));
-    free(facet);
     return averages;
 }
 
@@ -128,7 +127,7 @@ static inline void lattice_prescribe(struct lattice *l, unsigned sides, const do
 {
     struct error error;
     int dim = l->options.dim;
-    struct boundary_averages averages = lattice_averages(l, sides);
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = lattice_averages(l, sides);
     for (int64_t a = 0; a < averages.count; a++) {
         int64_t at = averages.ptr[a];
         double target = value != NULL ? value(averages.position + a * dim, parameters) : 0.0;
@@ -136,7 +135,6 @@ static inline void lattice_prescribe(struct lattice *l, unsigned sides, const do
                                  averages.phi + at, direction, target, curve, (int32_t)sides,
                                  averages.node[a], &error));
     }
-    boundary_averages_free(&averages);
 }
 
 /* A sliding support: the normal displacement of each of the sides is 0. */

@@ -26,34 +26,30 @@ static void write_file(const char *text)
 
 static enum status try_scene(struct error *error)
 {
-    struct scene scene;
+    FREED_BY(scene_free) struct scene scene = {0};
     enum status status = scene_read(path, &scene, error);
-    scene_free(&scene);
     return status;
 }
 
 static enum status try_table(struct error *error)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     enum status status = table_read(path, 2, 2, &table, error);
-    table_free(&table);
     return status;
 }
 
 static enum status try_surface(struct error *error)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     enum status status = surface_read(path, 3, &table, error);
-    table_free(&table);
     return status;
 }
 
 static enum status try_curve(struct error *error)
 {
     static const double points[] = {0, 0, .5, 1, .7, 2, 1, 1};
-    struct load_curve curve;
+    FREED_BY(curve_free) struct load_curve curve = {0};
     enum status status = curve_tabulate(&curve, 4, points, 1, error);
-    curve_free(&curve);
     return status;
 }
 

@@ -34,10 +34,9 @@ static enum status try_dynamics(struct error *error)
 {
     struct dynamics_options options = {.end_time = 0.01, .time_step_margin = 0.9};
     struct dynamics_report report;
-    struct energy_log log = {0};
+    FREED_BY(energy_log_free) struct energy_log log = {0};
     to_rest();
     enum status status = dynamics_run(&lattice.system, &options, u, v, NULL, &log, &report, error);
-    energy_log_free(&log);
     return status;
 }
 
@@ -56,7 +55,7 @@ static enum status try_assembly(struct error *error)
         {.where = "contact", .facets = below, .corners = plate, .rigid_count = 1}};
     struct assembly assembly = lattice.assembly;
     struct material_list *list = &assembly.materials;
-    struct solid_system system;
+    FREED_BY(system_free) struct solid_system system = {0};
     struct error note;
     assembly.conditions = conditions;
     assembly.loads = loads;
@@ -75,7 +74,6 @@ static enum status try_assembly(struct error *error)
     memset(list->of_point, 0, (size_t)assembly.point_count * sizeof *list->of_point);
     enum status status = assembly_build(&assembly, &system, &note, error);
     lattice.assembly.materials = *list; /* may have moved */
-    system_free(&system);
     return status;
 }
 

@@ -18,13 +18,12 @@ static enum status try_body_of(const struct smoothed_cells_input *smoothed, stru
     static const struct material materials[2] = {{.shear_modulus = 1.0, .bulk_modulus = 1.0},
                                                  {.shear_modulus = 2.0, .bulk_modulus = 9.0}};
     static int32_t material[64];
-    struct body body;
+    FREED_BY(body_free) struct body body = {0};
     assert_true(sample.assembly.point_count <= 64);
     material[1] = 1;
     struct body_input input = sample_input(&sample, materials, 2, material);
     input.smoothed = smoothed;
     enum status status = body_build(&input, &body, error);
-    body_free(&body);
     return status;
 }
 
@@ -48,9 +47,8 @@ static enum status build_averages(struct boundary_averages *averages, struct err
 
 static enum status try_boundary(struct error *error)
 {
-    struct boundary_averages averages;
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
     enum status status = build_averages(&averages, error);
-    boundary_averages_free(&averages);
     return status;
 }
 
@@ -66,18 +64,17 @@ static enum status try_rigid(struct error *error)
 {
     static const double corners[] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                                      0, 0, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-    struct rigid_surface surface;
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
     enum status status = rigid_build(3, 4, corners, false, &surface, error);
-    rigid_free(&surface);
     return status;
 }
 
 static enum status try_contact(struct error *error)
 {
     static const double corners[] = {1, -1, -1, -1};
-    struct boundary_averages averages;
-    struct rigid_surface surface;
-    struct contact contact = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
+    FREED_BY(contact_free) struct contact contact = {0};
     enum status status = build_averages(&averages, error);
     if (status == STATUS_OK) {
         status = rigid_build(2, 1, corners, false, &surface, error);
@@ -85,8 +82,6 @@ static enum status try_contact(struct error *error)
     if (status == STATUS_OK) {
         status = contact_build(&averages, NULL, sample.cloud.x, 2, &surface, 1.0, &contact, error);
     }
-    contact_free(&contact);
-    boundary_averages_free(&averages);
     return status;
 }
 
@@ -95,9 +90,9 @@ static enum status try_between(struct error *error)
 {
     struct face_table table = sample_face_table(&sample);
     struct facet_set set = {sample.cloud.facet_count, sample.cloud.facets};
-    struct boundary_averages points = {0}, averages = {0};
-    struct opposite opposite = {0};
-    struct contact contact = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages points = {0}, averages = {0};
+    FREED_BY(opposite_free) struct opposite opposite = {0};
+    FREED_BY(contact_free) struct contact contact = {0};
     int32_t part[64] = {0};
     bool any;
     enum status status = opposite_parts(&sample.assembly.cells, part, error);
@@ -108,10 +103,6 @@ static enum status try_between(struct error *error)
         status = contact_between_build(&points, &averages, 2, sample.cloud.node_count, table.per_face,
                                        &opposite, part, 0, 1.0, true, &contact, &any, error);
     }
-    opposite_free(&opposite);
-    contact_free(&contact);
-    boundary_averages_free(&points);
-    boundary_averages_free(&averages);
     return status;
 }
 
@@ -120,7 +111,7 @@ static enum status try_folds(struct error *error)
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1};
     static const int32_t cell[] = {0, 1, 2, 0, 2, 3}, facet[] = {0, 1, 1, 2, 2, 3, 3, 0};
     static const bool prescribed[] = {true, false, false, false};
-    struct folds folds;
+    FREED_BY(folds_free) struct folds folds = {0};
     struct fold_input input = {.dim = 2,
                                .node_count = 4,
                                .x = x,
@@ -130,7 +121,6 @@ static enum status try_folds(struct error *error)
                                .facet = facet,
                                .held = prescribed};
     enum status status = folds_build(&input, &folds, error);
-    folds_free(&folds);
     return status;
 }
 

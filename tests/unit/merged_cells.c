@@ -105,10 +105,10 @@ static double *quadratic_field(const struct sample *sample)
 /* Energy of that field, largest bound of a node's stiffness, least det F. */
 static void measure(int dim, double thickness, double result[3])
 {
-    struct sample sample = sliver_sample(dim, thickness);
+    FREED_BY(sample_free) struct sample sample = sliver_sample(dim, thickness);
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
     setup.faces = true;
-    struct body body = make_body(&sample, &setup);
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
     int64_t nodes = sample.cloud.node_count;
     double *u = quadratic_field(&sample), *force = zeros(nodes * dim, sizeof *force);
     double *stiffness = zeros(nodes, sizeof *stiffness);
@@ -117,8 +117,6 @@ static void measure(int dim, double thickness, double result[3])
     body_diagonal(&body, stiffness);
     result[1] = largest(stiffness, nodes);
     result[0] = body_energy(&body, u);
-    body_free(&body);
-    sample_free(&sample);
 }
 
 /* Slivers a thousand times thinner change nothing: without merging all three go with 1 / thickness. */

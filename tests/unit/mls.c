@@ -112,7 +112,7 @@ TEST(quadratic_reproduction)
 static void evaluate(const struct mls *mls, const struct scattered *cloud, const struct table *table,
                      int64_t p, const double *x, double *phi, double *dphi)
 {
-    struct mls_work work = {0};
+    FREED_BY(mls_work_free) struct mls_work work = {0};
     enum mls_verdict verdict;
     struct error error;
     struct mls_support support = {.x = x,
@@ -123,7 +123,6 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
                                   .count = table->lists.ptr[p + 1] - table->lists.ptr[p]};
     GOOD(mls_evaluate(mls, &support, &work, phi, dphi, &verdict, &error));
     assert_int_equal(verdict, MLS_GOOD);
-    mls_work_free(&work);
 }
 
 enum { MOST = 1000 };
@@ -297,7 +296,7 @@ TEST(normal_equations)
 {
     enum { STRIDE = MOST + MLS_PADDING };
     static double phi[2][MOST], dphi[2][3 * MOST];
-    double *scratch = aligned_alloc(64, STRIDE * MLS_ROWS * sizeof *scratch);
+    SCRATCH double *scratch = aligned_alloc(64, STRIDE * MLS_ROWS * sizeof *scratch);
     int64_t decided = 0, left = 0;
     assert_non_null(scratch);
     for (int dim = 2; dim <= 3; dim++) {
@@ -341,7 +340,6 @@ TEST(normal_equations)
     }
     print_message("# %d points decided by the normal equations, %d left\n", (int)decided, (int)left);
     assert_true(decided > 3 * left && left > 0);
-    free(scratch);
 }
 
 static double wave(int dim, const double *x)
@@ -357,10 +355,10 @@ static double wave(int dim, const double *x)
 static double fit_error(int dim, enum basis basis, int per_axis)
 {
     static const struct place unit = {"unit", 1.0, 0.0};
-    struct scattered cloud = scatter(dim, per_axis, 400, &unit, 0.2, 21);
+    FREED_BY(scattered_free) struct scattered cloud = scatter(dim, per_axis, 400, &unit, 0.2, 21);
     struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
     options.radius = (basis == BASIS_LINEAR ? 1.8 : 2.6) * cloud.spacing;
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     double sum = 0.0;
     GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
@@ -371,8 +369,6 @@ static double fit_error(int dim, enum basis basis, int per_axis)
         }
         sum += value * value;
     }
-    table_free(&table);
-    scattered_free(&cloud);
     return sqrt(sum / 400.0);
 }
 
@@ -398,7 +394,7 @@ static double paper_error(enum basis basis, double mu, double radius)
 {
     double x[324 * 2], values[324], sum = 0.0;
     double *points = zeros(6561 * 2, sizeof *points);
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     for (int n = 0; n < 324; n++) {
         x[2 * n] = -4.0 + 8.0 * (n % 18) / 17.0;
@@ -424,7 +420,6 @@ static double paper_error(enum basis basis, double mu, double radius)
         }
         sum += value * value;
     }
-    table_free(&table);
     return status == STATUS_OK ? sqrt(sum / 6561.0) : INFINITY;
 }
 

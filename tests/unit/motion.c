@@ -189,12 +189,11 @@ TEST(folds)
     static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, u[] = {0, 0, 0, 0, -1.5, 0, 0, 0};
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 4, x, 2, node};
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     int64_t first = -1;
     GOOD(motion_build(&cells, u, true, NULL, &motion, &error));
     assert_int_equal(motion_folded(&motion, &first), 1);
     assert_int_equal(first, 1);
-    motion_free(&motion);
 }
 
 /* Whether grid point y lies in a cell, by its corners' half-planes. */

@@ -116,11 +116,10 @@ static double total_volume(const struct mesh *mesh)
 static int64_t boundary_count(const struct mesh *mesh)
 {
     struct cells cells = cells_of(mesh);
-    struct faces faces;
+    FREED_BY(faces_free) struct faces faces = {0};
     struct error error;
     GOOD(faces_build(&cells, true, &faces, &error));
     int64_t count = faces.count;
-    faces_free(&faces);
     return count;
 }
 
@@ -340,7 +339,7 @@ TEST(what_is_left_out_is_noted)
     ADD(s, LINE, middle, 4, 1);
     ADD(s, TRIANGLE, body, 1, 2, 4);
     ADD(s, TRIANGLE, -1, 1, 4, 5);
-    struct mesh mesh = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.node_count, 4);
     assert_memory_equal(mesh.cells, ((int32_t[]){0, 1, 2, 0, 2, 3}), 6 * sizeof(int32_t));
     assert_int_equal(mesh.regions.count, 2);
@@ -360,7 +359,6 @@ TEST(what_is_left_out_is_noted)
     for (int i = 0; i < 5; i++) {
         assert_ptr_equal(strstr(mesh.notes.name[i], notes[i]), mesh.notes.name[i]);
     }
-    mesh_free(&mesh);
 }
 
 TEST(regions_can_be_picked)
@@ -394,12 +392,11 @@ TEST(regions_can_be_picked)
 TEST(lengths_are_scaled)
 {
     struct sketch *s = square();
-    struct mesh mesh;
+    FREED_BY(mesh_free) struct mesh mesh = {0};
     struct error error;
     GOOD(mesh_build(&mesh, &s->msh, &(struct mesh_options){.unit = 1e-6}, &error));
     assert_true(mesh.x[4] == 1e-6);
     assert_true(fabs(total_volume(&mesh) / 1e-12 - 1) < 1e-14);
-    mesh_free(&mesh);
 }
 
 /* ---- faults ---- */
@@ -416,9 +413,8 @@ TEST(meshes_without_cells)
     expect_failure(s, NULL, "a surface in space");
     s = square();
     add_node(s, 0, 0, 5); /* of no cell: may be anywhere */
-    struct mesh mesh = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.dim, 2);
-    mesh_free(&mesh);
 }
 
 TEST(nodes_at_the_same_place)
@@ -440,9 +436,8 @@ TEST(nodes_at_the_same_place)
     mesh_free(&two);
     s = square();
     add_node(s, 1, 1, 0); /* a twin of no cell is no harm */
-    struct mesh mesh = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.node_count, 4);
-    mesh_free(&mesh);
 }
 
 TEST(cells_that_are_none)
@@ -494,13 +489,12 @@ TEST(cells_that_stand_twice)
     int32_t other = add_group(s, 2, 2, "other");
     ADD(s, TRIANGLE, other, 2, 0, 1);
     ADD(s, TRIANGLE, 0, 1, 2, 0);
-    struct mesh mesh = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.regions.count, 1);
     assert_int_equal(mesh.cell_count, 2);
     assert_int_equal(mesh.notes.count, 1);
     assert_non_null(strstr(mesh.notes.name[0], "cells that stand twice"));
     assert_non_null(strstr(mesh.notes.name[0], "as the first: 2"));
-    mesh_free(&mesh);
 }
 
 TEST(two_sets_of_one_name)

@@ -15,13 +15,12 @@ static int form;
 static enum status try_read(struct error *error)
 {
     struct fixture f = fixture_make(form);
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     if (form == ASCII_22) { /* tags far apart need an index of their own */
         assert_true(fixture_replace(&f, "\n9 ", "\n300000 "));
         assert_true(fixture_replace(&f, "\"body\"", "\"the body\""));
     }
     enum status status = msh_parse(&msh, f.bytes, f.size, error);
-    msh_free(&msh);
     return status;
 }
 
@@ -43,15 +42,13 @@ static enum status try_build(struct error *error)
                                   {2, 1, names[3], 1, NULL}};
     struct msh msh = {7,        x,        node_tag,   5,          element_tag, type,
                       node_ptr, node_idx, member_ptr, member_idx, 4,           groups};
-    struct mesh mesh;
-    struct stream stream;
+    FREED_BY(mesh_free) struct mesh mesh = {0};
+    FREED_BY(stream_free) struct stream stream = {0};
     stream_init(&stream);
     enum status status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, error);
     if (status == STATUS_OK) {
         status = mesh_put(&mesh, &stream, error);
     }
-    stream_free(&stream);
-    mesh_free(&mesh);
     return status;
 }
 
@@ -59,9 +56,8 @@ static enum status try_cloud(struct error *error)
 {
     struct cloud_options options = {
         .kind = CLOUD_JITTERED, .dim = 3, .count = {3, 3, 3}, .high = {1, 1, 1}, .jitter = 0.1, .seed = 1};
-    struct cloud cloud;
+    FREED_BY(cloud_free) struct cloud cloud = {0};
     enum status status = cloud_make(&options, &cloud, error);
-    cloud_free(&cloud);
     return status;
 }
 

@@ -21,11 +21,10 @@ static enum status read_bytes(struct msh *msh, const char *bytes, size_t size, s
 /* Read a copy of exactly the file's size, so that a sanitizer sees a read beyond it. */
 static enum status parse_copy(struct msh *msh, const char *bytes, size_t size, struct error *error)
 {
-    char *copy = malloc(size > 0 ? size : 1);
+    SCRATCH char *copy = malloc(size > 0 ? size : 1);
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     enum status status = msh_parse(msh, copy, size, error);
-    free(copy);
     return status;
 }
 
@@ -87,8 +86,8 @@ TEST(every_form_gives_the_same_mesh)
 TEST(groups_of_elements_not_of_entities)
 {
     struct fixture f = fixture_make(ASCII_22);
-    struct msh msh;
-    struct mesh mesh;
+    FREED_BY(msh_free) struct msh msh = {0};
+    FREED_BY(mesh_free) struct mesh mesh = {0};
     struct error error = {""};
     assert_true(fixture_replace(&f, "14 2 2 2 1", "14 2 2 8 1"));
     GOOD(read_bytes(&msh, f.bytes, f.size, &error));
@@ -97,8 +96,6 @@ TEST(groups_of_elements_not_of_entities)
     assert_string_equal(mesh.regions.name[1], "group_8");
     assert_int_equal(mesh.cell_region[0], 0);
     assert_int_equal(mesh.cell_region[1], 1);
-    mesh_free(&mesh);
-    msh_free(&msh);
 }
 
 /* Tags in any order, close together and far apart. */
@@ -134,7 +131,7 @@ TEST(tags_in_any_order)
 TEST(groups_of_entities)
 {
     struct fixture f = fixture_make(ASCII_41);
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     struct error error = {""};
     assert_true(fixture_replace(&f, " 1 2 1 1\n", " 4 7 -2 -7 2 1 1\n"));
     GOOD(parse_copy(&msh, f.bytes, f.size, &error));
@@ -143,7 +140,6 @@ TEST(groups_of_entities)
     assert_string_equal(msh.groups[3].name, "group_7");
     assert_memory_equal(msh.member_ptr, ((int64_t[]){0, 1, 2, 4, 6}), 5 * sizeof(int64_t));
     assert_memory_equal(msh.member_idx, ((int32_t[]){0, 1, 2, 3, 2, 3}), 6 * sizeof(int32_t));
-    msh_free(&msh);
 }
 
 TEST(an_entity_stands_once)
@@ -161,7 +157,7 @@ TEST(an_entity_stands_once)
 TEST(entities_may_be_absent)
 {
     struct fixture f = fixture_make(ASCII_41);
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     struct error error = {""};
     char *from = strstr(f.bytes, "$Entities");
     char *to = strstr(f.bytes, "$Nodes");
@@ -171,7 +167,6 @@ TEST(entities_may_be_absent)
     GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.member_ptr[FIXTURE_ELEMENTS], 0);
     assert_int_equal(msh.groups[2].element_count, 0);
-    msh_free(&msh);
 }
 
 TEST(truncation_at_every_byte_is_found)
@@ -327,20 +322,19 @@ TEST(each_fault_has_its_message)
 TEST(other_sections_are_left_out)
 {
     struct fixture f = fixture_make(ASCII_22);
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     struct error error;
     assert_true(
         fixture_replace(&f, "$EndNodes\n", "$EndNodes\n$Comments\n$Nodes\n1 0 0\n$EndNodes\n$EndComments\n"));
     GOOD(parse_copy(&msh, f.bytes, f.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
-    msh_free(&msh);
 }
 
 TEST(lines_may_end_as_in_dos)
 {
     struct fixture f = fixture_make(ASCII_41);
     struct fixture dos = {.size = 0};
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     struct error error = {""};
     for (size_t i = 0; i < f.size; i++) {
         if (f.bytes[i] == '\n') {
@@ -350,7 +344,6 @@ TEST(lines_may_end_as_in_dos)
     }
     GOOD(parse_copy(&msh, dos.bytes, dos.size, &error));
     assert_int_equal(msh.node_count, FIXTURE_NODES);
-    msh_free(&msh);
 }
 
 TEST(pipes_are_read_whole)

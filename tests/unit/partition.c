@@ -20,7 +20,7 @@ struct body {
 static void body_setup(struct body *body, int dim, double ratio, int32_t parts, double widen)
 {
     struct error error;
-    double *spacing = NULL;
+    SCRATCH double *spacing = NULL;
     struct cloud_options wanted = {
         .kind = CLOUD_GRADED, .dim = dim, .count = {16, 7, 6}, .high = {0.2, 0.1, 0.1}, .ratio = ratio};
     struct support_options options = support_defaults(dim);
@@ -42,7 +42,6 @@ static void body_setup(struct body *body, int dim, double ratio, int32_t parts, 
     body->partition =
         (struct partition){&body->cells, &body->stars, &body->grid, parts, body->owner, body->work, widen};
     GOOD(partition_own_cells(&body->partition, &body->own_ptr, &body->own_cell, &error));
-    free(spacing);
 }
 
 static void body_teardown(struct body *body)
@@ -90,8 +89,8 @@ static void point_in(const struct cells *cells, int64_t cell, uint32_t *state, d
 static void check_part(const struct body *body, int32_t part)
 {
     struct error error;
-    struct body_part got;
-    struct body_part_work work = {0};
+    FREED_BY(body_part_free) struct body_part got = {0};
+    FREED_BY(body_part_work_free) struct body_part_work work = {0};
     const struct cells *cells = &body->cells;
     const int32_t *own = body->own_cell + body->own_ptr[part];
     int64_t own_count = body->own_ptr[part + 1] - body->own_ptr[part];
@@ -131,8 +130,6 @@ static void check_part(const struct body *body, int32_t part)
     }
     assert_true(got.needed <= got.node_count - got.own_nodes);
     assert_true(body->partition.parts == 1 ? got.needed == 0 : got.needed > 0);
-    body_part_free(&got);
-    body_part_work_free(&work);
 }
 
 TEST(parts_hold_what_reaches_them)

@@ -243,7 +243,7 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
     int64_t some = room(sample);
     double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force);
     double *alone = zeros(some, sizeof *alone), *results = zeros(some * MOST, sizeof *results);
-    struct body body = make_body(sample, setup);
+    FREED_BY(body_free) struct body body = make_body(sample, setup);
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);
     assert_true(count > 0 && count <= some && largest(alone, count) > 0.0);
@@ -266,7 +266,6 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
             assert_memory_equal(results + r * some, alone, (size_t)count * sizeof *alone);
         }
     }
-    body_free(&body);
 }
 
 /* Every kind of body, by 2, 3 and 7 processes, of which some have nothing to do. */
@@ -279,11 +278,10 @@ TEST(bodies)
 TEST(large_body)
 {
     struct random random = {3};
-    struct sample sample = make_sample(2, true, 60);
+    FREED_BY(sample_free) struct sample sample = make_sample(2, true, 60);
     struct setup setup = three_materials(true);
     setup.faces = true;
     check_body(&sample, &setup, &random);
-    sample_free(&sample);
 }
 
 /* Stretches are of about the same work, cover all items in turn, and say whose an item is. */
@@ -335,7 +333,7 @@ static void *agree_member(void *context)
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
     struct error error = {"?"};
-    int64_t *each;
+    SCRATCH int64_t *each = NULL;
     GOOD(ranks_agree(ranks, STATUS_OK, &error));
     enum status status =
         ranks->rank > 0 ? (fail)(&error, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
@@ -345,7 +343,6 @@ static void *agree_member(void *context)
     for (int r = 0; r < ranks->count; r++) {
         assert_int_equal(each[r], 10 + r);
     }
-    free(each);
     return NULL;
 }
 
@@ -382,8 +379,8 @@ static void *solve_member(void *context)
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
     struct error error;
-    struct envelope factor;
-    int64_t *first;
+    FREED_BY(envelope_free) struct envelope factor = {0};
+    SCRATCH int64_t *first = NULL;
     double *x = member->results + ranks->rank * SOLVED;
     make_chains(&factor);
     GOOD(envelope_share(&factor, ranks, &first, &error));
@@ -396,8 +393,6 @@ static void *solve_member(void *context)
         x[i] = member->u[i];
     }
     envelope_solve_shared(&factor, ranks, first, x);
-    free(first);
-    envelope_free(&factor);
     return NULL;
 }
 

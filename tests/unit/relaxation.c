@@ -72,14 +72,13 @@ static double patch(int dim, double jitter, int gauss_points, bool nodal_volume)
 {
     static const double A[9] = {0.05, 0.08, -0.03, -0.06, -0.04, 0.02, 0.07, 0.01, -0.02};
     struct lattice_options options = lattice_defaults(dim, dim == 2 ? 8 : 6);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     options.jitter = jitter;
     options.gauss_points = gauss_points;
     options.nodal_volume = nodal_volume;
     lattice_build(&l, &options);
     prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
     double *u = relaxed(&l, gauss_points > 0 ? 1e-6 : 1e-9, NULL), error = patch_error(&l, A, u);
-    lattice_free(&l);
     return error;
 }
 
@@ -107,7 +106,7 @@ TEST(simple_shear)
 {
     static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
     struct lattice_options options = lattice_defaults(2, 7);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     double *stress;
     options.jitter = 0.2;
     lattice_build(&l, &options);
@@ -123,14 +122,13 @@ TEST(simple_shear)
         NEAR_TO(P[4], -83.89262, 1e-4);
         NEAR_TO(P[8], -83.89262, 1e-4);
     }
-    lattice_free(&l);
 }
 
 /* A block between sliding supports, pushed along its last axis to `stretch`; confined: sliding on all sides.
  */
 static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     double *row_force;
     int top = 2 * dim - 1;
     int32_t curve = lattice_begin(&l, dim, dim == 2 ? 6 : 4, 0.1, CURVE_SMOOTH);
@@ -144,7 +142,6 @@ static void squeeze(int dim, double stretch, bool confined, double expected, dou
     for (int64_t n = 0; n < l.system.node_count; n++) {
         NEAR_TO(lattice_field(&l, u, n, 0), (lateral - 1) * l.system.X[n * dim], 1e-7 * 0.1);
     }
-    lattice_free(&l);
 }
 
 TEST(unconfined_compression)
@@ -424,7 +421,7 @@ TEST(pressures_are_augmented)
 /* A condition stated twice changes nothing; one that disagrees is a verdict that names a node. */
 TEST(conditions_twice)
 {
-    struct lattice once, twice;
+    FREED_BY(lattice_free) struct lattice once = {0}, twice = {0};
     struct error error;
     struct relaxation_report report;
     clamp(&once, 5, -0.01, 0, true);
@@ -436,15 +433,13 @@ TEST(conditions_twice)
     struct relaxation_options options = to(1e-6);
     FAILS(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT,
           "the conditions at node");
-    lattice_free(&once);
-    lattice_free(&twice);
 }
 
 /* A weight on a confined column of height .1: the top sinks as the closed form says. */
 TEST(column_under_gravity)
 {
     struct lattice_options options = lattice_defaults(2, 4);
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     options.count[1] = 25;
     options.size[0] = 0.1 * 3 / 24;
     lattice_build(&l, &options);
@@ -466,7 +461,6 @@ TEST(column_under_gravity)
         top += (i % 3 == 0 ? 1.0 / 6 : 1.0 / 3) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
     }
     NEAR_TO(top / -0.954976e-3, 1, 5e-3);
-    lattice_free(&l);
 }
 
 /* Frames by number and load: displacement of the last node, and the force that holds it. */

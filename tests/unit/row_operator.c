@@ -38,7 +38,7 @@ static void expect(const struct sparse *transposed, const double *x, double *y)
 TEST(columns_are_summed_in_order)
 {
     struct error error;
-    struct sparse table, transposed;
+    FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
     double x[ROWS * STRIDE], y[COLUMNS * STRIDE], expected[COLUMNS];
     struct random random = {7};
     const struct force_kernels *kernels = force_kernels_select("plain", 3);
@@ -61,16 +61,16 @@ TEST(columns_are_summed_in_order)
         }
         row_operator_free(&rows);
     }
-    sparse_free(&table);
-    sparse_free(&transposed);
 }
 
 TEST(some_columns_are_transposed)
 {
     struct error error;
-    struct sparse table, transposed, some;
-    struct row_operator rows = {0};
-    int32_t *range, slot[COLUMNS] = {0}, column[] = {0, 3, 4, 50, 89};
+    FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
+    struct sparse some;
+    FREED_BY(row_operator_free) struct row_operator rows = {0};
+    SCRATCH int32_t *range = NULL;
+    int32_t slot[COLUMNS] = {0}, column[] = {0, 3, 4, 50, 89};
     make_table(&table);
     make_table(&rows.matrix);
     GOOD(sparse_transpose(&table, &transposed, &error));
@@ -90,10 +90,6 @@ TEST(some_columns_are_transposed)
         }
         sparse_free(&some);
     }
-    free(range);
-    row_operator_free(&rows);
-    sparse_free(&table);
-    sparse_free(&transposed);
 }
 
 RUN_TESTS(NULL, NULL)

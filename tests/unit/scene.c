@@ -145,7 +145,7 @@ TEST(reads_everything)
 
 TEST(defaults)
 {
-    struct scene scene;
+    FREED_BY(scene_free) struct scene scene = {0};
     struct error error;
     write_bytes(HEAD BODY, sizeof(HEAD BODY) - 1);
     GOOD(scene_read(path, &scene, &error));
@@ -158,7 +158,6 @@ TEST(defaults)
     same(scene.solver.time_step_margin, .9);
     assert_int_equal(scene.displacement_count + scene.contact_count + scene.pressure_count, 0);
     assert_int_equal(scene.output.frames, 0);
-    scene_free(&scene);
 }
 
 /* Reading `bytes` fails with STATUS_INPUT, names the file and the line, and says `words`. */
@@ -285,12 +284,11 @@ TEST(material_values)
 TEST(density_that_is_not_felt)
 {
     static const char text[] = HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n";
-    struct scene scene;
+    FREED_BY(scene_free) struct scene scene = {0};
     struct error error = {""};
     write_bytes(text, sizeof text - 1);
     GOOD(scene_read(path, &scene, &error));
     assert_true(scene.materials[0].density > 0);
-    scene_free(&scene);
 }
 
 TEST(material_keys)

@@ -80,7 +80,7 @@ TEST(bodies_share_faces_and_are_numbered_by_size)
 
 TEST(sides_end_at_sharp_turns)
 {
-    struct faces boundary;
+    FREED_BY(faces_free) struct faces boundary = {0};
     struct error error;
     int32_t part[12];
     int32_t count;
@@ -93,7 +93,6 @@ TEST(sides_end_at_sharp_turns)
     assert_int_equal(count, 12);
     GOOD(boundary_sides(islands_x, &boundary, 90, part, &count, &error));
     assert_int_equal(count, 3);
-    faces_free(&boundary);
 }
 
 TEST(rings_grow_and_shrink)

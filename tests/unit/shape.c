@@ -166,7 +166,7 @@ TEST(wrong_cells)
     /* Three triangles on one edge. */
     static const int32_t fan[] = {0, 1, 2, 0, 1, 3, 0, 1, 4};
     struct cells cells = {2, 5, square, 3, fan};
-    struct faces faces;
+    FREED_BY(faces_free) struct faces faces = {0};
     FAILS(faces_build(&cells, false, &faces, &error), STATUS_INPUT, "more than two cells");
 }
 
@@ -287,7 +287,7 @@ TEST(smoothing_telescopes)
 TEST(smoothing_threads)
 {
     static const int numbers[] = {1, 2, 5};
-    struct smoothed first;
+    FREED_BY(smoothed_free) struct smoothed first = {0};
     int before = omp_get_max_threads();
     smoothed_build(&first, 2, 20, BASIS_MODIFIED, 0.0);
     for (int i = 0; i < 3; i++) {
@@ -301,7 +301,6 @@ TEST(smoothing_threads)
         smoothed_free(&s);
     }
     omp_set_num_threads(before);
-    smoothed_free(&first);
 }
 
 /* Each row is the mean of the values at its points, and those at points on the boundary, whose faces come

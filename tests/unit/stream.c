@@ -9,7 +9,7 @@
 
 TEST(round_trip)
 {
-    struct stream sample = sample_stream();
+    FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int variant = 0; variant < 4; variant++) {
         bool text = variant % 2 == 0, from_pipe = variant / 2 == 1;
         struct stream copy;
@@ -25,7 +25,6 @@ TEST(round_trip)
         free(bytes);
         free(again);
     }
-    stream_free(&sample);
 }
 
 /* Large enough to need many blocks of the buffers and to grow, and to be mapped in place. */
@@ -76,7 +75,7 @@ static void assert_refused(const char *bytes, size_t size, bool from_pipe)
 
 TEST(truncation_at_every_byte)
 {
-    struct stream sample = sample_stream();
+    FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int text = 0; text < 2; text++) {
         size_t size;
         char *bytes = written_bytes(&sample, text == 1, &size);
@@ -86,21 +85,18 @@ TEST(truncation_at_every_byte)
         }
         free(bytes);
     }
-    stream_free(&sample);
 }
 
 TEST(every_flipped_bit_of_a_binary_stream)
 {
-    struct stream sample = sample_stream();
+    FREED_BY(stream_free) struct stream sample = sample_stream();
     size_t size;
-    char *bytes = written_bytes(&sample, false, &size);
+    SCRATCH char *bytes = written_bytes(&sample, false, &size);
     for (size_t bit = 0; bit < 8 * size; bit++) {
         bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
         assert_refused(bytes, size, bit % 2 == 0);
         bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
     }
-    free(bytes);
-    stream_free(&sample);
 }
 
 #define HEAD "# mts 1\n# x f8 2 2 enc=text unit=m\n"
@@ -196,7 +192,7 @@ TEST(tolerated_text)
 {
     static const char bytes[] = "# mts 1\n# @ awk\n#  x  f8\t2 3 \tunit=m \n"
                                 " 1\t2.50  +.5e1 \n-inf NaN -nan\n \n\t\n# end 1\n";
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     struct error error;
     GOOD(read_bytes(bytes, strlen(bytes), true, &stream, &error));
     assert_int_equal(stream.section_count, 1);
@@ -205,12 +201,11 @@ TEST(tolerated_text)
                 isnan(x[5]));
     assert_string_equal(stream.sections[0].attributes, "unit=m");
     assert_string_equal(stream.provenance[0], "awk");
-    stream_free(&stream);
 }
 
 TEST(sections_by_name)
 {
-    struct stream stream = sample_stream();
+    FREED_BY(stream_free) struct stream stream = sample_stream();
     struct error error;
     const struct section *section;
     const struct section *first = stream_find(&stream, "a.i4");
@@ -258,27 +253,24 @@ TEST(sections_by_name)
     stream_remove(&stream, "absent");
     assert_int_equal(stream.section_count, 4);
     assert_string_equal(stream.sections[2].name, "c_f4");
-    stream_free(&stream);
 }
 
 TEST(provenance_is_quoted_for_a_shell)
 {
-    struct stream stream = sample_stream();
+    FREED_BY(stream_free) struct stream stream = sample_stream();
     assert_string_equal(stream.provenance[0],
                         "nodes " MTS_VERSION " nodes -u mm 'it'\\''s a file' '' $'line\\x0aend'");
-    stream_free(&stream);
 }
 
 TEST(write_errors)
 {
-    struct stream stream = sample_stream();
+    FREED_BY(stream_free) struct stream stream = sample_stream();
     struct error error;
     int full = open("/dev/full", O_WRONLY);
     assert_true(full >= 0);
     FAILS(stream_write(&stream, full, true, &error), STATUS_SYSTEM, "No space left");
     assert_int_equal(stream_write(&stream, -1, false, &error), STATUS_SYSTEM);
     close(full);
-    stream_free(&stream);
 }
 
 /* What each stage makes goes when it, or one before, is run again; what the table lacks goes with its family.
@@ -294,7 +286,7 @@ TEST(stages_of_sections)
         MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SHAPES, MADE_WITH_SHAPES,
         MADE_WITH_RESULTS, MADE_WITH_RESULTS, MADE_ELSEWHERE,    MADE_ELSEWHERE,   MADE_WITH_POINTS};
     enum { COUNT = sizeof names / sizeof *names };
-    struct stream stream = {0};
+    FREED_BY(stream_free) struct stream stream = {0};
     struct error error;
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(section_stage(names[i]), stages[i]);
@@ -308,7 +300,6 @@ TEST(stages_of_sections)
     sections_remove(&stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
     assert_int_equal(stream.section_count, COUNT - 8);
     assert_non_null(stream_find(&stream, "u.mean"));
-    stream_free(&stream);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -45,7 +45,7 @@ static bool changes_within(const struct labels *labels, const double x[3], doubl
 static int64_t count_astray(const struct labels *labels, const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct faces faces;
+    FREED_BY(faces_free) struct faces faces = {0};
     struct error error;
     int64_t count = 0;
     bool *seen = zeros(stuffing->node_count, sizeof *seen);
@@ -59,7 +59,6 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
             seen[node] = true;
         }
     }
-    faces_free(&faces);
     return count;
 }
 

@@ -35,7 +35,7 @@ static int64_t count_hinges(const struct stuffing *stuffing)
     struct error error;
     int64_t hinges = 0;
     int32_t *across = zeros(cells.count * 4, sizeof *across);
-    int32_t *part =
+    SCRATCH int32_t *part =
         calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
     assert_true(across != NULL && part != NULL);
     GOOD(cells_across(&cells, across, &error));
@@ -60,7 +60,6 @@ static int64_t count_hinges(const struct stuffing *stuffing)
         hinges += *of_node != 0 && *of_node != part[i] + 1 && part[i] == i / 4;
         *of_node = *of_node == 0 ? part[i] + 1 : *of_node;
     }
-    free(part);
     return hinges;
 }
 

@@ -23,7 +23,7 @@ static enum status try_stuffing(struct error *error)
     const struct cells sized = {3, 4, x, 1, corner};
     struct stuffing_options options = {
         .spacing = 4, .finest = 2, .sized = &sized, .size = size, .keep = keep, .largest = true};
-    struct stuffing stuffing = {0};
+    FREED_BY(stuffing_free) struct stuffing stuffing = {0};
     int64_t lost[3];
     for (int v = 0; v < 16 * 16 * 16; v++) {
         int i = v % 16, j = v / 16 % 16, k = v / 256;
@@ -37,15 +37,13 @@ static enum status try_stuffing(struct error *error)
     if (status == STATUS_OK) {
         status = stuffing_lost(&labels, keep, &stuffing, lost, error);
     }
-    stuffing_free(&stuffing);
     return status;
 }
 
 static enum status try_label_table(struct error *error)
 {
-    struct label_table table;
+    FREED_BY(label_table_free) struct label_table table = {0};
     enum status status = label_table_read(path, &table, error);
-    label_table_free(&table);
     return status;
 }
 

@@ -202,10 +202,10 @@ TEST(nearest_with_ties)
 
 TEST(least_neighbours)
 {
-    struct scattered cloud = scatter(2, 12, 200, &places[0], 0.3, 4);
+    FREED_BY(scattered_free) struct scattered cloud = scatter(2, 12, 200, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     options.least = 15;
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     GOOD(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error));
     int64_t widened = 0;
@@ -222,15 +222,13 @@ TEST(least_neighbours)
     assert_true(widened > 0);
     assert_int_equal(widened, table.lists.widened);
     assert_true(widest == table.lists.widest);
-    table_free(&table);
-    scattered_free(&cloud);
 }
 
 /* The same bytes for any number of threads; also the same error. */
 TEST(threads)
 {
     static const int numbers[] = {1, 2, 5};
-    struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
+    FREED_BY(scattered_free) struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
     struct support_options options = support_defaults(3);
     struct table tables[3];
     struct error error, errors[3];
@@ -262,12 +260,11 @@ TEST(threads)
         table_free(&tables[i]);
     }
     omp_set_num_threads(before);
-    scattered_free(&cloud);
 }
 
 TEST(not_finite)
 {
-    struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
+    FREED_BY(scattered_free) struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     struct table table;
     struct error error;
@@ -278,7 +275,6 @@ TEST(not_finite)
               "points.x: row 4");
         table_free(&table);
     }
-    scattered_free(&cloud);
 }
 
 /* A cloud that is a trap. */
@@ -308,7 +304,7 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
 {
     static double points[8000];
     struct support_options options = options_for(trap->dim, basis, WEIGHT_QUARTIC);
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     options.factor = 1.8;
     options.widen = widen;
@@ -329,7 +325,6 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
     }
     print_message("# %s, %s%s: %s\n", trap->name, basis_names[basis], widen ? ", widening" : "",
                   status == STATUS_OK ? "table" : error.text);
-    table_free(&table);
     return status;
 }
 
@@ -440,11 +435,10 @@ TEST(trap_coincident)
         memcpy(heap.x + heap.count * 2, heap.x + 31 * 2, 2 * sizeof(double));
     }
     struct support_options options = support_defaults(2);
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     FAILS(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error), STATUS_INPUT,
           "nodes.x: row 31");
-    table_free(&table);
 }
 
 /* One node six spacings from the others: it and the points beside it either see enough of the others or are

@@ -175,7 +175,7 @@ TEST(kinks_are_exact)
 TEST(inclusions)
 {
     struct support_options options = support_defaults(2);
-    struct halves halves = make_halves(2, &options);
+    FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
     struct error error;
     struct reach_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
@@ -198,15 +198,14 @@ TEST(inclusions)
         support_free(&lists);
         support_space_free(&space);
     }
-    halves_free(&halves);
 }
 
 /* A point without a good support is named by its number among all. */
 TEST(failures_name_the_row)
 {
     struct support_options options = support_defaults(2);
-    struct halves halves = make_halves(2, &options);
-    struct support_space space;
+    FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
+    FREED_BY(support_space_free) struct support_space space = {0};
     struct support_lists lists;
     struct error error;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
@@ -219,8 +218,6 @@ TEST(failures_name_the_row)
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
     FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,
           "points.x: row 0 at (0.8, 0.8): no good support");
-    support_space_free(&space);
-    halves_free(&halves);
 }
 
 RUN_TESTS(NULL, NULL)

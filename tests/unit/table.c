@@ -24,7 +24,7 @@ TEST(round_trip)
 {
     static const double values[] = {0.1, -DBL_MAX, 5e-324, 1.0 / 3.0, 69.1628, -0.0};
     char text[512] = "# heading, with a comma\n";
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     for (int i = 0; i < 6; i += 2) {
         size_t length = strlen(text);
@@ -38,7 +38,6 @@ TEST(round_trip)
     assert_int_equal(table.line[2], 4);
     assert_int_equal(table.block_count, 1);
     assert_int_equal(table.block_ptr[1], 3);
-    table_free(&table);
 }
 
 TEST(values_that_are_open)
@@ -61,19 +60,18 @@ TEST(blocks)
 {
     static const char text[] = "\n\n1 2\n# not a separator\n3 4\n \t \n\n5 6\n7 8\n9 10\n\n";
     static const int64_t expected[] = {0, 2, 5};
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     write_to(path, text, strlen(text));
     GOOD(table_read(path, 2, 2, &table, &error));
     assert_int_equal(table.rows, 5);
     assert_int_equal(table.block_count, 2);
     assert_memory_equal(table.block_ptr, expected, sizeof expected);
-    table_free(&table);
 }
 
 TEST(grows)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error;
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -87,7 +85,6 @@ TEST(grows)
     for (int i = 0; i < 1000; i++) {
         assert_true(table.values[i] == i);
     }
-    table_free(&table);
 }
 
 /* dim = 0: as a table of 2 to 4 columns, else as a surface. */

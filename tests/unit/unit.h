@@ -2,7 +2,7 @@
 #ifndef TESTS_UNIT_H
 #define TESTS_UNIT_H
 
-#include "base/status.h"
+#include "base/memory.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

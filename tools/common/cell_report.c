@@ -18,15 +18,14 @@ static int compare_values(const void *left, const void *right)
 enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
                              struct error *error)
 {
-    enum status status;
-    int32_t *part = NULL;
-    double *quality = NULL;
+    SCRATCH int32_t *part = NULL;
+    SCRATCH double *quality = NULL;
     *report = (struct cell_report){0};
-    TRY(NEW_ARRAY(&part, cells->count, error));
-    TRY(cells_parts(cells, part, &report->bodies, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->count, error));
+    RETURN_IF_ERROR(cells_parts(cells, part, &report->bodies, error));
     free(part);
     part = NULL;
-    TRY(NEW_ARRAY(&quality, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&quality, cells->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         quality[c] = cell_quality(cells, c);
         report->volume += cell_volume(cells, c);
@@ -36,9 +35,7 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
     report->least_median[1] = cells->count > 0 ? quality[cells->count / 2] : 0;
     report->poor = cells_poorest(cells, bound, CELL_REPORT_MOST, report->poorest);
     report->listed = report->poor < CELL_REPORT_MOST ? (int)report->poor : CELL_REPORT_MOST;
-done:
-    FREE_ALL(part, quality);
-    return status;
+    return STATUS_OK;
 }
 
 const char *cell_report_describe(const struct cells *cells, const struct poor_cell *poor, char text[128])

@@ -78,23 +78,21 @@ static bool has_unknown(const struct tool *tool, const struct side *side, const 
 static enum status regions_read(const struct stream *stream, const struct cells *cells,
                                 struct regions *regions, struct error *error)
 {
-    enum status status;
     struct cell_regions of;
     int corners = cells->dim + 1;
     *regions = (struct regions){.node_count = cells->node_count};
     if (stream_find(stream, "cells.region") == NULL || cells->count == 0) {
         return STATUS_OK;
     }
-    status = stream_regions(stream, cells, &of, error);
+    enum status status = stream_regions(stream, cells, &of, error);
     regions->names = of.names;
-    TRY(status);
+    RETURN_IF_ERROR(status);
     int64_t count = of.names.count;
-    TRY(NEW_ARRAY(&regions->member, cells->node_count * count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&regions->member, cells->node_count * count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         regions->member[cells->node[i] * count + of.of_cell[i / corners]] = true;
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 static void regions_free(struct regions *regions)
@@ -131,7 +129,7 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
 {
     struct error error;
     struct field_comparison *comparison = &findings->comparison;
-    bool *chosen;
+    SCRATCH bool *chosen = NULL;
     sides_check(tool, a, b, request->field);
     tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
     tool_check(tool, regions_choose(&findings->regions, request->region, &chosen, &error), &error);
@@ -149,7 +147,6 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
                                 &findings->statistics, &error),
                &error);
     findings->reference = field_largest(b->field.cells.node_count, b->field.cols, b->field.values);
-    free(chosen);
 }
 
 void findings_free(struct findings *findings)
@@ -221,9 +218,8 @@ static enum status print_regions(const struct findings *findings, struct error *
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct regions *regions = &findings->regions;
-    enum status status;
-    int64_t *node = NULL;
-    TRY(NEW_ARRAY(&node, comparison->count, error));
+    SCRATCH int64_t *node = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&node, comparison->count, error));
     for (int64_t r = 0; r < regions->names.count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;
@@ -234,7 +230,7 @@ static enum status print_regions(const struct findings *findings, struct error *
         }
         printf("n.%s\t%lld\n", regions->names.name[r], (long long)count);
         if (count > 0) {
-            TRY(field_statistics(count, node, comparison->difference, &statistics, error));
+            RETURN_IF_ERROR(field_statistics(count, node, comparison->difference, &statistics, error));
             print_quantity("avg", regions->names.name[r], statistics.average);
             print_quantity("max", regions->names.name[r], statistics.largest);
             print_quantity("rmse", regions->names.name[r], statistics.rmse);
@@ -242,9 +238,7 @@ static enum status print_regions(const struct findings *findings, struct error *
             field_statistics_free(&statistics);
         }
     }
-done:
-    free(node);
-    return status;
+    return STATUS_OK;
 }
 
 /* Write A's nodes and cells with a value at each node, section `name`, to a file. */

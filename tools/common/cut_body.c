@@ -36,9 +36,9 @@ static void check_groups(const struct cut_body *whole)
 {
     const struct tool *tool = whole->tool;
     const struct cells *cells = &whole->cells;
-    struct cell_regions regions = {0};
-    struct named_facets facets;
-    struct named_sets sets;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
     const int32_t *side;
     if (stream_find(whole->stream, "cells.region") != NULL) {
         TOOL_TRY(tool, stream_regions(whole->stream, cells, &regions, &error));
@@ -47,9 +47,6 @@ static void check_groups(const struct cut_body *whole)
     TOOL_TRY(tool, stream_facets(whole->stream, has(whole, "facets", "facets.set"), cells, &facets, &error));
     TOOL_TRY(tool, stream_sets(whole->stream, has(whole, "sets.ptr", "sets.idx"), cells->node_count, &sets,
                                &error));
-    names_free(&regions.names);
-    names_free(&facets.names);
-    names_free(&sets.names);
 }
 
 /* Take out what cannot be cut, and keep what the rest was. */
@@ -133,7 +130,7 @@ static void put_facets(const struct cut_body *whole, const int32_t *place, const
     const struct cell_stars *stars = &whole->stars;
     int dim = whole->cells.dim;
     int64_t count = 0;
-    int32_t *row;
+    SCRATCH int32_t *row = NULL;
     TOOL_TRY(whole->tool, NEW_ARRAY(&row, facets->rows, &error));
     for (int64_t f = 0; f < facets->rows; f++) {
         bool there = false;
@@ -155,7 +152,6 @@ static void put_facets(const struct cut_body *whole, const int32_t *place, const
     put_rows(whole, facets, row, count, place);
     put_rows(whole, set, row, count, NULL);
     put_numbers(whole, "part.facet", "", row, count);
-    free(row);
 }
 
 static void put_sets(const struct cut_body *whole, const int32_t *place)
@@ -167,7 +163,7 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
     const int64_t *begin = ptr->data;
     const int32_t *node = idx->data;
     int64_t *own, count = 0;
-    int32_t *row;
+    SCRATCH int32_t *row = NULL;
     TOOL_TRY(whole->tool, NEW_ARRAY(&own, ptr->rows, &error));
     TOOL_TRY(whole->tool, NEW_ARRAY(&row, idx->rows, &error));
     for (int64_t s = 0; s + 1 < ptr->rows; s++) {
@@ -181,7 +177,6 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
     put(whole, "sets.ptr", TYPE_I8, ptr->rows, 1, ptr->attributes, own);
     put_rows(whole, idx, row, count, place);
     put_numbers(whole, "part.set", "", row, count);
-    free(row);
 }
 
 /* The stream becomes that of one part. */

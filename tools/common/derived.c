@@ -170,35 +170,29 @@ static void mark(const struct derived *derived, int64_t item, int32_t node)
 static enum status add_facet_groups(const struct stream *stream, const struct cells *cells,
                                     struct derived *derived, struct error *error)
 {
-    enum status status;
-    struct named_facets facets;
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
     int64_t first = derived->count;
-    TRY(stream_facets(stream, false, cells, &facets, error));
-    TRY(append_groups(&facets.names, "facets", cells->node_count, derived, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
+    RETURN_IF_ERROR(append_groups(&facets.names, "facets", cells->node_count, derived, error));
     for (int64_t i = 0; i < facets.count * cells->dim; i++) {
         mark(derived, first + facets.group[i / cells->dim], facets.facet[i]);
     }
-done:
-    names_free(&facets.names);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_node_sets(const struct stream *stream, const struct cells *cells,
                                  struct derived *derived, struct error *error)
 {
-    enum status status;
-    struct named_sets sets;
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
     int64_t first = derived->count;
-    TRY(stream_sets(stream, false, cells->node_count, &sets, error));
-    TRY(append_groups(&sets.names, "set", cells->node_count, derived, error));
+    RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
+    RETURN_IF_ERROR(append_groups(&sets.names, "set", cells->node_count, derived, error));
     for (int64_t s = 0; s < sets.lists.count; s++) {
         for (int64_t i = sets.lists.ptr[s]; i < sets.lists.ptr[s + 1]; i++) {
             mark(derived, first + s, sets.lists.idx[i]);
         }
     }
-done:
-    names_free(&sets.names);
-    return status;
+    return STATUS_OK;
 }
 
 enum status derived_add_groups(const struct stream *stream, const struct cells *cells,

@@ -77,75 +77,60 @@ static enum status sort_items(struct group_list *list, int64_t count, const int3
 static enum status find_facets(struct group_body *body, const struct named_facets *named, int32_t *facet,
                                struct error *error)
 {
-    enum status status;
     int dim = body->cells.dim;
-    int64_t *found = NULL;
-    TRY(NEW_ARRAY(&found, named->count, error));
-    TRY(faces_find(&body->boundary, named->count, named->facet, found, error));
+    SCRATCH int64_t *found = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&found, named->count, error));
+    RETURN_IF_ERROR(faces_find(&body->boundary, named->count, named->facet, found, error));
     for (int64_t i = 0; i < named->count; i++) {
         if (found[i] < 0) {
-            TRY(fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
-                     (long long)i));
+            return fail(error, STATUS_INPUT, "facets: row %lld: no face of exactly one cell: run nodes again",
+                        (long long)i);
         }
         facet[i] = (int32_t)found[i];
         memcpy(&body->boundary.node[found[i] * dim], &named->facet[i * dim],
                (size_t)dim * sizeof *named->facet);
     }
-done:
-    free(found);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_facets(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status;
-    struct named_facets named;
+    FREED_BY(named_facets_free) struct named_facets named = {0};
     struct group_list *list = &body->groups[GROUP_FACETS];
-    int32_t *facet = NULL;
-    TRY(stream_facets(stream, false, &body->cells, &named, error));
-    TRY(NEW_ARRAY(&facet, named.count, error));
-    TRY(find_facets(body, &named, facet, error));
-    TRY(add_named(list, &named.names, error));
-    TRY(sort_items(list, named.count, named.group, facet, error));
-done:
-    free(facet);
-    names_free(&named.names);
-    return status;
+    SCRATCH int32_t *facet = NULL;
+    RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &named, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&facet, named.count, error));
+    RETURN_IF_ERROR(find_facets(body, &named, facet, error));
+    RETURN_IF_ERROR(add_named(list, &named.names, error));
+    return sort_items(list, named.count, named.group, facet, error);
 }
 
 static enum status read_sets(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status;
     struct group_list *list = &body->groups[GROUP_NODES];
-    struct named_sets sets;
-    TRY(stream_sets(stream, false, body->cells.node_count, &sets, error));
-    TRY(add_named(list, &sets.names, error));
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    RETURN_IF_ERROR(stream_sets(stream, false, body->cells.node_count, &sets, error));
+    RETURN_IF_ERROR(add_named(list, &sets.names, error));
     for (int64_t g = 0; g < list->count; g++) {
         struct group *group = &list->group[g];
-        TRY(NEW_ARRAY(&group->item, sets.lists.ptr[g + 1] - sets.lists.ptr[g], error));
+        RETURN_IF_ERROR(NEW_ARRAY(&group->item, sets.lists.ptr[g + 1] - sets.lists.ptr[g], error));
         for (int64_t i = sets.lists.ptr[g]; i < sets.lists.ptr[g + 1]; i++) {
             group->item[group->count++] = sets.lists.idx[i];
         }
     }
-done:
-    names_free(&sets.names);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status read_regions(const struct stream *stream, struct group_body *body, struct error *error)
 {
-    enum status status;
-    struct cell_regions regions;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     struct group_list *list = &body->groups[GROUP_REGION];
     if (stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
-    TRY(stream_regions(stream, &body->cells, &regions, error));
-    TRY(add_named(list, &regions.names, error));
-    TRY(sort_items(list, body->cells.count, regions.of_cell, NULL, error));
-done:
-    names_free(&regions.names);
-    return status;
+    RETURN_IF_ERROR(stream_regions(stream, &body->cells, &regions, error));
+    RETURN_IF_ERROR(add_named(list, &regions.names, error));
+    return sort_items(list, body->cells.count, regions.of_cell, NULL, error);
 }
 
 enum status group_body_read(const struct stream *stream, struct group_body *body, struct error *error)
@@ -226,15 +211,14 @@ static void take_cells(struct group_list *regions, const bool *chosen)
 enum status group_put(struct group_body *body, enum group_kind kind, const char *name, const bool *chosen,
                       const char *expression, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct group_list *list = &body->groups[kind];
     int64_t place = group_find(list, name);
     int64_t count = 0;
-    int32_t *item = NULL;
+    SCRATCH int32_t *item = NULL;
     for (int64_t i = 0; i < body->items[kind].count; i++) {
         count += chosen[i];
     }
-    TRY(NEW_ARRAY(&item, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&item, count, error));
     count = 0;
     for (int64_t i = 0; i < body->items[kind].count; i++) {
         if (chosen[i]) {
@@ -243,7 +227,7 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     }
     if (place < 0) {
         place = list->count;
-        TRY(add_group(list, name, error));
+        RETURN_IF_ERROR(add_group(list, name, error));
     }
     if (kind == GROUP_REGION) {
         take_cells(list, chosen);
@@ -254,7 +238,5 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     group->count = count;
     group->expression = expression;
     list->changed = true;
-done:
-    free(item);
-    return status;
+    return STATUS_OK;
 }

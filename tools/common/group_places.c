@@ -175,12 +175,11 @@ static enum status table_segments(const struct table *table, struct pieces *piec
 /* near:DISTANCE,FILE (points) and along:DISTANCE,FILE (a surface) */
 enum status term_near(const struct term *term)
 {
-    enum status status;
     int dim = term->body->cells.dim;
     bool surface = term->text[0] == 'a';
-    struct table table = {0};
+    FREED_BY(table_free) struct table table = {0};
     struct pieces pieces = {.dim = dim, .corners = surface ? dim : 1};
-    double *x = NULL;
+    SCRATCH double *x = NULL;
     double reach = 0;
     char number[64] = "";
     struct error why;
@@ -192,8 +191,8 @@ enum status term_near(const struct term *term)
                     term->text);
     }
     const char *path = term->arguments + length + 1;
-    TRY(surface ? surface_read(path, dim, &table, term->error)
-                : table_read(path, dim, dim, &table, term->error));
+    RETURN_IF_ERROR(surface ? surface_read(path, dim, &table, term->error)
+                            : table_read(path, dim, dim, &table, term->error));
     for (int64_t i = 0; i < table.rows * table.cols; i++) {
         table.values[i] *= term->unit;
     }
@@ -201,12 +200,8 @@ enum status term_near(const struct term *term)
     pieces.x = table.values;
     if (surface && dim == 2) {
         pieces.count = 0;
-        TRY(table_segments(&table, &pieces, &x, term->error));
+        RETURN_IF_ERROR(table_segments(&table, &pieces, &x, term->error));
         pieces.x = x;
     }
-    TRY(items_near(&term->body->items[term->kind], &pieces, reach * term->unit, term->chosen, term->error));
-done:
-    free(x);
-    table_free(&table);
-    return status;
+    return items_near(&term->body->items[term->kind], &pieces, reach * term->unit, term->chosen, term->error);
 }

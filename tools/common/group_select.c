@@ -53,7 +53,6 @@ static enum status grow(const struct group_body *body, enum group_kind kind, con
 static enum status evaluate(const struct group_body *body, enum group_kind kind, char *expression,
                             double unit, bool *chosen, bool *term, struct error *error)
 {
-    enum status status = STATUS_OK;
     int64_t count = body->items[kind].count;
     enum joint joint = JOIN_OR;
     bool wants_term = true;
@@ -70,9 +69,9 @@ static enum status evaluate(const struct group_body *body, enum group_kind kind,
                               word);
         }
         if (rings) {
-            TRY(grow(body, kind, word, chosen, error));
+            RETURN_IF_ERROR(grow(body, kind, word, chosen, error));
         } else if (wants_term) {
-            TRY(group_term(body, kind, word, unit, term, error));
+            RETURN_IF_ERROR(group_term(body, kind, word, unit, term, error));
             combine(joint, count, term, chosen);
             wants_term = false;
         } else {
@@ -81,24 +80,19 @@ static enum status evaluate(const struct group_body *body, enum group_kind kind,
         }
     }
     if (wants_term) {
-        status = fail(error, STATUS_INPUT, "the expression ends where a term should stand: see -h");
+        return fail(error, STATUS_INPUT, "the expression ends where a term should stand: see -h");
     }
-done:
-    return status;
+    return STATUS_OK;
 }
 
 enum status group_select(const struct group_body *body, enum group_kind kind, const char *expression,
                          double unit, bool *chosen, struct error *error)
 {
-    enum status status = STATUS_OK;
-    bool *term = NULL;
-    char *copy = strdup(expression);
+    SCRATCH bool *term = NULL;
+    SCRATCH char *copy = strdup(expression);
     if (copy == NULL) {
         return fail_memory(error, "an expression");
     }
-    TRY(NEW_ARRAY(&term, body->items[kind].count, error));
-    TRY(evaluate(body, kind, copy, unit, chosen, term, error));
-done:
-    FREE_ALL(term, copy);
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&term, body->items[kind].count, error));
+    return evaluate(body, kind, copy, unit, chosen, term, error);
 }

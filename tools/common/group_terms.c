@@ -46,14 +46,10 @@ static enum status choose_all(const struct term *term)
 /* The whole boundary: of nodes those on it. */
 static enum status choose_boundary(const struct term *term)
 {
-    enum status status;
-    bool *facets = NULL;
-    TRY(NEW_ARRAY(&facets, term->body->boundary.count, term->error));
+    SCRATCH bool *facets = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&facets, term->body->boundary.count, term->error));
     memset(facets, true, (size_t)term->body->boundary.count * sizeof *facets);
-    TRY(choose_by(term, GROUP_FACETS, facets));
-done:
-    free(facets);
-    return status;
+    return choose_by(term, GROUP_FACETS, facets);
 }
 
 /* ---- by shape of the boundary, and by connection ---- */
@@ -71,18 +67,14 @@ static enum status choose_normal(const struct term *term)
     int dim = term->body->cells.dim;
     double values[4];
     int count;
-    bool *facing = NULL;
-    enum status status;
-    TRY(term_numbers(term, dim + 1, dim + 1, dim == 2 ? "NX,NY,DEGREES" : "NX,NY,NZ,DEGREES", values,
-                     &count));
-    TRY(term_check_direction(term, values));
-    TRY(check_degrees(term, values[dim]));
-    TRY(NEW_ARRAY(&facing, term->body->boundary.count, term->error));
+    SCRATCH bool *facing = NULL;
+    RETURN_IF_ERROR(term_numbers(term, dim + 1, dim + 1, dim == 2 ? "NX,NY,DEGREES" : "NX,NY,NZ,DEGREES",
+                                 values, &count));
+    RETURN_IF_ERROR(term_check_direction(term, values));
+    RETURN_IF_ERROR(check_degrees(term, values[dim]));
+    RETURN_IF_ERROR(NEW_ARRAY(&facing, term->body->boundary.count, term->error));
     items_facing(&term->body->items[GROUP_FACETS], values, values[dim], facing);
-    TRY(choose_by(term, GROUP_FACETS, facing));
-done:
-    free(facing);
-    return status;
+    return choose_by(term, GROUP_FACETS, facing);
 }
 
 /* The item whose centre is nearest to a point. */
@@ -114,32 +106,28 @@ static enum status choose_part(const struct term *term)
     double values[4];
     int count;
     int32_t parts;
-    int32_t *part = NULL;
-    bool *in = NULL;
-    enum status status;
-    TRY(term_numbers(term, 1 + side, dim + side, form, values, &count));
+    SCRATCH int32_t *part = NULL;
+    SCRATCH bool *in = NULL;
+    RETURN_IF_ERROR(term_numbers(term, 1 + side, dim + side, form, values, &count));
     if (count != 1 + side && count != dim + side) {
         return fail(term->error, STATUS_INPUT, "%.100s: takes the numbers %s", term->text, form);
     }
     double degrees = side ? values[count - 1] : 0;
-    TRY(check_degrees(term, degrees));
-    TRY(NEW_ARRAY(&part, items->count, term->error));
-    TRY(NEW_ARRAY(&in, items->count, term->error));
-    TRY(side ? boundary_sides(body->cells.x, &body->boundary, degrees, part, &parts, term->error)
-             : cells_parts(&body->cells, part, &parts, term->error));
+    RETURN_IF_ERROR(check_degrees(term, degrees));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, items->count, term->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
+    RETURN_IF_ERROR(side ? boundary_sides(body->cells.x, &body->boundary, degrees, part, &parts, term->error)
+                         : cells_parts(&body->cells, part, &parts, term->error));
     bool by_point = count == dim + side;
     if (!by_point && !(values[0] >= 1 && values[0] <= parts && values[0] == floor(values[0]))) {
-        TRY(fail(term->error, STATUS_INPUT, "%.100s: there are %d, counted from 1", term->text, parts));
+        return fail(term->error, STATUS_INPUT, "%.100s: there are %d, counted from 1", term->text, parts);
     }
     term_scale(by_point ? dim : 0, values, term->unit);
     int32_t wanted = by_point ? part[nearest(items, values)] : (int32_t)values[0] - 1;
     for (int64_t i = 0; i < items->count; i++) {
         in[i] = part[i] == wanted;
     }
-    TRY(choose_by(term, side ? GROUP_FACETS : GROUP_REGION, in));
-done:
-    FREE_ALL(part, in);
-    return status;
+    return choose_by(term, side ? GROUP_FACETS : GROUP_REGION, in);
 }
 
 /* ---- by name ---- */
@@ -158,22 +146,18 @@ static enum status fail_unknown(const struct term *term, enum group_kind kind)
 /* The items of a group of some kind, as items of the kind that is being chosen. */
 static enum status choose_named(const struct term *term, enum group_kind from, const char *name)
 {
-    enum status status;
     const struct group_list *list = &term->body->groups[from];
     const struct items *items = &term->body->items[from];
     int64_t place = group_find(list, name);
-    bool *in = NULL;
+    SCRATCH bool *in = NULL;
     if (place < 0) {
         return fail_unknown(term, from);
     }
-    TRY(NEW_ARRAY(&in, items->count, term->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
     for (int64_t i = 0; i < list->group[place].count; i++) {
         in[list->group[place].item[i]] = true;
     }
-    TRY(choose_by(term, from, in));
-done:
-    free(in);
-    return status;
+    return choose_by(term, from, in);
 }
 
 enum status group_term(const struct group_body *body, enum group_kind kind, const char *text, double unit,

@@ -112,12 +112,11 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
     struct cells placed = *cells;
     int32_t *owner;
     const int64_t size[3] = {(int64_t)grid->size[0], (int64_t)grid->size[1], (int64_t)grid->size[2]};
-    double *place = nodes_in_voxels(tool, grid, cells, x);
+    SCRATCH double *place = nodes_in_voxels(tool, grid, cells, x);
     int sign = determinant(grid, cells->dim) < 0 ? -1 : 1;
     TOOL_TRY(tool, NEW_ARRAY(&owner, size[0] * size[1] * size[2], &error));
     placed.x = place;
     raster_cells(&placed, sign, size, owner, doubly);
-    free(place);
     return owner;
 }
 

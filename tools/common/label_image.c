@@ -139,7 +139,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
                        const char *table)
 {
     int64_t count = (int64_t)image_voxels(source);
-    struct values *values = NULL;
+    SCRATCH struct values *values = NULL;
     TOOL_TRY(tool, NEW_ARRAY(&values, 1, &error));
     collect_values(tool, source, values);
     if (table == NULL) {
@@ -162,7 +162,6 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
         image->voxel[i] = values->label[at];
     }
     image->labels.label = image->voxel;
-    free(values);
 }
 
 /* ---- space ---- */

@@ -24,7 +24,7 @@ static bool same_group(const struct member *a, const struct member *b)
 static enum status add_name(struct mesh_names *names, const char *first, const char *second,
                             struct error *error)
 {
-    char *joined;
+    SCRATCH char *joined = NULL;
     if (second == NULL) {
         return mesh_add_name(names, first, error);
     }
@@ -32,43 +32,38 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
         return fail_memory(error, "a name");
     }
     enum status status = mesh_add_name(names, joined, error);
-    free(joined);
     return status;
 }
 
 static enum status make_regions(const struct label_image *image, const struct stuffing *stuffing,
                                 struct mesh *mesh, struct error *error)
 {
-    enum status status;
-    int32_t *region = NULL;
-    TRY(NEW_ARRAY(&region, image->labels.count, error));
-    TRY(NEW_ARRAY(&mesh->cell_region, stuffing->cell_count, error));
+    SCRATCH int32_t *region = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&region, image->labels.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, stuffing->cell_count, error));
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
         region[image->region[stuffing->label[c]]] = 1;
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (region[l] != 0) {
             region[l] = mesh->regions.count;
-            TRY(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
+            RETURN_IF_ERROR(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
         }
     }
     for (int64_t c = 0; c < stuffing->cell_count; c++) {
         mesh->cell_region[c] = region[image->region[stuffing->label[c]]];
     }
-done:
-    free(region);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status make_facets(const struct label_image *image, const struct stuffing *stuffing,
                                struct mesh *mesh, struct error *error)
 {
-    enum status status;
     int dim = stuffing->dim;
-    struct member *member = NULL;
-    TRY(NEW_ARRAY(&member, stuffing->facet_count, error));
-    TRY(NEW_ARRAY(&mesh->facets, stuffing->facet_count * dim, error));
-    TRY(NEW_ARRAY(&mesh->facet_set, stuffing->facet_count, error));
+    SCRATCH struct member *member = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&member, stuffing->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, stuffing->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, stuffing->facet_count, error));
     for (int32_t f = 0; f < (int32_t)stuffing->facet_count; f++) {
         int32_t inner = stuffing->side[2 * f], part = image->part_of[inner];
         member[f] = (struct member){inner, stuffing->side[2 * f + 1], f};
@@ -80,18 +75,16 @@ static enum status make_facets(const struct label_image *image, const struct stu
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
             int32_t part = member[f].inner - image->labels.count;
-            TRY(add_name(&mesh->facet_sets,
-                         part >= 0 ? image->part[part] : label_image_name(image, member[f].inner),
-                         part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
+            RETURN_IF_ERROR(add_name(&mesh->facet_sets,
+                                     part >= 0 ? image->part[part] : label_image_name(image, member[f].inner),
+                                     part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
         }
         mesh->facet_set[f] = mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, stuffing->facet + (int64_t)member[f].item * dim,
                (size_t)dim * sizeof *mesh->facets);
     }
     mesh->facet_count = stuffing->facet_count;
-done:
-    free(member);
-    return status;
+    return STATUS_OK;
 }
 
 /* Nodes of faces between two regions, a face once for each of its nodes: counted or, where there is room,
@@ -122,23 +115,22 @@ static int64_t find_interfaces(const struct cells *cells, const int32_t *region,
 static enum status make_sets(const struct label_image *image, const struct stuffing *stuffing,
                              struct mesh *mesh, struct error *error)
 {
-    enum status status;
     struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
                           stuffing->cell};
-    int32_t *across = NULL;
-    struct member *member = NULL;
-    int32_t *region = NULL;
+    SCRATCH int32_t *across = NULL;
+    SCRATCH struct member *member = NULL;
+    SCRATCH int32_t *region = NULL;
     int64_t kept = 0;
-    TRY(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
-    TRY(cells_across(&cells, across, error));
-    TRY(NEW_ARRAY(&region, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
+    RETURN_IF_ERROR(cells_across(&cells, across, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&region, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
         region[c] = image->region[stuffing->label[c]];
     }
     int64_t count = find_interfaces(&cells, region, across, NULL);
-    TRY(NEW_ARRAY(&member, count, error));
-    TRY(NEW_ARRAY(&mesh->set_idx, count, error));
-    TRY(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&member, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
     find_interfaces(&cells, region, across, member);
     qsort(member, (size_t)count, sizeof *member, compare_members);
     for (int64_t i = 0; i < count; i++) {
@@ -147,34 +139,26 @@ static enum status make_sets(const struct label_image *image, const struct stuff
         }
         if (i == 0 || !same_group(&member[i], &member[i - 1])) {
             mesh->set_ptr[mesh->node_sets.count] = kept;
-            TRY(add_name(&mesh->node_sets, label_image_name(image, member[i].inner),
-                         label_image_name(image, member[i].outer), error));
+            RETURN_IF_ERROR(add_name(&mesh->node_sets, label_image_name(image, member[i].inner),
+                                     label_image_name(image, member[i].outer), error));
         }
         mesh->set_idx[kept++] = member[i].item;
     }
     mesh->set_ptr[mesh->node_sets.count] = kept;
-done:
-    FREE_ALL(across, region, member);
-    return status;
+    return STATUS_OK;
 }
 
 enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
                             struct mesh *mesh, struct error *error)
 {
-    enum status status;
     *mesh = (struct mesh){.dim = stuffing->dim,
                           .node_count = stuffing->node_count,
                           .x = stuffing->x,
                           .cell_count = stuffing->cell_count,
                           .cells = stuffing->cell};
-    TRY(make_regions(image, stuffing, mesh, error));
-    TRY(make_facets(image, stuffing, mesh, error));
-    TRY(make_sets(image, stuffing, mesh, error));
-done:
-    if (status != STATUS_OK) {
-        label_mesh_free(mesh);
-    }
-    return status;
+    RETURN_IF_ERROR(make_regions(image, stuffing, mesh, error));
+    RETURN_IF_ERROR(make_facets(image, stuffing, mesh, error));
+    return make_sets(image, stuffing, mesh, error);
 }
 
 void label_mesh_free(struct mesh *mesh)

@@ -14,7 +14,7 @@ static const double most_stretch = 2;
 void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
                          struct label_surface_options *options)
 {
-    char *copy = tool_memory(tool, strdup(text));
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
     char *outer = copy;
     const char *inner = strsep(&outer, "|");
     options->inner = label_image_find(image, inner);
@@ -22,7 +22,6 @@ void label_surface_parse(const struct tool *tool, const struct label_image *imag
     if (options->inner < 0 || (outer != NULL && options->outer < 0)) {
         tool_fail(tool, STATUS_INPUT, "--surface: no label '%.60s'", options->inner < 0 ? inner : outer);
     }
-    free(copy);
 }
 
 static bool is_chosen(const struct stuffing *stuffing, const struct label_surface_options *options,
@@ -138,8 +137,8 @@ static void print_surface(const struct tool *tool, FILE *file, const struct stuf
                           const struct label_surface_options *options)
 {
     int dim = stuffing->dim;
-    int64_t *next = NULL;
-    double *mean = NULL, *least = NULL, *place = NULL;
+    SCRATCH int64_t *next = NULL;
+    SCRATCH double *mean = NULL, *least = NULL, *place = NULL;
     TOOL_TRY(tool, NEW_ARRAY(&mean, stuffing->node_count * dim, &error));
     TOOL_TRY(tool, NEW_ARRAY(&least, stuffing->node_count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&place, stuffing->node_count * dim, &error));
@@ -150,7 +149,6 @@ static void print_surface(const struct tool *tool, FILE *file, const struct stuf
     } else {
         print_curves(file, stuffing, options, place, next);
     }
-    FREE_ALL(mean, least, place, next);
 }
 
 void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,

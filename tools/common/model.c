@@ -38,30 +38,24 @@ static void drop_copied(void *stream)
 enum status model_build(struct stream *stream, const int32_t *face_reader, const struct scene *scene,
                         struct model *model, struct error *error)
 {
-    enum status status;
     struct assembly *input = &model->assembly;
     *model = (struct model){.stream = stream, .scene = scene};
-    TRY(stream_cells(stream, true, &input->cells, error));
+    RETURN_IF_ERROR(stream_cells(stream, true, &input->cells, error));
     if (scene->dim != input->cells.dim) {
-        TRY(fail(error, STATUS_INPUT, "%s: dim = %d, but the nodes have %d coordinates", scene->path,
-                 scene->dim, input->cells.dim));
+        return fail(error, STATUS_INPUT, "%s: dim = %d, but the nodes have %d coordinates", scene->path,
+                    scene->dim, input->cells.dim);
     }
-    TRY(stage_tables(stream, input, error));
-    TRY(model_materials(model, error));
-    TRY(model_interfaces(model, error));
-    TRY(check_moments(model, error));
-    TRY(model_conditions(model, error));
+    RETURN_IF_ERROR(stage_tables(stream, input, error));
+    RETURN_IF_ERROR(model_materials(model, error));
+    RETURN_IF_ERROR(model_interfaces(model, error));
+    RETURN_IF_ERROR(check_moments(model, error));
+    RETURN_IF_ERROR(model_conditions(model, error));
     input->ranks = process_ranks();
     input->face_reader = face_reader;
     input->copied = drop_copied;
     input->context = stream;
-    TRY(assembly_build(input, &model->system, &model->note, error));
-    TRY(NEW_ARRAY(&model->row_force, model->system.rows.count, error));
-done:
-    if (status != STATUS_OK) {
-        model_free(model);
-    }
-    return status;
+    RETURN_IF_ERROR(assembly_build(input, &model->system, &model->note, error));
+    return NEW_ARRAY(&model->row_force, model->system.rows.count, error);
 }
 
 void model_free(struct model *model)

@@ -55,21 +55,21 @@ static int64_t keep_facets(int dim, const struct facet_set *set, const int64_t *
 enum status model_between(struct model *model, const struct scene_contact *section,
                           struct contact_condition *contact, struct error *error)
 {
-    enum status status;
     const struct faces *boundary = &model->assembly.boundary;
     struct facet_set sets[2] = {{0}}, lists[2];
     bool whole[2];
     int dim = model->assembly.cells.dim;
-    int64_t common = 0, *face = NULL;
-    uint8_t *listed = NULL;
+    int64_t common = 0;
+    SCRATCH int64_t *face = NULL;
+    SCRATCH uint8_t *listed = NULL;
     int32_t *kept;
-    TRY(read_list(model, section, &section->facets, &sets[0], &whole[0], error));
-    TRY(read_list(model, section, &section->against, &sets[1], &whole[1], error));
-    TRY(NEW_ARRAY(&listed, boundary->count, error));
-    TRY(NEW_ARRAY(&face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error));
+    RETURN_IF_ERROR(read_list(model, section, &section->facets, &sets[0], &whole[0], error));
+    RETURN_IF_ERROR(read_list(model, section, &section->against, &sets[1], &whole[1], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&listed, boundary->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error));
     for (int list = 0; list < 2; list++) {
-        TRY(MODEL_ARRAY(model, &kept, sets[list].count * dim, error));
-        TRY(faces_find(boundary, sets[list].count, sets[list].facet, face, error));
+        RETURN_IF_ERROR(MODEL_ARRAY(model, &kept, sets[list].count * dim, error));
+        RETURN_IF_ERROR(faces_find(boundary, sets[list].count, sets[list].facet, face, error));
         lists[list] =
             (struct facet_set){keep_facets(dim, &sets[list], face, (uint8_t)(1 << list), listed, kept), kept};
     }
@@ -77,10 +77,11 @@ enum status model_between(struct model *model, const struct scene_contact *secti
         common += listed[f] == 3;
     }
     if (common > 0 && (common != lists[0].count || common != lists[1].count)) {
-        TRY(fail(error, STATUS_INPUT,
-                 "%s: facets and against have %lld facets in common: name the same groups in both, of what "
-                 "may touch itself, or groups without common facets",
-                 section->label.where, (long long)common));
+        return fail(
+            error, STATUS_INPUT,
+            "%s: facets and against have %lld facets in common: name the same groups in both, of what "
+            "may touch itself, or groups without common facets",
+            section->label.where, (long long)common);
     }
     if (common > 0) {
         lists[1] = lists[0];
@@ -91,7 +92,5 @@ enum status model_between(struct model *model, const struct scene_contact *secti
     contact->opposite = lists[finer ? 1 : 0];
     contact->sign = finer ? 1 : -1;
     contact->whole = whole[0] && whole[1];
-done:
-    FREE_ALL(listed, face);
-    return status;
+    return STATUS_OK;
 }

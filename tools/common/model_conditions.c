@@ -16,36 +16,32 @@ static enum status add_curve(struct model *model, const struct scene_label *labe
                                             [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
                                             [SCENE_CURVE_STEP] = CURVE_STEP,
                                             [SCENE_CURVE_FILE] = CURVE_TABLE};
-    enum status status = STATUS_OK;
     struct assembly *input = &model->assembly;
-    struct table table = {0};
+    FREED_BY(table_free) struct table table = {0};
     RETURN_IF_ERROR(RESIZE_ARRAY(&input->curves, input->curve_count + 1, error));
     struct load_curve *added = &input->curves[input->curve_count];
     if (curve->kind != SCENE_CURVE_FILE) {
         *added = curve_of_kind(kinds[curve->kind]);
     } else {
         double end = input->in_time ? model->scene->solver.end_time : 1.0;
-        TRY(fail_in(error, table_read(curve->file, 2, 2, &table, error),
-                    "%s: curve: not smooth, linear or step, and as a file", label->where));
-        TRY(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error), "%s: curve %s",
-                    label->where, curve->file));
+        RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
+                                "%s: curve: not smooth, linear or step, and as a file", label->where));
+        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error),
+                                "%s: curve %s", label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;
-done:
-    table_free(&table);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_displacement(struct model *model, const struct scene_displacement *section,
                                     struct condition *condition, struct error *error)
 {
-    enum status status = STATUS_OK;
     static const enum condition_kind kinds[] = {[SCENE_COMPONENTS] = CONDITION_COMPONENTS,
                                                 [SCENE_NORMAL] = CONDITION_NORMAL,
                                                 [SCENE_TABLE] = CONDITION_TABLE,
                                                 [SCENE_POINTS] = CONDITION_POINTS};
     int dim = model->assembly.cells.dim;
-    struct table table = {0};
+    FREED_BY(table_free) struct table table = {0};
     *condition = (struct condition){.name = section->label.name,
                                     .where = section->label.where,
                                     .kind = kinds[section->kind],
@@ -56,26 +52,24 @@ static enum status add_displacement(struct model *model, const struct scene_disp
         condition->components[a] = section->components[a];
         condition->is_free[a] = section->is_free[a];
     }
-    TRY(add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &condition->curve, error));
     if (section->kind == SCENE_POINTS) {
         return model_points(model, section, condition, error);
     }
     if (section->kind == SCENE_TABLE) {
-        TRY(table_read(section->table, 2 * dim, 2 * dim, &table, error));
+        RETURN_IF_ERROR(table_read(section->table, 2 * dim, 2 * dim, &table, error));
         condition->row_count = table.rows;
         condition->rows = table.values;
         table.values = NULL;
-        TRY(model_own(model, (void *)condition->rows, error));
+        RETURN_IF_ERROR(model_own(model, (void *)condition->rows, error));
     }
     if (section->facets.count > 0) {
-        TRY(model_facets(model, &section->label, &section->facets, &condition->facets, error));
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &condition->facets, error));
     } else {
-        TRY(model_nodes(model, &section->label, &section->nodes, &condition->nodes, &condition->node_count,
-                        error));
+        RETURN_IF_ERROR(model_nodes(model, &section->label, &section->nodes, &condition->nodes,
+                                    &condition->node_count, error));
     }
-done:
-    table_free(&table);
-    return status;
+    return STATUS_OK;
 }
 
 /* The fluid of a section that has one. */
@@ -153,13 +147,12 @@ static enum status add_loads(struct model *model, struct error *error)
 static enum status read_surface(struct model *model, const struct scene_contact *section,
                                 struct contact_condition *contact, struct error *error)
 {
-    enum status status;
-    struct table table = {0};
+    FREED_BY(table_free) struct table table = {0};
     double *corners;
     int dim = model->assembly.cells.dim;
     int64_t count = 0;
-    TRY(surface_read(section->rigid, dim, &table, error));
-    TRY(MODEL_ARRAY(model, &corners, table.rows * (dim == 2 ? 4 : 9), error));
+    RETURN_IF_ERROR(surface_read(section->rigid, dim, &table, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &corners, table.rows * (dim == 2 ? 4 : 9), error));
     for (int64_t b = 0; b < table.block_count && dim == 2; b++) {
         for (int64_t r = table.block_ptr[b]; r + 1 < table.block_ptr[b + 1]; r++) {
             for (int i = 0; i < 4; i++) {
@@ -174,9 +167,7 @@ static enum status read_surface(struct model *model, const struct scene_contact 
     contact->corners = corners;
     contact->rigid_count = dim == 3 ? table.rows : count;
     contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
-done:
-    table_free(&table);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status add_contact(struct model *model, const struct scene_contact *section,
@@ -248,29 +239,27 @@ enum status model_renew_contacts(struct model *model, struct error *error)
 
 enum status model_initial(const struct model *model, double *u, double *v, struct error *error)
 {
-    enum status status;
     const struct scene_initial *initial = &model->scene->initial;
     const struct cells *cells = &model->assembly.cells;
     int dim = cells->dim;
-    struct table table = {0};
-    TRY(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
     if (table.rows != cells->node_count) {
-        TRY(fail(error, STATUS_INPUT, "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
-                 model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count));
+        return fail(error, STATUS_INPUT,
+                    "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
+                    model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count);
     }
     for (int64_t n = 0; n < cells->node_count; n++) {
         const double *row = table.values + n * table.cols;
         if (!(model_away(model, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
-            TRY(fail(error, STATUS_INPUT,
-                     "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
-                     initial->table, (long long)table.line[n], (long long)n));
+            return fail(error, STATUS_INPUT,
+                        "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
+                        initial->table, (long long)table.line[n], (long long)n);
         }
         for (int a = 0; a < dim; a++) {
             u[n * dim + a] = row[dim + a] * initial->table_unit;
             v[n * dim + a] = row[2 * dim + a] * initial->table_unit;
         }
     }
-done:
-    table_free(&table);
-    return status;
+    return STATUS_OK;
 }

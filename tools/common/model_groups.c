@@ -21,9 +21,8 @@ static enum status choose(const struct scene_label *label, const struct name_lis
 enum status model_facets(struct model *model, const struct scene_label *label, const struct name_list *names,
                          struct facet_set *set, struct error *error)
 {
-    enum status status;
-    struct named_facets facets = {0};
-    bool *wanted = NULL;
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    SCRATCH bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
@@ -31,10 +30,10 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run groups",
                     label->where);
     }
-    TRY(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
-    TRY(NEW_ARRAY(&wanted, facets.names.count, error));
-    TRY(choose(label, names, "facet group", &facets.names, wanted, error));
-    TRY(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
+    RETURN_IF_ERROR(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, facets.names.count, error));
+    RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     for (int64_t f = 0; f < facets.count; f++) {
         if (wanted[facets.group[f]]) {
             memcpy(chosen + set->count * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
@@ -43,44 +42,37 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
     }
     set->facet = chosen;
     if (set->count == 0) {
-        status = fail(error, STATUS_INPUT, "%s: its facet groups are empty", label->where);
+        return fail(error, STATUS_INPUT, "%s: its facet groups are empty", label->where);
     }
-done:
-    names_free(&facets.names);
-    free(wanted);
-    return status;
+    return STATUS_OK;
 }
 
 enum status model_nodes(struct model *model, const struct scene_label *label, const struct name_list *names,
                         const int32_t **nodes, int64_t *count, struct error *error)
 {
-    enum status status;
-    struct named_sets sets = {0};
-    bool *wanted = NULL, *member = NULL;
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    SCRATCH bool *wanted = NULL, *member = NULL;
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
     if (stream_find(model->stream, "sets.ptr") == NULL) {
         return fail(error, STATUS_INPUT, "%s: no node sets: run groups -n", label->where);
     }
-    TRY(stream_sets(model->stream, true, node_count, &sets, error));
-    TRY(NEW_ARRAY(&wanted, sets.names.count, error));
-    TRY(choose(label, names, "node set", &sets.names, wanted, error));
-    TRY(NEW_ARRAY(&member, node_count, error));
+    RETURN_IF_ERROR(stream_sets(model->stream, true, node_count, &sets, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, sets.names.count, error));
+    RETURN_IF_ERROR(choose(label, names, "node set", &sets.names, wanted, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&member, node_count, error));
     for (int64_t set = 0; set < sets.lists.count; set++) {
         for (int64_t k = sets.lists.ptr[set]; k < sets.lists.ptr[set + 1] && wanted[set]; k++) {
             member[sets.lists.idx[k]] = true;
         }
     }
-    TRY(MODEL_ARRAY(model, &chosen, node_count, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, node_count, error));
     *nodes = chosen;
     for (int64_t n = 0; n < node_count; n++) {
         if (member[n]) {
             chosen[(*count)++] = (int32_t)n;
         }
     }
-done:
-    names_free(&sets.names);
-    FREE_ALL(wanted, member);
-    return status;
+    return STATUS_OK;
 }

@@ -64,15 +64,14 @@ static void remedy(const struct names *names, const double *modulus, char text[2
 
 enum status model_interfaces(struct model *model, struct error *error)
 {
-    enum status status;
     const struct assembly *input = &model->assembly;
     const struct scene_output *output = &model->scene->output;
-    struct cell_regions regions;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     char order[256];
-    double *modulus = NULL;
+    SCRATCH double *modulus = NULL;
     struct worst crossed = {.ratio = 1.0}, softer = {.ratio = 1.0};
-    TRY(stream_regions(model->stream, &input->cells, &regions, error));
-    TRY(NEW_ARRAY(&modulus, regions.names.count, error));
+    RETURN_IF_ERROR(stream_regions(model->stream, &input->cells, &regions, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&modulus, regions.names.count, error));
     for (int32_t c = 0; c < input->cells.count; c++) {
         modulus[regions.of_cell[c]] = modulus_of(&input->materials, c);
     }
@@ -95,8 +94,5 @@ enum status model_interfaces(struct model *model, struct error *error)
                    first, second, crossed.ratio,
                    crossed.ratio > large_jump ? ", and forces may be off by tens of percent" : "", order);
     }
-done:
-    names_free(&regions.names);
-    free(modulus);
-    return status;
+    return STATUS_OK;
 }

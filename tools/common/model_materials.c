@@ -50,19 +50,18 @@ static enum status check_row(const struct model *model, const struct scene_mater
 /* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
 static enum status add_point_table(struct model *model, int64_t m, struct error *error)
 {
-    enum status status;
     struct material_list *list = &model->assembly.materials;
     const struct scene_material *section = &model->scene->materials[m];
     int dim = model->assembly.cells.dim;
-    struct table table = {0};
+    FREED_BY(table_free) struct table table = {0};
     int64_t row = 0;
-    TRY(table_read(section->table, dim + 2, dim + 2, &table, error));
-    TRY(RESIZE_ARRAY(&list->items, list->count + table.rows, error));
+    RETURN_IF_ERROR(table_read(section->table, dim + 2, dim + 2, &table, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, list->count + table.rows, error));
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
         if (list->of_point[q] != m) {
             continue;
         }
-        TRY(check_row(model, section, &table, row, q, error));
+        RETURN_IF_ERROR(check_row(model, section, &table, row, q, error));
         const double *values = table.values + row++ * table.cols;
         struct material *material = &list->items[list->count];
         *material = list->items[m];
@@ -71,12 +70,10 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
         list->of_point[q] = (int32_t)list->count++;
     }
     if (row != table.rows) {
-        status = fail(error, STATUS_INPUT, "%s: table %s: %lld rows for %lld integration points",
-                      section->label.where, section->table, (long long)table.rows, (long long)row);
+        return fail(error, STATUS_INPUT, "%s: table %s: %lld rows for %lld integration points",
+                    section->label.where, section->table, (long long)table.rows, (long long)row);
     }
-done:
-    table_free(&table);
-    return status;
+    return STATUS_OK;
 }
 
 /* The material of each region: material[names->count], -1 where the scene names none. */
@@ -104,29 +101,25 @@ static enum status materials_of_regions(const struct scene *scene, const struct 
 /* The material of each cell: from cells.region and the scene. */
 static enum status materials_of_cells(struct model *model, struct error *error)
 {
-    enum status status;
     const struct cells *cells = &model->assembly.cells;
-    struct cell_regions regions;
-    int32_t *material = NULL;
-    TRY(stream_regions(model->stream, cells, &regions, error));
-    TRY(NEW_ARRAY(&material, regions.names.count, error));
-    TRY(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
-    TRY(materials_of_regions(model->scene, &regions.names, material, error));
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    SCRATCH int32_t *material = NULL;
+    RETURN_IF_ERROR(stream_regions(model->stream, cells, &regions, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&material, regions.names.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
+    RETURN_IF_ERROR(materials_of_regions(model->scene, &regions.names, material, error));
     for (int64_t c = 0; c < cells->count; c++) {
         int32_t region = regions.of_cell[c];
         if (material[region] < 0) {
-            TRY(fail(
+            return fail(
                 error, STATUS_INPUT,
                 "%s: region '%s' has no material: add it to a [material], or leave it out (nodes -r; voxels "
                 "-l)",
-                model->scene->path, regions.names.name[region]));
+                model->scene->path, regions.names.name[region]);
         }
         model->assembly.materials.of_cell[c] = material[region];
     }
-done:
-    names_free(&regions.names);
-    free(material);
-    return status;
+    return STATUS_OK;
 }
 
 enum status model_materials(struct model *model, struct error *error)

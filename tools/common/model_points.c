@@ -82,42 +82,37 @@ static enum status keep_field(struct point_section *p, struct field_table *field
 /* Points that are too far from the body, and the field at the others. */
 static enum status find_field(struct point_section *p, struct error *error)
 {
-    enum status status;
     const struct cells *cells = &p->model->assembly.cells;
     const struct measured *measured = &p->condition->measured;
     const struct section *radius;
     struct recorded recorded;
-    double *reach = NULL, given = p->section->reach;
-    bool *outside = NULL;
+    SCRATCH double *reach = NULL;
+    double given = p->section->reach;
+    SCRATCH bool *outside = NULL;
     struct field_table field = {0};
-    TRY(NEW_ARRAY(&reach, cells->node_count, error));
-    TRY(NEW_ARRAY(&outside, measured->count, error));
-    TRY(field_spacing(cells, reach, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reach, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, measured->count, error));
+    RETURN_IF_ERROR(field_spacing(cells, reach, error));
     for (int64_t n = 0; n < cells->node_count && given > 0.0; n++) {
         reach[n] = given;
     }
-    TRY(field_outside(cells, reach, FIELD_MARGIN, measured->count, measured->x, outside, error));
+    RETURN_IF_ERROR(field_outside(cells, reach, FIELD_MARGIN, measured->count, measured->x, outside, error));
     for (int64_t i = 0; i < measured->count; i++) {
         if (outside[i]) {
-            status =
-                fail_at(p, i, error,
-                        given > 0.0 ? "farther from the body than its reach: wrong unit or wrong place?"
-                                    : "farther from the body than the spacing of its nodes: wrong unit or "
-                                      "wrong place?");
-            goto done;
+            return fail_at(p, i, error,
+                           given > 0.0 ? "farther from the body than its reach: wrong unit or wrong place?"
+                                       : "farther from the body than the spacing of its nodes: wrong unit or "
+                                         "wrong place?");
         }
     }
-    TRY(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    TRY(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
+    RETURN_IF_ERROR(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
     if (radius->rows != cells->node_count) {
-        TRY(fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again"));
+        return fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
     }
-    TRY(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data, measured->count,
-                          measured->x, p->section->table, &field, error));
-    TRY(keep_field(p, &field, error));
-done:
-    FREE_ALL(reach, outside);
-    return status;
+    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data,
+                                      measured->count, measured->x, p->section->table, &field, error));
+    return keep_field(p, &field, error);
 }
 
 enum status model_points(struct model *model, const struct scene_displacement *section,

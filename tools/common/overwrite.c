@@ -15,9 +15,8 @@ static bool is_one(const struct stat *a, const struct stat *b)
 static bool stat_folder(const char *name, struct stat *folder)
 {
     const char *slash = strrchr(name, '/');
-    char *path = slash == NULL ? strdup(".") : strndup(name, (size_t)(slash - name + 1));
+    SCRATCH char *path = slash == NULL ? strdup(".") : strndup(name, (size_t)(slash - name + 1));
     bool found = path != NULL && stat(path, folder) == 0;
-    free(path);
     return found;
 }
 

@@ -58,13 +58,12 @@ static enum status count_parts(const char *file, const struct stream *stream, in
 static enum status look_for_last(const struct tool *tool, const char *operand, int64_t count,
                                  struct error *error)
 {
-    char *last = tool_numbered(tool, "", operand, count - 1);
+    SCRATCH char *last = tool_numbered(tool, "", operand, count - 1);
     enum status status = STATUS_OK;
     if (access(last, F_OK) != 0) {
         status = errno == ENOENT ? fail_missing(last, count - 1, count, error)
                                  : fail(error, STATUS_INPUT, "%s: %s", last, strerror(errno));
     }
-    free(last);
     return status;
 }
 
@@ -95,14 +94,13 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
 /* The checksums of all parts as one. */
 static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first)
 {
-    uint32_t *each;
+    SCRATCH uint32_t *each = NULL;
     TOOL_TRY(tool, NEW_ARRAY(&each, rejoin->part_count, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         each[k] = rejoin->part[k].elsewhere ? 0 : checkpoint_identify_input(&rejoin->part[k].stream);
     }
     ranks_gather(process_ranks(), each, sizeof *each, first);
     uLong crc = crc32_z(0, (const Bytef *)each, (size_t)rejoin->part_count * sizeof *each);
-    free(each);
     return (uint32_t)crc;
 }
 
@@ -146,10 +144,10 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
                 struct parts_input *parts)
 {
     const struct ranks *ranks = process_ranks();
-    struct rejoin rejoin = {.tool = tool};
+    FREED_BY(rejoin_free) struct rejoin rejoin = {.tool = tool};
     struct stream start;
-    int64_t *first;
-    void *packed;
+    SCRATCH int64_t *first = NULL;
+    SCRATCH void *packed = NULL;
     *parts = (struct parts_input){.given = true};
     tool_names_input(operand);
     stream_init(stream);
@@ -170,8 +168,6 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     for (int64_t k = 0; k < rejoin.part_count; k++) {
         free((char *)rejoin.part[k].file);
     }
-    rejoin_free(&rejoin);
-    FREE_ALL(packed, first);
 }
 
 void parts_free(struct parts_input *parts)

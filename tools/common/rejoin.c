@@ -158,7 +158,7 @@ int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, 
 
 void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
 {
-    bool *found;
+    SCRATCH bool *found = NULL;
     int64_t total = 0;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
@@ -184,7 +184,6 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
             }
         }
     }
-    free(found);
 }
 
 /* Nodes and cells of the whole. */
@@ -226,7 +225,7 @@ static void map_body(struct rejoin *rejoin)
 static void find_edges(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;
-    int32_t *degree;
+    SCRATCH int32_t *degree = NULL;
     TOOL_TRY(rejoin->tool, NEW_ARRAY(&degree, rejoin->rows[ROWS_NODES], &error));
     for (int64_t i = 0; i < rejoin->rows[ROWS_CELLS] * vertices; i++) {
         degree[rejoin->cell[i]]++;
@@ -244,7 +243,6 @@ static void find_edges(struct rejoin *rejoin)
         }
         free(here);
     }
-    free(degree);
 }
 
 /* Facets and members of sets belong to the part that owns their first node. */

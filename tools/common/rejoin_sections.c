@@ -203,23 +203,20 @@ static void view_lists(const struct rejoin *rejoin, const char *name, struct joi
 
 enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
 {
-    enum status status = STATUS_OK;
-    struct joined_lists lists = {.prefix = "face", .rows = ROWS_OF_FACES};
-    TRY(NEW_ARRAY(&lists.of, rejoin->part_count, error));
+    FREED_BY(lists_free) struct joined_lists lists = {.prefix = "face", .rows = ROWS_OF_FACES};
+    RETURN_IF_ERROR(NEW_ARRAY(&lists.of, rejoin->part_count, error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         const struct section *values = stream_find(&part->stream, "face.phi");
         if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
             continue; /* every process finds that out for itself */
         }
-        TRY(view_part(rejoin, k, &lists, error));
+        RETURN_IF_ERROR(view_part(rejoin, k, &lists, error));
         if (!part->elsewhere && values->rows != lists.of[k].ptr[lists.of[k].count]) {
-            TRY(fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file));
+            return fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file);
         }
     }
-done:
-    lists_free(&lists);
-    return status;
+    return STATUS_OK;
 }
 
 /* The pairs around corners of each list of a part, as lists of their own: of[k].idx is not set. */
@@ -241,7 +238,7 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
 {
     char name[64];
     int64_t *pair;
-    struct joined_lists around = *lists;
+    FREED_BY(lists_free) struct joined_lists around = *lists;
     TOOL_TRY(rejoin->tool, NEW_ARRAY(&around.of, rejoin->part_count, &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         list_around(rejoin, &lists->of[k], &around.of[k]);
@@ -268,14 +265,13 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         free((int64_t *)(uintptr_t)around.of[k].ptr);
     }
-    lists_free(&around);
 }
 
 /* All that belongs to lists; in the order in which support and shapefn write it. */
 static void put_lists(const struct rejoin *rejoin, struct stream *stream, const struct section *ptr)
 {
     char name[64];
-    struct joined_lists lists;
+    FREED_BY(lists_free) struct joined_lists lists = {0};
     view_lists(rejoin, ptr->name, &lists);
     TOOL_TRY(rejoin->tool, stream_put_copy(stream, ptr->name, TYPE_I8, rejoin->rows[lists.rows] + 1, 1,
                                            ptr->attributes, lists.ptr, &error));
@@ -284,19 +280,17 @@ static void put_lists(const struct rejoin *rejoin, struct stream *stream, const 
         put_rows(rejoin, stream, name, lists.rows, NULL);
     }
     put_around(rejoin, stream, &lists);
-    lists_free(&lists);
 }
 
 /* A section with a row for each pair of lists that are in the stream already. */
 static void put_pairs(const struct rejoin *rejoin, struct stream *stream, const char *name, const char *idx)
 {
-    struct joined_lists lists;
+    FREED_BY(lists_free) struct joined_lists lists = {0};
     if (stream_find(stream, idx) == NULL) {
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: %s before %s", rejoin->part[0].file, name, idx);
     }
     view_lists(rejoin, idx, &lists);
     put_rows(rejoin, stream, name, lists.rows, &lists);
-    lists_free(&lists);
 }
 
 /* ---- what is made of the whole body ---- */

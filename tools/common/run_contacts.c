@@ -254,7 +254,7 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
 void run_contacts_judge(struct run *run, double slack, double share)
 {
     struct solid_system *system = &run->model->system;
-    double *x = system->contact_count > 0 ? deformed(run) : NULL;
+    SCRATCH double *x = system->contact_count > 0 ? deformed(run) : NULL;
     struct cells cells = run->model->assembly.cells;
     cells.x = x;
     for (int64_t c = 0; c < system->contact_count; c++) {
@@ -264,22 +264,20 @@ void run_contacts_judge(struct run *run, double slack, double share)
         TOOL_TRY(run->tool, contact_patch_find(contact, set, &cells, &patch, &error));
         judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
     }
-    free(x);
 }
 
 /* core[node_count]: nodes inside what is held, all of whose faces on the boundary are; in 3D, those of facets
  * with all nodes inside. */
 static enum status find_core(const struct run *run, bool **core, struct error *error)
 {
-    enum status status;
     const struct assembly *input = &run->model->assembly;
     const struct faces *boundary = &input->boundary;
     int dim = run->scene->dim;
     int64_t node_count = input->cells.node_count;
-    bool *held = NULL, *inside = NULL;
-    TRY(assembly_held_faces(input, 1, &held, error));
-    TRY(NEW_ARRAY(&inside, node_count, error));
-    TRY(NEW_ARRAY(core, node_count, error));
+    SCRATCH bool *held = NULL, *inside = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&inside, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(core, node_count, error));
     memset(inside, true, (size_t)node_count * sizeof *inside);
     for (int64_t i = 0; i < boundary->count * dim; i++) {
         inside[boundary->node[i]] = inside[boundary->node[i]] && held[i / dim];
@@ -291,9 +289,7 @@ static enum status find_core(const struct run *run, bool **core, struct error *e
             (*core)[node[k]] = (*core)[node[k]] || (all && inside[node[k]]);
         }
     }
-done:
-    FREE_ALL(held, inside);
-    return status;
+    return STATUS_OK;
 }
 
 /* A condition most of whose facets are on patches that are too narrow to have such nodes. */
@@ -325,7 +321,7 @@ static void note_narrow(const struct run *run, const struct condition *condition
 void run_displacements_judge(const struct run *run)
 {
     const struct assembly *input = &run->model->assembly;
-    bool *core = NULL;
+    SCRATCH bool *core = NULL;
     if (!wants_forces(&run->scene->output)) {
         return;
     }
@@ -340,5 +336,4 @@ void run_displacements_judge(const struct run *run)
             note_narrow(run, condition, core);
         }
     }
-    free(core);
 }

@@ -38,7 +38,7 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
 static void name_facet(const struct run *run, int64_t f, char *name, size_t size)
 {
     int dim = run->scene->dim;
-    struct named_facets facets;
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
     struct error ignored;
     int32_t key[3], other[3];
     enum status status = stream_facets(run->stream, false, &run->model->assembly.cells, &facets, &ignored);
@@ -51,7 +51,6 @@ static void name_facet(const struct run *run, int64_t f, char *name, size_t size
             break;
         }
     }
-    names_free(&facets.names);
 }
 
 /* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */

@@ -128,14 +128,13 @@ static void put_vectors(const struct run *run, const struct moment *moment, cons
 {
     bool in_one_row = moment->frame != FRAME_NONE;
     int64_t each = (int64_t)strlen(components);
-    char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
+    SCRATCH char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
     if (in_one_row) {
         run_append_row(run, name_of_frames, moment->time, values, rows * each, attributes);
         free(values);
     } else {
         run_put(run, name, rows, each, attributes, values);
     }
-    free(attributes);
 }
 
 void run_put_forces(struct run *run, const struct moment *moment)

@@ -64,10 +64,10 @@ static bool hold_each_other(struct bodies *bodies, const struct contact *contact
 static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
                                  struct error *error)
 {
-    enum status status;
-    bool *there = NULL, more = true;
+    SCRATCH bool *there = NULL;
+    bool more = true;
     int all = system->dim == 2 ? 3 : 6;
-    TRY(NEW_ARRAY(&there, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&there, bodies->count, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         if (system->contacts[c].between == NULL) {
             mark_bodies(bodies, &system->contact_points[c], bodies->touches);
@@ -83,9 +83,7 @@ static enum status find_touching(const struct solid_system *system, struct bodie
             more = (contact->between != NULL && hold_each_other(bodies, contact, there)) || more;
         }
     }
-done:
-    free(there);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
@@ -155,24 +153,21 @@ static void moves_text(int dim, double size, const struct rigid_modes *moves, ch
 static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
                              char text[256], struct error *error)
 {
-    enum status status = STATUS_OK;
     char place[96];
-    struct cell_regions regions = {0};
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
-        TRY(stream_regions(model->stream, &model->assembly.cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(model->stream, &model->assembly.cells, &regions, error));
         point_text(model->assembly.cells.dim, bodies->moves[b].centre, place);
         snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
                  regions.names.name[regions.of_cell[bodies->cell[b]]], place);
     }
-done:
-    names_free(&regions.names);
-    return status;
+    return STATUS_OK;
 }
 
 void run_check_rigid_modes(struct run *run)
 {
-    struct bodies bodies;
+    FREED_BY(bodies_free) struct bodies bodies = {0};
     const struct model *model = run->model;
     TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
@@ -192,5 +187,4 @@ void run_check_rigid_modes(struct run *run)
             tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
         }
     }
-    bodies_free(&bodies);
 }

@@ -26,9 +26,9 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {
-    struct names names;
+    FREED_BY(names_free) struct names names = {0};
     const struct section *cell, *region;
-    bool *wanted;
+    SCRATCH bool *wanted = NULL;
     int64_t kept = 0;
     TOOL_TRY(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error));
     TOOL_TRY(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error));
@@ -56,8 +56,6 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
         }
     }
     rows->count = kept;
-    free(wanted);
-    names_free(&names);
 }
 
 void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,

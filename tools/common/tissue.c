@@ -18,45 +18,36 @@ static enum status check_moduli(const double moduli[2], const char *where, struc
 
 enum status tissue_read(const char *path, struct tissue *tissue, struct error *error)
 {
-    enum status status = STATUS_OK;
     struct table *law = &tissue->law;
     *tissue = (struct tissue){0};
-    TRY(table_read(path, 3, 3, law, error));
+    RETURN_IF_ERROR(table_read(path, 3, 3, law, error));
     for (int64_t r = 0; r < law->rows; r++) {
         char where[32];
         snprintf(where, sizeof where, "line %lld", (long long)law->line[r]);
-        status = check_moduli(law->values + 3 * r + 1, where, error);
+        enum status status = check_moduli(law->values + 3 * r + 1, where, error);
         if (status == STATUS_OK && r > 0 && !(law->values[3 * r] > law->values[3 * (r - 1)])) {
             status =
                 fail(error, STATUS_INPUT, "%s: the values of the image (first column) must ascend", where);
         }
-        TRY(fail_in(error, status, "%s", path));
+        RETURN_IF_ERROR(fail_in(error, status, "%s", path));
     }
-done:
-    if (status != STATUS_OK) {
-        tissue_free(tissue);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 enum status tissue_parse(int count, const char *const text[], struct tissue *tissue, struct error *error)
 {
-    enum status status = STATUS_OK;
     *tissue = (struct tissue){.count = count};
-    TRY(NEW_ARRAY(&tissue->moduli, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&tissue->moduli, count, error));
     for (int i = 0; i < count; i++) {
         int numbers;
-        TRY(parse_double_list(text[i], "--tissue", -DBL_MAX, DBL_MAX, 2, tissue->moduli[i], &numbers, error));
+        RETURN_IF_ERROR(
+            parse_double_list(text[i], "--tissue", -DBL_MAX, DBL_MAX, 2, tissue->moduli[i], &numbers, error));
         if (numbers != 2) {
-            TRY(fail(error, STATUS_INPUT, "--tissue %s: two numbers, E (Pa) and nu", text[i]));
+            return fail(error, STATUS_INPUT, "--tissue %s: two numbers, E (Pa) and nu", text[i]);
         }
-        TRY(check_moduli(tissue->moduli[i], "--tissue", error));
+        RETURN_IF_ERROR(check_moduli(tissue->moduli[i], "--tissue", error));
     }
-done:
-    if (status != STATUS_OK) {
-        tissue_free(tissue);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 /* Linear between the rows. */

@@ -332,13 +332,12 @@ void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
 static int open_part(const char *output)
 {
     struct stat present;
-    char *name;
+    SCRATCH char *name = NULL;
     if ((stat(output, &present) == 0 && !S_ISREG(present.st_mode)) ||
         asprintf(&name, "%s.part", output) < 0) {
         return -1;
     }
     int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    free(name);
     return descriptor;
 }
 
