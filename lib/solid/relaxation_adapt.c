@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
-static const double steps_per_spacing = 12.0, steps_per_size = 400.0;
+static const double steps_per_spacing = 20.0, steps_per_size = 400.0;
 static const int64_t least_ramp = 100;
 /* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
