@@ -122,7 +122,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     r->report->force_evaluations += r->preconditioner.size + 1;
     enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
-    (void)preconditioner_follow(&r->preconditioner, r->system, true);
+    (void)preconditioner_follow(&r->preconditioner, r->system, true, r->velocity, r->scratch);
     relaxation_note_new_mass(r);
     RETURN_IF_ERROR(status);
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {

@@ -3,6 +3,7 @@
 #ifndef TESTS_FUZZ_H
 #define TESTS_FUZZ_H
 
+#include "base/memory.h"
 #include "base/status.h"
 
 #include <stdbool.h>
