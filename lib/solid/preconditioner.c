@@ -14,9 +14,6 @@ static const int64_t nodes_per_coarse_field = 8;
  * there are up to 16 centres in two dimensions and 8 in three. */
 static const int64_t most_freedoms = 96;
 
-/* Kinetic energy along the coarse fields before and after an impact, from which on it is one. */
-static const double least_loss = 2.0;
-
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
@@ -90,7 +87,6 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->momentum, 2 * p->size, error));
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -105,7 +101,7 @@ void preconditioner_free(struct preconditioner *p)
     constraint_rows_free(&p->factor_rows);
     FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
              p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
-             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->momentum);
+             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount);
     *p = (struct preconditioner){0};
 }
 
@@ -281,41 +277,6 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
         }
     }
     return sum;
-}
-
-/* A move y that M^-1 made is y = P (B f + Z a), and a = (A + Z^T B^-1 P Z)^-1 Z^T B^-1 y: its momentum along
- * the fields is A a. */
-void preconditioner_take_momentum(struct preconditioner *p, const double *velocity)
-{
-    double *momentum = p->momentum, *amount = p->momentum + p->size;
-    const double *x = velocity, *y = velocity;
-    take_moves(p, &x, &y);
-    restrict_move(p, x, momentum);
-    multiply(p->size, p->capacitance_inverse, momentum, amount);
-    multiply(p->size, p->free_weight, amount, p->amount);
-    for (int64_t k = 0; k < p->size; k++) {
-        momentum[k] -= p->amount[k];
-    }
-}
-
-void preconditioner_give_momentum(struct preconditioner *p, double *velocity, double *scratch)
-{
-    double *amount = p->momentum + p->size, before = 0.0, after = 0.0;
-    multiply(p->size, p->inverse, p->momentum, p->amount);
-    for (int64_t k = 0; k < p->size; k++) {
-        before += amount[k] * p->momentum[k];
-        after += p->amount[k] * p->momentum[k];
-        p->amount[k] -= amount[k];
-    }
-    if (!(after > 0.0) || before < least_loss * after) {
-        return;
-    }
-    memset(scratch, 0, (size_t)(p->node_count * p->dim) * sizeof *scratch);
-    coarse_space_prolongate(&p->coarse, p->amount, scratch);
-    constraint_project(&p->constraint, NULL, scratch);
-    for (int64_t i = 0; i < p->node_count * p->dim; i++) {
-        velocity[i] += scratch[i];
-    }
 }
 
 enum status preconditioner_state(struct preconditioner *p, const struct state *state, struct error *error)

@@ -61,7 +61,6 @@ struct preconditioner {
     double *inverse;             /* A^-1 */
     double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
     double *amount;              /* 2 * size: scratch */
-    double *momentum;            /* 2 * size: scratch of preconditioner_follow */
 };
 
 /* Memory, coarse fields and inverse factor for a system; `coarse` false: none of both, M = D. */
@@ -90,12 +89,9 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
 /* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
- * that are no longer near are left out when `leave`. True when M has changed. Where so many nodes
- * are counted in at once that it is an impact, `velocity` keeps its momentum along the coarse fields and not
- * its value: a body that arrives with the mass of a free one would otherwise go on with that of one that is
- * held, deep into what it meets, and come back with more energy than it had. scratch: node_count * dim. */
+ * that are no longer near are left out when `leave`. True when M has changed. */
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
-                           bool leave, double *velocity, double *scratch);
+                           bool leave);
 
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);

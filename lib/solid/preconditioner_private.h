@@ -16,11 +16,6 @@ void preconditioner_add_row(const struct preconditioner *preconditioner, const s
 /* sum of D */
 double preconditioner_sum_of_mass(const struct preconditioner *preconditioner);
 
-/* The momentum of a move along the coarse fields, kept until they have other masses; and that momentum given
- * back to it. scratch: node_count * dim. */
-void preconditioner_take_momentum(struct preconditioner *preconditioner, const double *velocity);
-void preconditioner_give_momentum(struct preconditioner *preconditioner, double *velocity, double *scratch);
-
 /* The inverses, from what body, contacts and mass are. */
 void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
 

@@ -296,16 +296,13 @@ static bool follow_node(struct preconditioner *p, const struct contact *contact,
     return true;
 }
 
-bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave,
-                           double *velocity, double *scratch)
+bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave)
 {
-    bool changed = false, joined = false;
+    bool changed = false;
     int64_t at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++, at++) {
-            bool was_active = p->active[at];
-            changed = follow_node(p, &system->contacts[c], a, at, leave) || changed;
-            joined = joined || (p->active[at] && !was_active);
+        for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++) {
+            changed = follow_node(p, &system->contacts[c], a, at++, leave) || changed;
         }
     }
     for (int64_t c = 0; c < system->contact_count && changed; c++) {
@@ -314,12 +311,6 @@ bool preconditioner_follow(struct preconditioner *p, const struct solid_system *
     if (!changed || p->size == 0) {
         return false;
     }
-    if (!joined) {
-        preconditioner_invert(p, system);
-        return true;
-    }
-    preconditioner_take_momentum(p, velocity);
     preconditioner_invert(p, system);
-    preconditioner_give_momentum(p, velocity, scratch);
     return true;
 }

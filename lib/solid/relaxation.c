@@ -80,7 +80,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     memcpy(r->before, u, (size_t)r->size * sizeof *u);
-    if (preconditioner_follow(&r->preconditioner, system, measure, r->velocity, r->scratch)) {
+    if (preconditioner_follow(&r->preconditioner, system, measure)) {
         relaxation_note_new_mass(r);
     }
     preconditioner_apply(&r->preconditioner, r->residual, r->scratch);

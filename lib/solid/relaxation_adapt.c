@@ -8,6 +8,7 @@
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
 static const double steps_per_spacing = 20.0, steps_per_size = 400.0;
+static const double steps_in_contact = 50.0; /* for a spacing, of bodies with contacts */
 static const int64_t least_ramp = 100;
 /* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
@@ -43,7 +44,8 @@ double relaxation_thickness(const struct solid_system *system)
 int64_t relaxation_choose_ramp(const struct relaxation *r)
 {
     double largest = system_longest_way(r->system);
-    double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
+    double for_spacing = r->system->contact_count > 0 ? steps_in_contact : steps_per_spacing;
+    double steps = fmax(for_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
 }
@@ -122,7 +124,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     r->report->force_evaluations += r->preconditioner.size + 1;
     enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
-    (void)preconditioner_follow(&r->preconditioner, r->system, true, r->velocity, r->scratch);
+    (void)preconditioner_follow(&r->preconditioner, r->system, true);
     relaxation_note_new_mass(r);
     RETURN_IF_ERROR(status);
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {

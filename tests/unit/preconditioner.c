@@ -171,8 +171,7 @@ TEST(bulk_modulus_is_limited)
 }
 
 /* Pressed against a plate, contact nodes are counted in at once: the largest frequency stays what it was,
- * where otherwise a stiff contact would move a body that weighs nothing. What moves as one with the mass of a
- * free body keeps its momentum: with its velocity it would have far more energy. */
+ * where otherwise a stiff contact would move a body that weighs nothing. */
 TEST(contacts_are_followed)
 {
     struct strained s;
@@ -189,16 +188,11 @@ TEST(contacts_are_followed)
     s.l.system.contacts = &contact;
     s.l.system.contact_count = 1;
     measure(&s, true);
-    double alone[2], energy[3]; /* before, of the velocity that was, after */
-    double *velocity = lattice_vector(&s.l), *was = lattice_vector(&s.l), *spare = lattice_vector(&s.l);
-    for (int64_t i = 1; i < s.size; i += 2) {
-        velocity[i] = was[i] = 1.0;
-    }
-    energy[0] = preconditioner_product(&s.preconditioner, was, was);
+    double alone[2];
     for (int followed = 0; followed < 2; followed++) {
         if (followed) {
-            assert_true(preconditioner_follow(&s.preconditioner, &s.l.system, false, velocity, spare));
-            assert_false(preconditioner_follow(&s.preconditioner, &s.l.system, false, velocity, spare));
+            assert_true(preconditioner_follow(&s.preconditioner, &s.l.system, false));
+            assert_false(preconditioner_follow(&s.preconditioner, &s.l.system, false));
         }
         double *mode = lattice_vector(&s.l), *scratch;
         scratch = zeros(2 * s.size, sizeof *scratch);
@@ -208,12 +202,6 @@ TEST(contacts_are_followed)
     print_message("largest frequency with contacts left out %g, followed %g\n", alone[0], alone[1]);
     AT_MOST(3.0 * alone[1], alone[0]);
     AT_MOST(alone[1], 2.0);
-    energy[1] = preconditioner_product(&s.preconditioner, was, was);
-    energy[2] = preconditioner_product(&s.preconditioner, velocity, velocity);
-    print_message("energy %g; with the velocity that was %g, with its momentum %g\n", energy[0], energy[1],
-                  energy[2]);
-    AT_MOST(10.0 * energy[0], energy[1]);
-    AT_MOST(energy[2], energy[0]);
     s.l.system.contacts = NULL;
     s.l.system.contact_count = 0;
     contact_free(&contact);
