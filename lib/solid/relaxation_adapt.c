@@ -7,8 +7,7 @@
 #include <string.h>
 
 /* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
-static const double steps_per_spacing = 20.0, steps_per_size = 400.0;
-static const double steps_in_contact = 50.0; /* for a spacing, of bodies with contacts */
+static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
 static const int64_t least_ramp = 100;
 /* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
@@ -44,8 +43,7 @@ double relaxation_thickness(const struct solid_system *system)
 int64_t relaxation_choose_ramp(const struct relaxation *r)
 {
     double largest = system_longest_way(r->system);
-    double for_spacing = r->system->contact_count > 0 ? steps_in_contact : steps_per_spacing;
-    double steps = fmax(for_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
+    double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
     steps = fmax(steps, (double)least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
 }

@@ -109,10 +109,9 @@ double relaxation_body_size(const struct solid_system *system);
 double relaxation_thickness(const struct solid_system *system);
 
 /* Steps to apply the load in: slow enough that the whole is strained by less than half a percent a step, so
- * that what follows the state can do so, and cells beside what moves by a tenth at most before the front of the
+ * that what follows the state can do so, and cells beside what moves by a few percent at most before the front of the
  * load, which passes about a cell in a step, takes the next ones along. Where that is too fast for a cell it
- * is inverted, and the load goes on slower (relaxation_step_back). Contacts are given more steps: which of
- * their points close depends on the way. */
+ * is inverted, and the load goes on slower (relaxation_step_back). */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
 
 /* Let the load go on only as fast as the body can follow: forces may move it as far as prescribed

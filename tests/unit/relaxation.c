@@ -334,20 +334,6 @@ TEST(ramp_does_not_matter)
     }
 }
 
-/* A finer cloud does not need more steps while the load grows. */
-TEST(ramp_does_not_follow_the_spacing)
-{
-    for (int64_t n = 9; n <= 33; n += 24) {
-        struct lattice l;
-        clamp(&l, n, -0.01, 0.0, true);
-        struct relaxation_options options = to(1e-4);
-        struct relaxation_report report = relax(&l, &options, lattice_vector(&l), NULL);
-        assert_int_equal(report.outcome, RELAXATION_CONVERGED);
-        assert_int_equal(report.ramp_steps, 100);
-        lattice_free(&l);
-    }
-}
-
 /* A load on in ten steps inverts a cell. From the state kept before, it goes on at half its rate at once. */
 TEST(load_goes_on_after_an_inversion)
 {
