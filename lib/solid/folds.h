@@ -26,13 +26,13 @@
 
 enum fold_kind {
     FOLD_NONE,
+    FOLD_REVERSED, /* a facet that slides on its plane shows its back there: the body went through the plane
+                    */
     FOLD_CELL,   /* a cell is turned over: a node is beyond the opposite side by a tenth of the cell's size */
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_REVERSED, /* a facet that slides on its plane shows its back there: the body went through the plane
-                    */
     FOLD_FLAT, /* cells are inverted, but by less than that; slivers invert within the error of the field */
     FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
     FOLD_CLOSED   /* a side has creased: facets that meet there face each other */

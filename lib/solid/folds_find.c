@@ -17,10 +17,11 @@ static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1
 
 /* See folds_find_beyond, are_deep. */
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
-static const double turned_share = 0.1;                     /* see is_turned_over */
-static const double open_turn = 1.047, closed_turn = 2.094; /* see folds_find_closed: 60 and 120 degrees */
-static const double held_share = 0.5;                       /* see are_deep; contact_most_depth */
-static const double reversed = -0.5; /* cosine between the normals of a facet now and at rest: 120 degrees */
+static const double turned_share = 0.1; /* see is_turned_over */
+static const double held_share = 0.5;   /* see are_deep; contact_most_depth */
+/* Cosines of 120 and 60 degrees between the normals of a facet now and at rest, or of two that meet: beyond
+ * the first they face opposite ways, before the second much the same. */
+static const double reversed = -0.5, alike = 0.5;
 
 static const double *at(const struct folds *folds, int32_t node)
 {
@@ -340,6 +341,11 @@ static struct fold look_at_boxes(const struct folds *folds, int64_t begin, int64
     return fold;
 }
 
+static double cosine_between(int dim, const double *one, const double *other)
+{
+    return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
+}
+
 /* Sliding facets that show their backs. */
 static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
@@ -349,10 +355,12 @@ static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int
     (void)stopped;
     for (int64_t f = begin; f < end; f++) {
         double now[3], rest[3];
+        if (!input->slides[f]) {
+            continue;
+        }
         fold_area_vector(dim, folds->y, input->facet + f * dim, now);
         fold_area_vector(dim, input->x, input->facet + f * dim, rest);
-        double size = vector_length(dim, now) * vector_length(dim, rest);
-        if (input->slides[f] && vector_dot(dim, now, rest) < reversed * size && fold.count++ == 0) {
+        if (cosine_between(dim, now, rest) < reversed && fold.count++ == 0) {
             name_facets(folds, f, -1, &fold);
         }
     }
@@ -405,6 +413,12 @@ void folds_take_positions(struct folds *folds, const double *u)
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
     folds_take_positions(folds, u);
+    if (folds->input.slides != NULL) {
+        struct fold sliding = look(folds, folds->input.facet_count, look_at_sliding, stopped);
+        if (sliding.kind != FOLD_NONE) {
+            return sliding;
+        }
+    }
     struct fold cells = look(folds, folds->input.cell_count, look_at_cells, stopped);
     if (cells.kind == FOLD_CELL) {
         return cells;
@@ -416,9 +430,6 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }
-    }
-    if (fold.kind == FOLD_NONE && folds->input.slides != NULL) {
-        fold = look(folds, folds->input.facet_count, look_at_sliding, stopped);
     }
     return fold.kind != FOLD_NONE ? fold : cells;
 }
@@ -440,14 +451,12 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
     return fold;
 }
 
-/* The angle between the normals of two facets. */
-static double turn_between(const struct fold_input *input, const double *y, int64_t f, int64_t g)
+static double cosine_of_normals(const struct fold_input *input, const double *y, int64_t f, int64_t g)
 {
     double one[3], other[3];
-    int dim = input->dim;
-    fold_area_vector(dim, y, input->facet + f * dim, one);
-    fold_area_vector(dim, y, input->facet + g * dim, other);
-    return acos(vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other)));
+    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
+    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
+    return cosine_between(input->dim, one, other);
 }
 
 struct fold folds_find_closed(struct folds *folds, const double *u)
@@ -456,8 +465,8 @@ struct fold folds_find_closed(struct folds *folds, const double *u)
     folds_take_positions(folds, u);
     for (int64_t i = 0; i < folds->ring_count; i++) {
         int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
-        if (g >= 0 && turn_between(&folds->input, folds->y, f, g) > closed_turn &&
-            turn_between(&folds->input, folds->input.x, f, g) < open_turn && fold.count++ == 0) {
+        if (g >= 0 && cosine_of_normals(&folds->input, folds->y, f, g) < reversed &&
+            cosine_of_normals(&folds->input, folds->input.x, f, g) > alike && fold.count++ == 0) {
             name_facets(folds, f, g, &fold);
         }
     }

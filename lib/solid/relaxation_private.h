@@ -31,7 +31,7 @@ struct relaxation {
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
     double *mode;
-    double *scratch;                    /* 4 * size */
+    double *scratch;                /* 4 * size */
     double *last_u, *last_residual; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
@@ -49,10 +49,10 @@ struct relaxation {
     bool unstable;                            /* it grew far above that in the last step */
     int64_t calmed_step;                      /* the last step at which that was mended */
     int64_t back_step;                        /* the last step that went back to a kept state */
-    int64_t augmented_step;       /* when multipliers took over last */
-    int64_t augmentations;        /* of contacts at the load that is held */
-    int64_t steady_augmentations; /* of pressures, all under the load that is held */
-    double pressures_lack;        /* part of the nodal pressures that is still to come; see body_augment */
+    int64_t augmented_step;                   /* when multipliers took over last */
+    int64_t augmentations;                    /* of contacts at the load that is held */
+    int64_t steady_augmentations;             /* of pressures, all under the load that is held */
+    double pressures_lack; /* part of the nodal pressures that is still to come; see body_augment */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
     double top_rate;             /* 1 until an inversion */
@@ -109,9 +109,9 @@ double relaxation_body_size(const struct solid_system *system);
 double relaxation_thickness(const struct solid_system *system);
 
 /* Steps to apply the load in: slow enough that the whole is strained by less than half a percent a step, so
- * that what follows the state can do so, and cells beside what moves by a few percent at most before the front of the
- * load, which passes about a cell in a step, takes the next ones along. Where that is too fast for a cell it
- * is inverted, and the load goes on slower (relaxation_step_back). */
+ * that what follows the state can do so, and cells beside what moves by a few percent at most before the
+ * front of the load, which passes about a cell in a step, takes the next ones along. Where that is too fast
+ * for a cell it is inverted, and the load goes on slower (relaxation_step_back). */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
 
 /* Let the load go on only as fast as the body can follow: forces may move it as far as prescribed

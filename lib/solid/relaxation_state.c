@@ -28,8 +28,7 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
 void relaxation_release(struct relaxation *r)
 {
     FREE_ALL(r->velocity, r->residual, r->before, r->factor_change, r->mode, r->scratch, r->last_u,
-             r->last_residual, r->acceleration, r->newer.u, r->older.u, r->check_now.u,
-             r->check_before.u);
+             r->last_residual, r->acceleration, r->newer.u, r->older.u, r->check_now.u, r->check_before.u);
     preconditioner_free(&r->preconditioner);
 }
 
