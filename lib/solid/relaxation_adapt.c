@@ -52,6 +52,7 @@ void relaxation_control_load(struct relaxation *r)
 {
     double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
            factor = fmax(0.3, allowed / r->moved);
+    r->top_rate = fmin(1.0, 1.05 * r->top_rate);
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
