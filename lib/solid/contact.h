@@ -138,8 +138,9 @@ void contact_accept(struct contact *contact);
  *     lambda_a <- lambda_a + sum_p N_a A_p (t_p - held_p) / k_p / sum_p N_a A_p / k_p,
  *
  * or 0 where its component along the mean normal would be tension. Where the surface is flat and all points
- * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap. */
-void contact_augment(struct contact *contact);
+ * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap. Each goes `share` of the
+ * way, in (0, 1]. */
+void contact_augment(struct contact *contact, double share);
 
 /* The tractions held at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);

@@ -112,12 +112,15 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     return sqrt(change2) * compliance;
 }
 
-void contact_augment(struct contact *contact)
+void contact_augment(struct contact *contact, double share)
 {
     double next[3];
     for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
         (void)augmented(contact, a, next);
-        memcpy(contact->multiplier + a * contact->dim, next, (size_t)contact->dim * sizeof *next);
+        double *multiplier = contact->multiplier + a * contact->dim;
+        for (int c = 0; c < contact->dim; c++) {
+            multiplier[c] = share == 1.0 ? next[c] : multiplier[c] + share * (next[c] - multiplier[c]);
+        }
     }
     contact_spread_multipliers(contact);
 }

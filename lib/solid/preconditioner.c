@@ -87,6 +87,9 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -101,7 +104,8 @@ void preconditioner_free(struct preconditioner *p)
     constraint_rows_free(&p->factor_rows);
     FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
              p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
-             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount);
+             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->contacts, p->impact,
+             p->pushed);
     *p = (struct preconditioner){0};
 }
 
@@ -140,6 +144,28 @@ void preconditioner_smooth(struct preconditioner *p, const double *force, double
     inverse_factor_apply_transposed(inverse, p->dim, on_inverse, result);
 }
 
+/* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
+ */
+static void release_rows(const struct preconditioner *p, const double *values, double *amount)
+{
+    const struct constraint_rows *rows = p->constraint.rows;
+    const struct ranks *ranks = p->factor.ranks;
+    const int64_t *first = p->column_first + ranks_rank(ranks);
+    int64_t columns = first[1] - first[0];
+    struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
+        for (int64_t r = 0; r < rows->count; r++) {
+            const double *held = p->held + r * p->size;
+            for (int64_t k = begin; k < end && values[r] != 0.0; k++) {
+                amount[k] -= held[k] * values[r];
+            }
+        }
+    }
+    ranks_gather(ranks, amount, sizeof *amount, p->column_first);
+}
+
 void preconditioner_restrict_force(struct preconditioner *p, const double *force, double *acceleration,
                                    double *amount)
 {
@@ -153,21 +179,7 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
         return;
     }
     constraint_values(&p->constraint, acceleration, seen);
-    const struct ranks *ranks = p->factor.ranks;
-    const int64_t *first = p->column_first + ranks_rank(ranks);
-    int64_t columns = first[1] - first[0];
-    struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
-        for (int64_t r = 0; r < rows->count; r++) {
-            const double *held = p->held + r * p->size;
-            for (int64_t k = begin; k < end && seen[r] != 0.0; k++) {
-                amount[k] -= held[k] * seen[r];
-            }
-        }
-    }
-    ranks_gather(ranks, amount, sizeof *amount, p->column_first);
+    release_rows(p, seen, amount);
 }
 
 void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
@@ -277,6 +289,30 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
         }
     }
     return sum;
+}
+
+void preconditioner_momentum(struct preconditioner *p, const double *velocity, double *amount,
+                             double *momentum)
+{
+    const double *x = velocity, *y = velocity;
+    take_moves(p, &x, &y);
+    restrict_move(p, x, momentum);
+    if (p->constraint.rows != NULL) {
+        constraint_values(&p->constraint, velocity, p->constraint.multiplier);
+        release_rows(p, p->constraint.multiplier, momentum);
+    }
+    multiply(p->size, p->capacitance_inverse, momentum, amount);
+    multiply(p->size, p->free_weight, amount, p->amount);
+    for (int64_t k = 0; k < p->size; k++) {
+        momentum[k] -= p->amount[k];
+    }
+}
+
+void preconditioner_prolongate(struct preconditioner *p, const double *amount, double *field)
+{
+    memset(field, 0, (size_t)(p->node_count * p->dim) * sizeof *field);
+    coarse_space_prolongate(&p->coarse, amount, field);
+    constraint_project(&p->constraint, NULL, field);
 }
 
 enum status preconditioner_state(struct preconditioner *p, const struct state *state, struct error *error)

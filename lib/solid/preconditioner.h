@@ -58,6 +58,9 @@ struct preconditioner {
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
     double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
+    double *contacts;            /* stiffness along the coarse fields of the contact nodes that A counts in */
+    bool *pushed;                /* contact_node_count: those that A counts in anew; scratch */
+    double *impact;              /* size * size + 2 * size: scratch */
     double *inverse;             /* A^-1 */
     double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
     double *amount;              /* 2 * size: scratch */
@@ -89,9 +92,14 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
 /* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
- * that are no longer near are left out when `leave`. True when M has changed. */
+ * that are no longer near are left out when `leave`. True when M has changed.
+ *
+ * Where nodes are counted in, `velocity` keeps its momentum along the coarse fields, as in a plastic impact;
+ * where they are left out it keeps its value. So the kinetic energy does not rise: a body that arrived with
+ * the mass of a free one and kept its velocity would go on with the mass of one that is held, which may be
+ * hundreds of times as large. NULL: a body at rest. field[node_count * dim]: scratch, or NULL with it. */
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
-                           bool leave);
+                           bool leave, double *velocity, double *field);
 
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);

@@ -54,7 +54,7 @@ static void augment(struct relaxation *r)
             body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
     }
     if (contacts) {
-        system_augment_contacts(r->system);
+        system_augment_contacts(r->system, relaxation_augmentation_share(r));
         r->augmentations += r->at_full_load > 0;
     }
     if (pressures || contacts) {
@@ -76,12 +76,12 @@ static bool step(struct relaxation *r, double *u, bool measure)
         return false;
     }
     system_accept(system);
-    if (measure) {
-        memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
-    }
     memcpy(r->before, u, (size_t)r->size * sizeof *u);
-    if (preconditioner_follow(&r->preconditioner, system, measure)) {
+    if (preconditioner_follow(&r->preconditioner, system, measure, r->velocity, r->scratch)) {
         relaxation_note_new_mass(r);
+    }
+    if (measure) { /* an impact is no acceleration */
+        memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     preconditioner_apply(&r->preconditioner, r->residual, r->scratch);
     r->unstable = residual_grows(r);
@@ -179,6 +179,7 @@ static void let_go(struct relaxation *r)
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
     r->augmentations = 0;
+    r->augmented_miss = INFINITY;
     r->steady_augmentations = 0;
 }
 
@@ -371,6 +372,8 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .step_safety = 1.0,
+                           .augmentation_share = 1.0,
+                           .augmented_miss = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, bulk_limit);

@@ -16,6 +16,8 @@ static const double most_moved = 1.4, most_raised = 1.25;
 /* The load waits when something moves by more than this part of the body's size in a step, a little more than
  * a ramp makes. */
 static const double most_move_per_step = 1.0 / 320.0;
+/* Factor in a check by which a load that was slowed by an inversion goes on faster. */
+static const double recovery = 1.05;
 /* Lowest eigenvalue by what so few iterations find, which is up to some seven times as much. */
 static const double first_low2 = 0.15;
 static const double least_low2 =
@@ -28,6 +30,7 @@ static const double most_mass_checks = 5.0; /* between checks of the mass */
 /* What contacts may penetrate at an equilibrium, by the largest motion; and augmentations until they do. */
 static const double penetration_share = 1e-3;
 static const int64_t most_augmentations = 100;
+static const double least_augmentation = 1.0 / 16.0; /* part of an augmentation that is made at least */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -52,7 +55,7 @@ void relaxation_control_load(struct relaxation *r)
 {
     double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
            factor = fmax(0.3, allowed / r->moved);
-    r->top_rate = fmin(1.0, 1.05 * r->top_rate);
+    r->top_rate = fmin(1.0, recovery * r->top_rate);
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
@@ -123,7 +126,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     r->report->force_evaluations += r->preconditioner.size + 1;
     enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
-    (void)preconditioner_follow(&r->preconditioner, r->system, true);
+    (void)preconditioner_follow(&r->preconditioner, r->system, true, NULL, NULL);
     relaxation_note_new_mass(r);
     RETURN_IF_ERROR(status);
     if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
@@ -227,6 +230,18 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     (void)system_residual(r->system, r->residual_at, r->residual);
     r->report->force_evaluations++;
     relaxation_update_time_step(r, r->residual_at, calm_iterations);
+}
+
+double relaxation_augmentation_share(struct relaxation *r)
+{
+    double miss = system_contact_miss(r->system);
+    if (r->at_full_load == 0) {
+        r->augmentation_share = 1.0;
+    } else if (miss >= r->augmented_miss) {
+        r->augmentation_share = fmax(0.5 * r->augmentation_share, least_augmentation);
+    }
+    r->augmented_miss = r->at_full_load == 0 ? INFINITY : miss;
+    return r->augmentation_share;
 }
 
 static double penetration_allowed(const struct relaxation *r)

@@ -52,6 +52,8 @@ struct relaxation {
     int64_t augmented_step;                   /* when multipliers took over last */
     int64_t augmentations;                    /* of contacts at the load that is held */
     int64_t steady_augmentations;             /* of pressures, all under the load that is held */
+    double augmentation_share;                /* see relaxation_augmentation_share */
+    double augmented_miss; /* of contacts at the last augmentation, INFINITY: none yet, m */
     double pressures_lack; /* part of the nodal pressures that is still to come; see body_augment */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
@@ -148,6 +150,11 @@ bool relaxation_step_back(struct relaxation *r, struct error *error);
 /* Whether multipliers of contacts have to follow: always while the load grows, as left to the end they would
  * change at once; at the load that is held where contacts penetrate more than they may. */
 bool relaxation_contacts_lack(const struct relaxation *r);
+
+/* The part of the way to their new values that multipliers of contacts go in the next augmentation: all of
+ * it, but half as much each time that the last one did not bring them nearer while the load was held. A body
+ * near an instability would else go to and fro between two states. */
+double relaxation_augmentation_share(struct relaxation *r);
 
 /* Whether a converged state may stand; notes what contacts penetrate. */
 bool relaxation_contacts_hold(struct relaxation *r);

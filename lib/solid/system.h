@@ -117,7 +117,7 @@ void system_accept(struct solid_system *system);
 void system_free_contacts(struct solid_system *system);
 
 /* contact_augment, and the largest contact_miss, of all contacts. */
-void system_augment_contacts(struct solid_system *system);
+void system_augment_contacts(struct solid_system *system, double share);
 
 /* Make penalties stiffer where multipliers demand it (contact_stiffen); whether any became so. */
 bool system_stiffen_contacts(struct solid_system *system);

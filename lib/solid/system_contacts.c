@@ -39,10 +39,10 @@ void system_accept(struct solid_system *system)
     }
 }
 
-void system_augment_contacts(struct solid_system *system)
+void system_augment_contacts(struct solid_system *system, double share)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_augment(&system->contacts[c]);
+        contact_augment(&system->contacts[c], share);
     }
 }
 

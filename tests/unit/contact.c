@@ -91,8 +91,8 @@ TEST(skipping)
                 u[i] += velocity[i];
             }
             if (step % 500 == 499) {
-                contact_augment(&contact);
-                contact_augment(&always);
+                contact_augment(&contact, 1.0);
+                contact_augment(&always, 1.0);
             }
             contact_force(&contact, u, force);
             contact_accept(&contact);
@@ -145,8 +145,8 @@ TEST(evaluations_change_no_state)
             contact_accept(&walks);
             contact_accept(&strays);
             if (step % 50 == 49) {
-                contact_augment(&walks);
-                contact_augment(&strays);
+                contact_augment(&walks, 1.0);
+                contact_augment(&strays, 1.0);
             }
             assert_memory_equal(walks.multiplier, strays.multiplier,
                                 sizeof(double) * (size_t)(CONTACT_NODES * dim));
@@ -187,7 +187,7 @@ TEST(augmentation)
                 }
             }
             deepest = contact_miss(&contact);
-            contact_augment(&contact);
+            contact_augment(&contact, 1.0);
             assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
         }
         AT_MOST(deepest, 1e-9);
@@ -225,7 +225,7 @@ TEST(frictionless)
     /* p = 10; with a multiplier of 10, p = 20. */
     NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 100.0 / 200.0, 1e-12);
     NEAR_TO(contact_miss(&contact), 0.1, 1e-15);
-    contact_augment(&contact);
+    contact_augment(&contact, 1.0);
     contact_force(&contact, u, force);
     NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 300.0 / 200.0, 1e-12);
 }

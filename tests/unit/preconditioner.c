@@ -170,43 +170,93 @@ TEST(bulk_modulus_is_limited)
     }
 }
 
+/* A strained bar against a plate that it has just met: the contact nodes are not counted in yet. */
+struct pressed {
+    struct strained s;
+    struct boundary_averages averages;
+    struct contact contact;
+};
+
+static void press_bar(struct pressed *p, bool clamped)
+{
+    struct error error;
+    struct rigid_surface plate;
+    const double corners[4] = {-1.0, 0.1, 2.0, 0.1}; /* the body is below: on the right of it */
+    struct strained *s = &p->s;
+    strain_bar(s, 2, -0.05, clamped, true);
+    preconditioner_free(&s->preconditioner);
+    p->averages = lattice_averages(&s->l, 1u << 3);
+    GOOD(rigid_build(2, 1, corners, false, &plate, &error));
+    GOOD(contact_build(&p->averages, NULL, s->l.system.X, 2, &plate, 1e6, &p->contact, &error));
+    s->l.system.contacts = &p->contact;
+    s->l.system.contact_count = 1;
+    measure(s, true);
+}
+
+static void release_pressed(struct pressed *p)
+{
+    p->s.l.system.contacts = NULL;
+    p->s.l.system.contact_count = 0;
+    contact_free(&p->contact);
+    boundary_averages_free(&p->averages);
+    release(&p->s);
+}
+
 /* Pressed against a plate, contact nodes are counted in at once: the largest frequency stays what it was,
  * where otherwise a stiff contact would move a body that weighs nothing. */
 TEST(contacts_are_followed)
 {
-    struct strained s;
-    struct error error;
-    struct rigid_surface plate;
-    const double corners[4] = {-1.0, 0.1, 2.0, 0.1}; /* the body is below: on the right of it */
-    strain_bar(&s, 2, -0.05, false, true);
-    assert_true(s.preconditioner.has_rigid_mode);
-    preconditioner_free(&s.preconditioner);
-    struct boundary_averages averages = lattice_averages(&s.l, 1u << 3);
-    struct contact contact;
-    GOOD(rigid_build(2, 1, corners, false, &plate, &error));
-    GOOD(contact_build(&averages, NULL, s.l.system.X, 2, &plate, 1e6, &contact, &error));
-    s.l.system.contacts = &contact;
-    s.l.system.contact_count = 1;
-    measure(&s, true);
+    struct pressed p;
+    struct strained *s = &p.s;
+    press_bar(&p, false);
+    assert_true(s->preconditioner.has_rigid_mode);
     double alone[2];
     for (int followed = 0; followed < 2; followed++) {
         if (followed) {
-            assert_true(preconditioner_follow(&s.preconditioner, &s.l.system, false));
-            assert_false(preconditioner_follow(&s.preconditioner, &s.l.system, false));
+            assert_true(preconditioner_follow(&s->preconditioner, &s->l.system, false, NULL, NULL));
+            assert_false(preconditioner_follow(&s->preconditioner, &s->l.system, false, NULL, NULL));
         }
-        double *mode = lattice_vector(&s.l), *scratch;
-        scratch = zeros(2 * s.size, sizeof *scratch);
+        double *mode = lattice_vector(&s->l), *scratch;
+        scratch = zeros(2 * s->size, sizeof *scratch);
         alone[followed] =
-            system_largest_frequency(&s.l.system, &s.preconditioner, s.u, s.residual, 60, mode, scratch);
+            system_largest_frequency(&s->l.system, &s->preconditioner, s->u, s->residual, 60, mode, scratch);
     }
     print_message("largest frequency with contacts left out %g, followed %g\n", alone[0], alone[1]);
     AT_MOST(3.0 * alone[1], alone[0]);
     AT_MOST(alone[1], 2.0);
-    s.l.system.contacts = NULL;
-    s.l.system.contact_count = 0;
-    contact_free(&contact);
-    boundary_averages_free(&averages);
-    release(&s);
+    release_pressed(&p);
+}
+
+/* An impact changes no momentum, x . M v for all moves x that the conditions admit, and the kinetic energy
+ * falls. */
+TEST(impacts_keep_momentum)
+{
+    enum { MOVES = 5 };
+    for (int clamped = 0; clamped < 2; clamped++) {
+        struct pressed p;
+        struct random random = {11};
+        press_bar(&p, clamped);
+        struct preconditioner *preconditioner = &p.s.preconditioner;
+        double *velocity = lattice_vector(&p.s.l), *field = lattice_vector(&p.s.l), *move[MOVES];
+        for (int64_t i = 1; i < p.s.size; i += 2) { /* towards the plate */
+            velocity[i] = 1.0;
+        }
+        constraint_project(&preconditioner->constraint, NULL, velocity);
+        double momentum[MOVES], before = preconditioner_product(preconditioner, velocity, velocity);
+        for (int m = 0; m < MOVES; m++) {
+            move[m] = random_move(&p.s, &random);
+            momentum[m] = preconditioner_product(preconditioner, move[m], velocity);
+        }
+        assert_true(preconditioner_follow(preconditioner, &p.s.l.system, false, velocity, field));
+        double after = preconditioner_product(preconditioner, velocity, velocity);
+        print_message("kinetic energy before the impact %g, after it %g\n", before, after);
+        AT_MOST(after, 0.7 * before);
+        for (int m = 0; m < MOVES; m++) {
+            double now = preconditioner_product(preconditioner, move[m], velocity);
+            AT_MOST(fabs(now - momentum[m]), 1e-8 * before);
+        }
+        release_pressed(&p);
+    }
 }
 
 RUN_TESTS(NULL, NULL)
