@@ -16,8 +16,6 @@ static const double most_moved = 1.4, most_raised = 1.25;
 /* The load waits when something moves by more than this part of the body's size in a step, a little more than
  * a ramp makes. */
 static const double most_move_per_step = 1.0 / 320.0;
-/* Factor in a check by which a load that was slowed by an inversion goes on faster. */
-static const double recovery = 1.05;
 /* Lowest eigenvalue by what so few iterations find, which is up to some seven times as much. */
 static const double first_low2 = 0.15;
 static const double least_low2 =
@@ -55,7 +53,6 @@ void relaxation_control_load(struct relaxation *r)
 {
     double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
            factor = fmax(0.3, allowed / r->moved);
-    r->top_rate = fmin(1.0, recovery * r->top_rate);
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
