@@ -79,8 +79,8 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, s
                           double *weight);
 
 /* Mark the nodes of facets that were opposite a point at the last evaluation, nearer than that share of its
- * width. */
-void contact_between_mark(const struct contact *contact, double share, bool *marked);
+ * width; and as turned those of both facets where these did not face each other at rest. */
+void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned);
 
 /* What the penalties of a contact may add stiffness to, whatever touches: averages, and how much, N/m (2D:
  * N/m2). The points; and corners of opposite facets. */

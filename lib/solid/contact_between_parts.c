@@ -2,6 +2,8 @@
  * parts of its gaps, bounds of its stiffness, the nodes that are near. */
 #include "solid/contact_between.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -37,16 +39,24 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, s
     return true;
 }
 
-void contact_between_mark(const struct contact *contact, double share, bool *marked)
+void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned)
 {
     const struct contact_between *between = contact->between;
+    int dim = contact->dim;
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct opposite *opposite = &between->opposite;
         int64_t facet = between->view[p].facet;
-        for (int k = 0; k < contact->dim && facet >= 0; k++) {
-            if (contact->gap[p] < share * contact_width(contact, p)) {
-                int32_t v = between->opposite.surface.facet[facet * contact->dim + k];
-                marked[between->opposite.rows.node[v]] = true;
-            }
+        if (facet < 0 || !(contact->gap[p] < share * contact_width(contact, p))) {
+            continue;
+        }
+        const double *normal = opposite->rest_normal + facet * dim;
+        bool faced = vector_dot(dim, contact->points->normal + p * dim, normal) < OPPOSED;
+        for (int k = 0; k < dim; k++) {
+            int32_t own = contact->points->node[p - p % between->per_facet + k];
+            int32_t other = opposite->rows.node[opposite->surface.facet[facet * dim + k]];
+            marked[other] = true;
+            turned[other] |= !faced;
+            turned[own] |= !faced;
         }
     }
 }
