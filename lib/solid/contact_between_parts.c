@@ -19,7 +19,7 @@ void contact_between_take(struct contact *contact)
     }
 }
 
-bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
                           double *weight)
 {
     const struct boundary_averages *averages = contact->averages;
@@ -33,10 +33,19 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, s
     int64_t facet = between->taken_facet[p] - 1;
     if (facet >= 0) {
         *weight = averages->sample_share[s] * between->taken_weight[p * 3 + i % dim];
-        *average = average_of_boundary(&between->opposite.rows,
-                                       between->opposite.surface.facet[facet * dim + i % dim]);
+        *corner = between->opposite.surface.facet[facet * dim + i % dim];
     }
     return true;
+}
+
+int64_t contact_between_corners(const struct contact *contact)
+{
+    return contact->between == NULL ? 0 : contact->between->opposite.rows.count;
+}
+
+struct average contact_between_corner(const struct contact *contact, int64_t corner)
+{
+    return average_of_boundary(&contact->between->opposite.rows, corner);
 }
 
 void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned)

@@ -36,9 +36,11 @@ static void judge(struct run *run, const struct relaxation_report *report)
     }
     if (report->outcome == RELAXATION_STALLED) {
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement: a larger "
-                 "tolerance, a finer cloud at the contacts, or supports against rigid motion may help",
-                 scene->path, (long long)report->steps, load, report->error);
+                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s", scene->path,
+                 (long long)report->steps, load, report->error,
+                 run_folds_touch_in_part(run) ? "" /* that remedy is named with the fold */
+                                              : ": a larger tolerance, a finer cloud at the contacts, or "
+                                                "supports against rigid motion may help");
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
