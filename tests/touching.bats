@@ -378,6 +378,14 @@ END
     refused 1 'nothing holds body 1' mtled free_all.scene stack.mts
 }
 
+@test "blocks that are pulled apart: no force, and no note that they slipped off each other" {
+    stack
+    stack_scene | sed 's/-0.005/0.005/' > apart.scene
+    run -0 --separate-stderr mtled apart.scene stack.mts
+    [ -z "$stderr" ]
+    rows reactions <<< "$output" | awk '{ f = $1 ^ 2 + $2 ^ 2; if (!(f < 1e-4 ^ 2)) exit 1 }'
+}
+
 @test "in time: the energies of a block that swings on another one balance" {
     stack
     block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > swing.scene
