@@ -178,13 +178,15 @@ END
     voxels -h 5mm bar.nii.gz 2> said > body.mts
     grep -q "^voxels: 2 connected bodies" said
     # The voxels from -2.2 to 2.8 mm are no ball's: the first halves meet at their middle, and y and z are between -.2 and .8 mm.
-    grep -qE "^voxels: parts that the image connects at \((-0\.2|0\.3|0\.8), (-0\.2|0\.8), (-0\.2|0\.8)\) mm are not connected in the cloud \(such places: 1\): it is thinner than the spacing there: a smaller -h, or --fine, keeps it$" said
+    place='\((-0\.2|0\.3|0\.8), (-0\.2|0\.8), (-0\.2|0\.8)\) mm'
+    grep -qE "^voxels: parts that the image connects at $place are not connected in the cloud \(such places: 1\): " said
+    grep -q "(such places: 1): it is thinner than the spacing there: a smaller -h, or --fine, keeps it$" said
     voxels -h 5mm --fine 1.25mm bar.nii.gz 2> said > body.mts
     run -1 grep "connect" said
     phantom wire > wire.nii.gz
     for spacing in 5 1; do
         voxels -h ${spacing}mm wire.nii.gz 2> said > body.mts
-        grep -qE "^voxels: parts that the image connects at .* mm are not .*: it is as thin as a voxel there, which no spacing keeps: make it thicker in the image$" said
+        grep -q "^voxels: parts .* it is as thin as a voxel there, which no spacing keeps: make it thicker in the image$" said
     done
     voxels -h 3mm -s z=-0.2mm bar.nii.gz 2> said > body.mts
     grep -qE "^voxels: parts that the image connects at .*, -0\.2\) mm are not connected" said

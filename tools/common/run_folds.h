@@ -23,12 +23,12 @@ enum { FOLDED, NOTED, FOLD_SPELLS };
 
 struct run_folds {
     struct folds folds;
-    bool *held, *slides;     /* whether the displacement is prescribed at each face of the boundary; along its
-                                normal alone */
-    double *field;           /* scratch: node_count * dim */
-    int64_t *node_first;     /* the nodes at which each process evaluates it */
+    bool *held, *slides; /* whether the displacement is prescribed at each face of the boundary; along its
+                            normal alone */
+    double *field;       /* scratch: node_count * dim */
+    int64_t *node_first; /* the nodes at which each process evaluates it */
     bool *stopped, *touched, *turned; /* scratch: node_count */
-    bool reported;           /* in the message that ends the run */
+    bool reported;                    /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };
