@@ -346,6 +346,22 @@ END
     [[ $stderr == *" of the displacement; the body folds "*": let all of it touch (facets = *, against = *)" ]]
 }
 
+@test "cubes that slide off each other: the verdict comes soon, as a body that stays folded is no result" {
+    gmsh_body 3 cubes << 'END'
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 100, 100, 50}; Box(2) = {0, 0, 50, 100, 100, 50};
+MeshSize{ PointsOf{ Volume{1}; } } = 30; MeshSize{ PointsOf{ Volume{2}; } } = 22;
+Physical Volume("body") = {1, 2};
+Physical Surface("ymin") = {5}; Physical Surface("low") = {6}; Physical Surface("up") = {11}; Physical Surface("ymax") = {12};
+Physical Surface("xmin") = {1, 7}; Physical Surface("back") = {3, 9};
+END
+    { stack_scene 3 | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.04/'; printf '[displacement back]\nfacets = back\nnormal = 0\n'; } > part.scene
+    refused 1 'part.scene: step ' mtled part.scene cubes.mts
+    [[ $stderr == *"; the body folds "*": let all of it touch (facets = *, against = *)" ]]
+    steps=${stderr#*step }
+    [ "${steps%%:*}" -lt 5500 ]
+}
+
 @test "the lips of a ring meet corner on corner, and slip past each other" {
     gmsh_body 2 ring << 'END'
 SetFactory("OpenCASCADE");

@@ -340,10 +340,16 @@ bool run_folds_let_touch(struct run *run)
     return true;
 }
 
+bool run_touches_in_part(const struct run *run)
+{
+    bool whole;
+    return count_touching(run->scene, &whole) > 0 && !whole;
+}
+
 bool run_folds_touch_in_part(const struct run *run)
 {
-    bool whole, is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
-    return is_through && count_touching(run->scene, &whole) > 0 && !whole;
+    bool is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
+    return is_through && run_touches_in_part(run);
 }
 
 void run_folds_judge(struct run *run)

@@ -46,6 +46,9 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 /* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
 void run_folds_describe(const struct run *run, int which, char *text, size_t size);
 
+/* Whether the scene lets parts of the boundary touch, and not all of it. */
+bool run_touches_in_part(const struct run *run);
+
 /* Whether parts of the boundary have passed through each other though the scene lets some touch: it should
  * let all. */
 bool run_folds_touch_in_part(const struct run *run);
