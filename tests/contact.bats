@@ -148,3 +148,20 @@ lid() {
     refused 2 'lid.scene:14: [contact lid]: contact: node 5' mtled lid.scene block.mts
     [[ "$stderr" == *' starts 0.1 m behind the rigid surface: state its other side, or leave the node'* ]]
 }
+
+@test "an asterisk is the whole boundary, of a mesh without names as well: a disc rests in a groove" {
+    printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n' > disc.geo
+    gmsh -v 1 -2 disc.geo -o disc.msh
+    nodes -u mm disc.msh 2> said > disc.mts
+    groups -f skin=all < disc.mts > named.mts
+    printf -- '-200 129.289\n0 -70.711\n200 129.289\n' > groove.tsv
+    { block quasi-static 'gravity = 0, -9.81'
+        printf '[contact groove]\nfacets = *\nrigid = groove.tsv\nunit = mm\nside = left\n[output]\nreactions = yes\n'; } > whole.scene
+    sed 's/^facets = \*/facets = skin/' whole.scene > skin.scene
+    shapefn < disc.mts 2> said | mtled whole.scene > whole.dat 2> said
+    shapefn < named.mts 2> said | mtled skin.scene > skin.dat 2> said
+    cmp <(rows u whole.dat) <(rows u skin.dat)
+    sides=$(mts text named.mts | rows facets | wc -l)
+    rows reactions whole.dat | awk -v n="$sides" 'BEGIN { pi = atan2(0, -1); weight = 9810 * n / 2 * 0.05 ^ 2 * sin(2 * pi / n) }
+        { d = $2 / weight - 1; print $2, weight; exit !(d < 1e-3 && -d < 1e-3) }'
+}

@@ -337,6 +337,14 @@ limit_memory() {
     nodes -u cm plate.msh 2> said > plate.mts
     cube tet
     nodes -u cm cube.msh 2>> said > cube.mts
+    # Long facets before many cells: nodes at random within a cube, few on its boundary.
+    { printf 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\nMesh.MeshSizeFromPoints = 0;\nMesh.MeshSizeExtendFromBoundary = 0;\n'
+        printf 'Mesh.MeshSizeMin = 9;\nMesh.MeshSizeMax = 9;\nMesh.Optimize = 0;\nMesh.Algorithm3D = 1;\n'
+        awk 'BEGIN { srand(1); for (i = 101; i <= 500; i++) {
+            printf "Point(%d) = {%.9g, %.9g, %.9g};\nPoint{%d} In Volume{1};\n", i, rand(), rand(), rand(), i } }'
+    } > random.geo
+    gmsh -v 1 -3 random.geo -format msh22 -o random.msh
+    nodes -u cm random.msh 2>> said > random.mts
     run ! grep thick said
 }
 

@@ -139,10 +139,45 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     }
 }
 
-/* How many connected bodies there are, when more than one. */
-static void report_bodies(const struct tool *tool, const struct cells *cells, bool verbose)
+/* Where a connection of the image's bodies is missing. Labels are smoothed: what is too thin for that is lost
+ * at any spacing. */
+static void report_apart(const struct tool *tool, const struct label_image *image,
+                         const struct stuffing *stuffing, const int32_t *part, int32_t count)
 {
-    int32_t *part = NULL, count = 0;
+    const struct labels *labels = &image->labels;
+    struct stuffing_apart apart;
+    double place[3], x[3];
+    TOOL_TRY(tool, stuffing_find_apart(labels, image->keep, stuffing, part, count, &apart, &error));
+    if (apart.count == 0) {
+        return;
+    }
+    for (int a = 0; a < 3; a++) {
+        place[a] = image->to_world[a][3];
+        for (int64_t d = 0, stride = 1; d < 3; stride *= labels->size[d++]) {
+            double index = 0.5 * (double)(apart.voxel[0] / stride % labels->size[d] +
+                                          apart.voxel[1] / stride % labels->size[d]);
+            place[a] += image->to_world[a][d] * index;
+        }
+    }
+    for (int a = 0; a < labels->dim; a++) {
+        x[a] = place[labels->dim == 3 ? a : labels->axis[a]];
+    }
+    bool is_seen = image->keep[labels_at(labels, x)];
+    tool_note(tool,
+              "parts that the image connects at (%.4g, %.4g, %.4g) mm are not connected in the cloud (such "
+              "places: %lld): %s",
+              1e3 * place[0], 1e3 * place[1], 1e3 * place[2], (long long)apart.count,
+              is_seen
+                  ? "it is thinner than the spacing there: a smaller -h, or --fine, keeps it"
+                  : "it is as thin as a voxel there, which no spacing keeps: make it thicker in the image");
+}
+
+/* How many connected bodies there are, when more than one. */
+static void report_bodies(const struct tool *tool, const struct label_image *image,
+                          const struct stuffing *stuffing, const struct cells *cells, bool verbose)
+{
+    SCRATCH int32_t *part = NULL;
+    int32_t count = 0;
     double total = 0, first = 0;
     TOOL_TRY(tool, NEW_ARRAY(&part, cells->count, &error));
     TOOL_TRY(tool, cells_parts(cells, part, &count, &error));
@@ -154,10 +189,10 @@ static void report_bodies(const struct tool *tool, const struct cells *cells, bo
     if (count > 1) {
         tool_note(tool, "%d connected bodies, %.3g %% of the %s in the largest: --largest keeps that one",
                   count, 100 * first / total, cells->dim == 3 ? "volume" : "area");
+        report_apart(tool, image, stuffing, part, count);
     } else if (verbose) {
         tool_note(tool, "one connected body");
     }
-    free(part);
 }
 
 static void report_cells(const struct tool *tool, const struct cells *cells, double spacing, bool verbose)
@@ -210,7 +245,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
             (long long)stuffing->hinges);
     }
     report_labels(tool, image, stuffing, &cells, verbose);
-    report_bodies(tool, &cells, verbose);
+    report_bodies(tool, image, stuffing, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
     if (!surface) {
         tool_note_thin(tool, &cells);

@@ -71,6 +71,18 @@ void stuffing_free(struct stuffing *stuffing);
 MUST_CHECK enum status stuffing_lost(const struct labels *labels, const bool *keep,
                                      const struct stuffing *stuffing, int64_t *lost, struct error *error);
 
+/* Bodies that voxels of the labels which are kept connect by faces. */
+struct stuffing_apart {
+    int64_t count;    /* how many such connections are missing: bodies less those that there would be */
+    int64_t voxel[2]; /* of the first one: two that touch, halfway between the bodies */
+};
+
+/* part[stuffing->cell_count], part_count: the bodies, by cells_parts. */
+MUST_CHECK enum status stuffing_find_apart(const struct labels *labels, const bool *keep,
+                                           const struct stuffing *stuffing, const int32_t *part,
+                                           int32_t part_count, struct stuffing_apart *apart,
+                                           struct error *error);
+
 /* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
  * one without volume or inverted. */
 void simplex_angles(int dim, const double *const x[], double angles[2]);

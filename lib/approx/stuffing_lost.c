@@ -2,6 +2,7 @@
 #include "approx/raster.h"
 #include "approx/stuffing.h"
 #include "base/memory.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 /* The grid of the labels without the axis across a slice. */
@@ -65,29 +66,37 @@ static bool is_near(const struct grid *grid, const struct stuffing *stuffing, co
     return false;
 }
 
-enum status stuffing_lost(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
-                          int64_t *lost, struct error *error)
+/* owner[voxels]: the cell that each voxel's centre lies in, -1: none. */
+static enum status own_voxels(const struct labels *labels, const struct stuffing *stuffing,
+                              const struct grid *grid, int32_t *owner, struct error *error)
 {
-    struct grid grid = grid_of(labels);
-    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2], doubly;
     int dim = labels->dim;
+    int64_t doubly;
     SCRATCH double *x = NULL;
-    SCRATCH int32_t *owner = NULL;
-    struct cells cells = {dim, stuffing->node_count, NULL, stuffing->cell_count, stuffing->cell};
-    for (int32_t l = 0; l < labels->count; l++) {
-        lost[l] = 0;
-    }
     RETURN_IF_ERROR(NEW_ARRAY(&x, stuffing->node_count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&owner, voxels, error));
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         double voxel[3];
         labels_to_voxel(labels, stuffing->x + n * dim, voxel);
         for (int d = 0; d < dim; d++) {
-            x[n * dim + d] = voxel[grid.axis[d]];
+            x[n * dim + d] = voxel[grid->axis[d]];
         }
     }
-    cells.x = x;
-    raster_cells(&cells, sign_of(labels, &grid), grid.size, owner, &doubly);
+    struct cells cells = {dim, stuffing->node_count, x, stuffing->cell_count, stuffing->cell};
+    raster_cells(&cells, sign_of(labels, grid), grid->size, owner, &doubly);
+    return STATUS_OK;
+}
+
+enum status stuffing_lost(const struct labels *labels, const bool *keep, const struct stuffing *stuffing,
+                          int64_t *lost, struct error *error)
+{
+    struct grid grid = grid_of(labels);
+    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
+    SCRATCH int32_t *owner = NULL;
+    for (int32_t l = 0; l < labels->count; l++) {
+        lost[l] = 0;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&owner, voxels, error));
+    RETURN_IF_ERROR(own_voxels(labels, stuffing, &grid, owner, error));
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = labels->label[v], there = owner[v] >= 0 ? stuffing->label[owner[v]] : -1;
         if (there != (keep[label] ? label : -1)) {
@@ -95,4 +104,69 @@ enum status stuffing_lost(const struct labels *labels, const bool *keep, const s
         }
     }
     return STATUS_OK;
+}
+
+/* Voxel number k of those with a common face, 0 to 5; -1 beyond the grid. */
+static int64_t beside(const struct grid *grid, int64_t voxel, int k)
+{
+    const int64_t *n = grid->size;
+    const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
+    const int64_t stride[3] = {1, n[0], n[0] * n[1]};
+    int64_t place = at[k / 2] + (k % 2 == 0 ? -1 : 1);
+    return place < 0 || place >= n[k / 2] ? -1 : voxel + (place - at[k / 2]) * stride[k / 2];
+}
+
+/* Voxels of the labels that are kept take the body of their neighbours, ring by ring: body[voxels], -1 at
+ * first where no cell is. Bodies that meet so are joined in set[]. */
+static enum status flood(const struct labels *labels, const bool *keep, const struct grid *grid,
+                         int32_t *body, int32_t *set, struct stuffing_apart *apart, struct error *error)
+{
+    int64_t voxels = grid->size[0] * grid->size[1] * grid->size[2], count = 0;
+    SCRATCH int64_t *queue = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&queue, voxels, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        body[v] = keep[labels->label[v]] ? body[v] : -1;
+        if (body[v] >= 0) {
+            queue[count++] = v;
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        int64_t v = queue[i];
+        for (int k = 0; k < 6; k++) {
+            int64_t w = beside(grid, v, k);
+            if (w < 0 || !keep[labels->label[w]]) {
+                continue;
+            }
+            if (body[w] < 0) {
+                body[w] = body[v];
+                queue[count++] = w;
+            } else if (set_first(set, body[v]) != set_first(set, body[w])) {
+                set_join(set, body[v], body[w]);
+                apart->voxel[0] = apart->count == 0 ? v : apart->voxel[0];
+                apart->voxel[1] = apart->count == 0 ? w : apart->voxel[1];
+                apart->count++;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status stuffing_find_apart(const struct labels *labels, const bool *keep,
+                                const struct stuffing *stuffing, const int32_t *part, int32_t part_count,
+                                struct stuffing_apart *apart, struct error *error)
+{
+    struct grid grid = grid_of(labels);
+    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
+    SCRATCH int32_t *body = NULL, *set = NULL;
+    *apart = (struct stuffing_apart){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&body, voxels, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&set, part_count, error));
+    RETURN_IF_ERROR(own_voxels(labels, stuffing, &grid, body, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        body[v] = body[v] >= 0 ? part[body[v]] : -1;
+    }
+    for (int32_t p = 0; p < part_count; p++) {
+        set[p] = p;
+    }
+    return flood(labels, keep, &grid, body, set, apart, error);
 }

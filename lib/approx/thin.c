@@ -12,16 +12,16 @@ static const double facing = 0.5;
 /* So many cells are gone through at most: round-off may lead in a circle. */
 enum { MOST_CELLS = 1000 };
 
-/* Mean length of the edges of a facet. */
-static double facet_width(int dim, const double *x, const int32_t *node)
+/* Mean length of the edges between `count` nodes: of a facet, or a cell. */
+static double mean_edge(int dim, const double *x, int count, const int32_t *node)
 {
     double sum = 0.0;
-    int edges = dim == 2 ? 1 : 3;
-    for (int k = 0; k < edges; k++) {
-        sum +=
-            vector_distance(dim, x + (int64_t)node[(k + 1) % dim] * dim, x + (int64_t)node[k] * dim) / edges;
+    for (int k = 0; k < count; k++) {
+        for (int l = 0; l < k; l++) {
+            sum += vector_distance(dim, x + (int64_t)node[k] * dim, x + (int64_t)node[l] * dim);
+        }
     }
-    return sum;
+    return 2.0 * sum / (count * (count - 1));
 }
 
 /* The face, opposite vertex *face, through which the ray from x along `way` leaves a cell: how far that is.
@@ -47,22 +47,24 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
     return nearest;
 }
 
-/* The thickness at a facet of a cell, its vertex opposite `face`; INFINITY if it is not less than `most`, m.
- */
+/* The thickness at a facet of a cell, its vertex opposite `face`; INFINITY if it is not less than `bound`
+ * times the facet's width, m, and than that many mean edges of the cells on the way. */
 static double thickness(const struct cells *cells, const int32_t *across, int64_t cell, int face,
-                        const double *middle, const double *inward, double most)
+                        const double *middle, const double *inward, double bound, double width)
 {
     int dim = cells->dim, corners = dim + 1, out = face;
+    double edges = 0.0;
     for (int step = 0; step < MOST_CELLS; step++) {
         double normal[3];
         double distance = leave_cell(cells, cell, face, middle, inward, &out, normal);
-        if (!(distance < most)) {
+        edges += mean_edge(dim, cells->x, corners, cells->node + cell * corners);
+        if (!(distance < bound * width)) {
             return INFINITY;
         }
         int32_t next = across[cell * corners + out];
         if (next < 0) {
-            return vector_dot(dim, normal, inward) > facing * vector_length(dim, normal) ? distance
-                                                                                         : INFINITY;
+            bool faces = vector_dot(dim, normal, inward) > facing * vector_length(dim, normal);
+            return faces && distance < bound * edges / (step + 1) ? distance : INFINITY;
         }
         for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {
         }
@@ -95,8 +97,8 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
         for (int a = 0; a < dim; a++) {
             inward[a] = -area[a] / size;
         }
-        double width = facet_width(dim, cells->x, node);
-        double ratio = thickness(cells, across, cell, face, middle, inward, bound * width) / width;
+        double width = mean_edge(dim, cells->x, dim, node);
+        double ratio = thickness(cells, across, cell, face, middle, inward, bound, width) / width;
         whole += size;
         thin += ratio < bound ? size : 0.0;
         if (ratio < report->least) {

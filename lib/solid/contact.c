@@ -153,7 +153,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     const struct state_value values[] = {
         {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
         {"behind", STATE_FLAGS, contact->behind, count},
-        {"pressed", STATE_FLAGS, &contact->pressed, 1},
+        {"deepest", STATE_NUMBERS, &contact->deepest, 1},
         {"modulus", STATE_NUMBERS, &contact->modulus, 1},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
@@ -272,7 +272,7 @@ void contact_accept(struct contact *contact)
     contact_between_accept(contact);
     for (int64_t p = 0; p < contact->count; p++) {
         const struct contact_view *view = &contact->view[p];
-        contact->pressed = contact->pressed || contact->pressure[p] > 0.0;
+        contact->deepest = fmax(contact->deepest, contact->pressure[p] / contact->stiffness[p]);
         if (view->searched) {
             contact->behind[p] = view->behind;
             contact->checked_distance[p] = view->distance;

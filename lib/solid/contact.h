@@ -68,7 +68,7 @@ struct contact {
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
     double *multiplier; /* dim for each lambda_a, Pa, in the surface's frame; as many as contact_nodes has */
-    bool pressed;       /* some point has pressed at a step that was taken */
+    double deepest;     /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
     bool *behind;       /* count: reached the back of the surface without going through it */
     double *checked_x;  /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */

@@ -74,13 +74,18 @@ bool contact_between_led(const struct contact *contact, int64_t p);
 void contact_between_take(struct contact *contact);
 
 /* The gap of contact node a grows with the mean of the field there less parts of the field at opposite
- * corners: part i of them, and its weight; false behind the last one. */
-bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
+ * corners: part i of them, the corner's row of opposite.rows, and its weight; false behind the last one. */
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
                           double *weight);
 
+/* How many corners there may be opposite the points; 0 where there is a rigid surface. And the average that
+ * moves one. */
+int64_t contact_between_corners(const struct contact *contact);
+struct average contact_between_corner(const struct contact *contact, int64_t corner);
+
 /* Mark the nodes of facets that were opposite a point at the last evaluation, nearer than that share of its
- * width. */
-void contact_between_mark(const struct contact *contact, double share, bool *marked);
+ * width; and as turned those of both facets where these did not face each other at rest. */
+void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned);
 
 /* What the penalties of a contact may add stiffness to, whatever touches: averages, and how much, N/m (2D:
  * N/m2). The points; and corners of opposite facets. */

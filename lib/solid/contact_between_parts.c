@@ -2,6 +2,8 @@
  * parts of its gaps, bounds of its stiffness, the nodes that are near. */
 #include "solid/contact_between.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +19,7 @@ void contact_between_take(struct contact *contact)
     }
 }
 
-bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, struct average *average,
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
                           double *weight)
 {
     const struct boundary_averages *averages = contact->averages;
@@ -31,22 +33,39 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, s
     int64_t facet = between->taken_facet[p] - 1;
     if (facet >= 0) {
         *weight = averages->sample_share[s] * between->taken_weight[p * 3 + i % dim];
-        *average = average_of_boundary(&between->opposite.rows,
-                                       between->opposite.surface.facet[facet * dim + i % dim]);
+        *corner = between->opposite.surface.facet[facet * dim + i % dim];
     }
     return true;
 }
 
-void contact_between_mark(const struct contact *contact, double share, bool *marked)
+int64_t contact_between_corners(const struct contact *contact)
+{
+    return contact->between == NULL ? 0 : contact->between->opposite.rows.count;
+}
+
+struct average contact_between_corner(const struct contact *contact, int64_t corner)
+{
+    return average_of_boundary(&contact->between->opposite.rows, corner);
+}
+
+void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned)
 {
     const struct contact_between *between = contact->between;
+    int dim = contact->dim;
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct opposite *opposite = &between->opposite;
         int64_t facet = between->view[p].facet;
-        for (int k = 0; k < contact->dim && facet >= 0; k++) {
-            if (contact->gap[p] < share * contact_width(contact, p)) {
-                int32_t v = between->opposite.surface.facet[facet * contact->dim + k];
-                marked[between->opposite.rows.node[v]] = true;
-            }
+        if (facet < 0 || !(contact->gap[p] < share * contact_width(contact, p))) {
+            continue;
+        }
+        const double *normal = opposite->rest_normal + facet * dim;
+        bool faced = vector_dot(dim, contact->points->normal + p * dim, normal) < OPPOSED;
+        for (int k = 0; k < dim; k++) {
+            int32_t own = contact->points->node[p - p % between->per_facet + k];
+            int32_t other = opposite->rows.node[opposite->surface.facet[facet * dim + k]];
+            marked[other] = true;
+            turned[other] |= !faced;
+            turned[own] |= !faced;
         }
     }
 }

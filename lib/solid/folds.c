@@ -217,6 +217,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 void folds_free(struct folds *folds)
 {
     FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->support, folds->is_held,
-             folds->part, folds->bodies, folds->y, folds->boxes, folds->plane, folds->found);
+             folds->part, folds->node_part, folds->bodies, folds->y, folds->boxes, folds->plane,
+             folds->found);
     *folds = (struct folds){0};
 }

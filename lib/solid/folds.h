@@ -35,7 +35,8 @@ enum fold_kind {
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
     FOLD_FLAT, /* cells are inverted, but by less than that; slivers invert within the error of the field */
     FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
-    FOLD_CLOSED   /* a side has creased: facets that meet there face each other */
+    FOLD_CLOSED,  /* a side has creased: facets that meet there face each other */
+    FOLD_WRAPPED  /* a side of one body presses on both sides of a corner of another */
 };
 
 struct fold {
@@ -91,6 +92,8 @@ struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
     const bool *touched; /* node_count, the caller's: nodes where a contact of the body with itself presses,
                             and facets that meet may pass through each other by a twentieth; NULL: none */
+    const bool *turned;  /* node_count, the caller's: those where it presses on what it did not face at rest;
+                            NULL: none */
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
@@ -101,6 +104,7 @@ struct folds {
     int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
     double extent;            /* diagonal of the box around the nodes, m */
     int32_t *part;            /* cell_count: the connected body of each cell */
+    int32_t *node_part;       /* node_count: of a cell of each node */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold at_rest; /* FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at rest;
@@ -139,5 +143,11 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
 /* Look for facets that meet at less than 60 degrees at rest and face each other now, by 120 degrees or more:
  * a side that is compressed too far along itself creases. FOLD_NONE or FOLD_CLOSED. */
 struct fold folds_find_closed(struct folds *folds, const double *u);
+
+/* Look for corners that lay on corners of other bodies at rest, where two bodies of the same width meet, and
+ * that have a side of that body round them now: it presses on facets on both sides of the corner, of which
+ * it faced one at rest. Which of the two wraps round the other is left to rounding and to the mesh.
+ * FOLD_NONE or FOLD_WRAPPED. */
+struct fold folds_find_wrapped(const struct folds *folds);
 
 #endif

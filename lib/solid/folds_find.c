@@ -19,9 +19,6 @@ static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1
 static const double beyond_body = 1e-3, beyond_facet = 0.05;
 static const double turned_share = 0.1; /* see is_turned_over */
 static const double held_share = 0.5;   /* see are_deep; contact_most_depth */
-/* Cosines of 120 and 60 degrees between the normals of a facet now and at rest, or of two that meet: beyond
- * the first they face opposite ways, before the second much the same. */
-static const double reversed = -0.5, alike = 0.5;
 
 static const double *at(const struct folds *folds, int32_t node)
 {
@@ -341,11 +338,6 @@ static struct fold look_at_boxes(const struct folds *folds, int64_t begin, int64
     return fold;
 }
 
-static double cosine_between(int dim, const double *one, const double *other)
-{
-    return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
-}
-
 /* Sliding facets that show their backs. */
 static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
@@ -360,7 +352,7 @@ static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int
         }
         fold_area_vector(dim, folds->y, input->facet + f * dim, now);
         fold_area_vector(dim, input->x, input->facet + f * dim, rest);
-        if (cosine_between(dim, now, rest) < reversed && fold.count++ == 0) {
+        if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
             name_facets(folds, f, -1, &fold);
         }
     }
@@ -448,28 +440,5 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
         }
     }
     fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;
-    return fold;
-}
-
-static double cosine_of_normals(const struct fold_input *input, const double *y, int64_t f, int64_t g)
-{
-    double one[3], other[3];
-    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
-    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
-    return cosine_between(input->dim, one, other);
-}
-
-struct fold folds_find_closed(struct folds *folds, const double *u)
-{
-    struct fold fold = none;
-    folds_take_positions(folds, u);
-    for (int64_t i = 0; i < folds->ring_count; i++) {
-        int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
-        if (g >= 0 && cosine_of_normals(&folds->input, folds->y, f, g) < reversed &&
-            cosine_of_normals(&folds->input, folds->input.x, f, g) > alike && fold.count++ == 0) {
-            name_facets(folds, f, g, &fold);
-        }
-    }
-    fold.kind = fold.count > 0 ? FOLD_CLOSED : FOLD_NONE;
     return fold;
 }

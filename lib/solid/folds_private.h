@@ -5,6 +5,14 @@
 #include "base/vector.h"
 #include "solid/folds.h"
 
+/* Normals whose cosine is below this, that of 120 degrees, face opposite ways. */
+#define FOLD_REVERSING (-0.5)
+
+static inline double fold_cosine(int dim, const double *one, const double *other)
+{
+    return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
+}
+
 /* Outward normal times length or twice the area of a facet. */
 static inline void fold_area_vector(int dim, const double *y, const int32_t *facet, double area[3])
 {

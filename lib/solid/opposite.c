@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Normals are opposed when their cosine is below this: 120 degrees. */
-static const double least_opposed = -0.5;
 /* Facets of one body nearer at rest than so many widths are neighbours through it, if each is behind the
  * other by more than this part of their distance. A point may be behind another facet by half a width: what
  * lies further apart in the body would have to be flattened to an eighth for that. */
@@ -277,11 +275,11 @@ static bool considers(void *context, int64_t f)
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
     double cosine = vector_dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
-    if (cosine < least_opposed) {
+    if (cosine < OPPOSED) {
         return !through_body(opposite, search->seeker, f);
     }
     double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double way = lever * width * (cosine - least_opposed);
+    double way = lever * width * (cosine - OPPOSED);
     if (way < search->free_way && !through_body(opposite, search->seeker, f)) {
         search->free_way = way;
     }

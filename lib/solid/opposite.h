@@ -15,6 +15,9 @@
 #include "solid/average.h"
 #include "solid/rigid.h"
 
+/* Normals are opposed when their cosine is below this: 120 degrees. */
+#define OPPOSED (-0.5)
+
 struct opposite {
     bool itself;                   /* the points are on the same facets */
     struct rigid_surface surface;  /* its vertices are the corners, where they are now */

@@ -3,6 +3,7 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "solid/contact_between.h"
 #include "solid/rigid_modes.h"
 
 #include <stdlib.h>
@@ -59,6 +60,24 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
     return STATUS_OK;
 }
 
+/* The coarse fields at the corners opposite to points of contacts. */
+static enum status take_opposite(const struct solid_system *system, struct preconditioner *p,
+                                 struct error *error)
+{
+    int64_t corners = 0, at = 0, count = p->coarse.count;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        corners += contact_between_corners(&system->contacts[c]);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&p->opposite, corners * count, error));
+    for (int64_t c = 0; c < system->contact_count && count > 0; c++) {
+        for (int64_t v = 0; v < contact_between_corners(&system->contacts[c]); v++, at++) {
+            struct average average = contact_between_corner(&system->contacts[c], v);
+            preconditioner_add_fields(p, &average, p->opposite + at * count);
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
                                  struct error *error)
 {
@@ -90,6 +109,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
+    RETURN_IF_ERROR(take_opposite(system, p, error));
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -105,7 +125,7 @@ void preconditioner_free(struct preconditioner *p)
     FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
              p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
              p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->contacts, p->impact,
-             p->pushed);
+             p->pushed, p->opposite);
     *p = (struct preconditioner){0};
 }
 

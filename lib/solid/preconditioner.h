@@ -55,6 +55,7 @@ struct preconditioner {
                       which the node could have been left out, */
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
+    double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
     double *weight;      /* Z^T D Z */
     double *free_weight; /* Z^T D P Z */
     double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */

@@ -21,10 +21,10 @@ static void add_square(int64_t size, double stiffness, const double *row, double
 }
 
 /* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
-static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, struct average *average,
+static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, int64_t *corner,
                           double *weight)
 {
-    while (contact_between_part(contact, a, (*i)++, average, weight)) {
+    while (contact_between_part(contact, a, (*i)++, corner, weight)) {
         if (*weight != 0.0) {
             return true;
         }
@@ -32,25 +32,29 @@ static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, 
     return false;
 }
 
-/* row -= what is opposite contact node a along a direction. */
-static void subtract_opposite(const struct preconditioner *p, const struct contact *contact, int64_t a,
-                              const double *direction, double *row)
+/* field[coarse.count]: the coarse fields' means at contact node a, less what is opposite: opposite[corners *
+ * coarse.count]. */
+static void take_fields(const struct preconditioner *p, const struct contact *contact, int64_t a,
+                        const double *opposite, double *field)
 {
-    struct average average;
-    double weight, less[3];
-    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
-        for (int c = 0; c < contact->dim; c++) {
-            less[c] = -weight * direction[c];
+    struct average average = average_of_boundary(contact_nodes(contact), a);
+    int64_t count = p->coarse.count, corner;
+    double weight;
+    memset(field, 0, (size_t)count * sizeof *field);
+    preconditioner_add_fields(p, &average, field);
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        for (int64_t k = 0; k < count; k++) {
+            field[k] -= weight * opposite[corner * count + k];
         }
-        preconditioner_add_row(p, &average, less, row);
     }
 }
 
 void preconditioner_add_contacts(const struct preconditioner *p, const struct solid_system *system,
                                  const bool *only, double *matrix)
 {
-    double *row = p->amount;
-    int64_t size = p->size, at = 0;
+    double *row = p->amount, *field = p->amount + p->size;
+    const double *opposite = p->opposite;
+    int64_t dim = p->dim, at = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
@@ -58,27 +62,29 @@ void preconditioner_add_contacts(const struct preconditioner *p, const struct so
             if (!p->active[at] || (only != NULL && !only[at])) {
                 continue;
             }
-            struct average average = average_of_boundary(averages, a);
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
             bool creased = p->creased[at];
-            for (int64_t d = 0; d < (creased ? p->dim : 1); d++) {
+            take_fields(p, contact, a, opposite, field);
+            for (int64_t d = 0; d < (creased ? dim : 1); d++) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
-                const double *direction = creased ? axis : p->normal + at * p->dim;
-                memset(row, 0, (size_t)size * sizeof *row);
-                preconditioner_add_row(p, &average, direction, row);
-                subtract_opposite(p, contact, a, direction, row);
-                add_square(size, stiffness, row, matrix);
+                const double *direction = creased ? axis : p->normal + at * dim;
+                for (int64_t i = 0; i < p->size; i++) {
+                    row[i] = field[i / dim] * direction[i % dim];
+                }
+                add_square(p->size, stiffness, row, matrix);
             }
         }
+        opposite += contact_between_corners(contact) * p->coarse.count;
     }
 }
 
 /* mean[dim] -= the field opposite contact node a. */
 static void take_opposite(const struct contact *contact, int64_t a, const double *field, double *mean)
 {
-    struct average average;
+    int64_t corner;
     double weight, there[3];
-    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        struct average average = contact_between_corner(contact, corner);
         average_take(&average, contact->dim, field, there);
         for (int c = 0; c < contact->dim; c++) {
             mean[c] -= weight * there[c];
@@ -89,9 +95,10 @@ static void take_opposite(const struct contact *contact, int64_t a, const double
 /* The transpose. */
 static void spread_opposite(const struct contact *contact, int64_t a, const double *amount, double *field)
 {
-    struct average average;
+    int64_t corner;
     double weight, there[3];
-    for (int64_t i = 0; next_opposite(contact, a, &i, &average, &weight);) {
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        struct average average = contact_between_corner(contact, corner);
         for (int c = 0; c < contact->dim; c++) {
             there[c] = -weight * amount[c];
         }

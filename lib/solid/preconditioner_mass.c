@@ -56,17 +56,14 @@ static void weigh_coarse_space(struct preconditioner *p)
     }
 }
 
-void preconditioner_add_row(const struct preconditioner *p, const struct average *average,
-                            const double *direction, double *row)
+void preconditioner_add_fields(const struct preconditioner *p, const struct average *average, double *field)
 {
-    int field[COARSE_MOST_AT_NODE], dim = p->dim;
+    int number[COARSE_MOST_AT_NODE];
     double value[COARSE_MOST_AT_NODE];
     for (int64_t i = 0; i < average->length; i++) {
-        int count = coarse_space_at_node(&p->coarse, average->idx[i], field, value);
+        int count = coarse_space_at_node(&p->coarse, average->idx[i], number, value);
         for (int k = 0; k < count; k++) {
-            for (int a = 0; a < dim; a++) {
-                row[field[k] * dim + a] += average->phi[i] * value[k] * direction[a];
-            }
+            field[number[k]] += average->phi[i] * value[k];
         }
     }
 }
@@ -79,13 +76,18 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
     const struct constraint_rows *rows = p->constraint.rows;
     const int64_t *first = p->column_first;
     int64_t size = p->size;
+    double *field = p->amount;
     SCRATCH double *conditions = NULL, *solved = NULL; /* solved: by columns */
     memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
     RETURN_IF_ERROR(NEW_ARRAY(&conditions, rows->count * size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&solved, rows->count * size, error));
     for (int64_t r = 0; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
-        preconditioner_add_row(p, &average, rows->direction + r * p->dim, conditions + r * size);
+        memset(field, 0, (size_t)p->coarse.count * sizeof *field);
+        preconditioner_add_fields(p, &average, field);
+        for (int64_t i = 0; i < size; i++) {
+            conditions[r * size + i] = field[i / p->dim] * rows->direction[r * p->dim + i % p->dim];
+        }
     }
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         double *weight = p->free_weight + k * size; /* or row: symmetric */

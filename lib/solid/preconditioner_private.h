@@ -9,9 +9,9 @@
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount);
 
-/* row[size] += Z^T phi direction, of an average along a direction. */
-void preconditioner_add_row(const struct preconditioner *preconditioner, const struct average *average,
-                            const double *direction, double *row);
+/* field[coarse.count] += the mean of each coarse field: Z^T phi, for one component of the displacement. */
+void preconditioner_add_fields(const struct preconditioner *preconditioner, const struct average *average,
+                               double *field);
 
 /* sum of D */
 double preconditioner_sum_of_mass(const struct preconditioner *preconditioner);

@@ -276,7 +276,8 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         return true;
     }
     *outcome = RELAXATION_STALLED;
-    return relaxation_stays(r, 20.0, 5000);
+    bool folded = r->options->folded != NULL && *r->options->folded;
+    return relaxation_stays(r, 20.0, folded ? 1000 : 5000);
 }
 
 static bool is_interrupted(const struct relaxation *r)

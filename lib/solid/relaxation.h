@@ -29,6 +29,8 @@ struct relaxation_options {
     void *context;                            /* of frame and progress */
     const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in
                                                  which this became other than 0 */
+    const bool *folded; /* unless NULL: whether the state that progress has seen last is folded. One that
+                           stays so is no result: there is less patience with an error that does not fall */
     const struct state *restored; /* NULL: from the begin; else what was kept of a run of the same system and
                                      options (see struct progress), to go on from */
 };

@@ -125,6 +125,11 @@ static inline int shape_label(const char *name, const struct shape_seeds *seeds,
         static const double low[3] = {-8.5, -8.5, -8.5}, high[3] = {8.5, 8.5, 8.5};
         return shape_square(x, low) < 14.2 * 14.2 || shape_square(x, high) < 14.2 * 14.2;
     }
+    if (strcmp(name, "bar") == 0 || strcmp(name, "wire") == 0) { /* two balls, joined by 2 mm or by 1 mm */
+        double half = strcmp(name, "bar") == 0 ? 1 : 0.5, away = fabs(x[0]) - 16;
+        return away * away + x[1] * x[1] + x[2] * x[2] < 13 * 13 ||
+               (away < 0 && fabs(x[1]) < half && fabs(x[2]) < half);
+    }
     if (strcmp(name, "blobs") == 0) {
         return shape_blobs(seeds, x);
     }

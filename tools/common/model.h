@@ -50,8 +50,11 @@ static inline enum status model_own(struct model *model, void *array, struct err
     return owned_add(&model->owned, array, "conditions", error);
 }
 
-/* The facets of the named groups, and the nodes of the named sets, ascending; the model owns them. An error
- * lists the groups that exist. */
+/* Whether the names are an asterisk: the whole boundary. */
+bool model_is_whole(const struct name_list *names);
+
+/* The facets of the named groups, or of the whole boundary, and the nodes of the named sets, ascending; the
+ * model owns them. An error lists the groups that exist. */
 MUST_CHECK enum status model_facets(struct model *model, const struct scene_label *label,
                                     const struct name_list *names, struct facet_set *set,
                                     struct error *error);

@@ -6,20 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The facets of the groups; of * all on the boundary. */
-static enum status read_list(struct model *model, const struct scene_contact *section,
-                             const struct name_list *names, struct facet_set *set, bool *whole,
-                             struct error *error)
-{
-    const struct faces *boundary = &model->assembly.boundary;
-    *whole = names->count == 1 && strcmp(names->names[0], "*") == 0;
-    if (*whole) {
-        *set = (struct facet_set){boundary->count, boundary->node};
-        return STATUS_OK;
-    }
-    return model_facets(model, &section->label, names, set, error);
-}
-
 /* Mean width of a list's facets, m. */
 static double mean_width(const struct model *model, const struct facet_set *set)
 {
@@ -57,14 +43,13 @@ enum status model_between(struct model *model, const struct scene_contact *secti
 {
     const struct faces *boundary = &model->assembly.boundary;
     struct facet_set sets[2] = {{0}}, lists[2];
-    bool whole[2];
     int dim = model->assembly.cells.dim;
     int64_t common = 0;
     SCRATCH int64_t *face = NULL;
     SCRATCH uint8_t *listed = NULL;
     int32_t *kept;
-    RETURN_IF_ERROR(read_list(model, section, &section->facets, &sets[0], &whole[0], error));
-    RETURN_IF_ERROR(read_list(model, section, &section->against, &sets[1], &whole[1], error));
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &sets[0], error));
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->against, &sets[1], error));
     RETURN_IF_ERROR(NEW_ARRAY(&listed, boundary->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error));
     for (int list = 0; list < 2; list++) {
@@ -91,6 +76,6 @@ enum status model_between(struct model *model, const struct scene_contact *secti
     contact->facets = lists[finer ? 0 : 1];
     contact->opposite = lists[finer ? 1 : 0];
     contact->sign = finer ? 1 : -1;
-    contact->whole = whole[0] && whole[1];
+    contact->whole = model_is_whole(&section->facets) && model_is_whole(&section->against);
     return STATUS_OK;
 }

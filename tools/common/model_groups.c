@@ -18,14 +18,24 @@ static enum status choose(const struct scene_label *label, const struct name_lis
     return STATUS_OK;
 }
 
+bool model_is_whole(const struct name_list *names)
+{
+    return names->count == 1 && strcmp(names->names[0], "*") == 0;
+}
+
 enum status model_facets(struct model *model, const struct scene_label *label, const struct name_list *names,
                          struct facet_set *set, struct error *error)
 {
+    const struct faces *boundary = &model->assembly.boundary;
     FREED_BY(named_facets_free) struct named_facets facets = {0};
     SCRATCH bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
+    if (model_is_whole(names)) {
+        *set = (struct facet_set){boundary->count, boundary->node};
+        return STATUS_OK;
+    }
     if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
         return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run groups",
                     label->where);

@@ -2,6 +2,7 @@
  * of prescribed displacements, where facets are too large for these. */
 #include "run.h"
 
+#include "approx/field_compare.h"
 #include "solid/contact_patch.h"
 #include "solid/energy.h"
 
@@ -223,13 +224,15 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
             "smaller than the contact",
             run->scene->path, name, patch->inside, place);
     }
-    if (!contact->pressed && contact->surface.facet_count > 0) {
+    if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
         tool_note(run->tool,
                   "%s: [contact %s]: the body never touches the rigid surface: has that the right unit and "
                   "place?",
                   run->scene->path, name);
     }
-    if (contact->pressed && patch->force == 0.0 && !run->model->assembly.in_time &&
+    /* Bodies that stand against each other at rest press a little also where they are pulled apart. */
+    double unknown = run->scene->solver.tolerance * field_largest(system->node_count, system->dim, run->u);
+    if (contact->deepest > unknown && patch->force == 0.0 && !run->model->assembly.in_time &&
         wants_forces(&run->scene->output)) {
         tool_note(
             run->tool,

@@ -28,9 +28,11 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->touched, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->turned, cells->node_count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     folds->folds.touched = folds->touched;
+    folds->folds.turned = folds->turned;
     return STATUS_OK;
 }
 
@@ -93,7 +95,7 @@ void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
     FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
-             run->folds.touched);
+             run->folds.touched, run->folds.turned);
 }
 
 void run_folds_forget(struct run *run)
@@ -105,12 +107,14 @@ void run_folds_forget(struct run *run)
 /* A surface that is no further away than this share of a facet's size stands against it. */
 static const double near_share = 0.25;
 
-/* Nodes that a rigid surface stands against, and those where parts of the body do. */
-static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
+/* Nodes that a rigid surface stands against, those where parts of the body do, and of these the ones where
+ * such parts did not face each other at rest. */
+static void mark_stopped(const struct run *run, bool *stopped, bool *touched, bool *turned)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
     memset(touched, 0, (size_t)system->node_count * sizeof *touched);
+    memset(turned, 0, (size_t)system->node_count * sizeof *turned);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
@@ -119,7 +123,7 @@ static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
             marked[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
-        contact_between_mark(contact, near_share, touched);
+        contact_between_mark(contact, near_share, touched, turned);
     }
 }
 
@@ -158,7 +162,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     evaluate_field(&run->model->assembly, u, folds);
-    mark_stopped(run, folds->stopped, folds->touched);
+    mark_stopped(run, folds->stopped, folds->touched, folds->turned);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
@@ -170,6 +174,9 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     note(folds, FOLDED, fold.kind == FOLD_FLAT ? &none : &fold, time, counts);
     if (beyond.kind == FOLD_NONE) {
         beyond = fold.kind == FOLD_FLAT ? fold : folds_find_closed(&folds->folds, folds->field);
+    }
+    if (beyond.kind == FOLD_NONE) {
+        beyond = folds_find_wrapped(&folds->folds);
     }
     note(folds, NOTED, &beyond, time, counts);
 }
@@ -276,6 +283,13 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
                  "differ by some percent",
                  when, one, place);
         return;
+    case FOLD_WRAPPED:
+        snprintf(
+            text, size,
+            "%s, a lip of another body has turned round the corner of %s at %s, where both ended at rest: "
+            "there are other states, with lips elsewhere or none, whose forces differ by some percent",
+            when, one, place);
+        return;
     case FOLD_NONE:
     default:
         return;
@@ -326,10 +340,16 @@ bool run_folds_let_touch(struct run *run)
     return true;
 }
 
+bool run_touches_in_part(const struct run *run)
+{
+    bool whole;
+    return count_touching(run->scene, &whole) > 0 && !whole;
+}
+
 bool run_folds_touch_in_part(const struct run *run)
 {
-    bool whole, is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
-    return is_through && count_touching(run->scene, &whole) > 0 && !whole;
+    bool is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
+    return is_through && run_touches_in_part(run);
 }
 
 void run_folds_judge(struct run *run)

@@ -23,12 +23,12 @@ enum { FOLDED, NOTED, FOLD_SPELLS };
 
 struct run_folds {
     struct folds folds;
-    bool *held, *slides;     /* whether the displacement is prescribed at each face of the boundary; along its
-                                normal alone */
-    double *field;           /* scratch: node_count * dim */
-    int64_t *node_first;     /* the nodes at which each process evaluates it */
-    bool *stopped, *touched; /* scratch: node_count */
-    bool reported;           /* in the message that ends the run */
+    bool *held, *slides; /* whether the displacement is prescribed at each face of the boundary; along its
+                            normal alone */
+    double *field;       /* scratch: node_count * dim */
+    int64_t *node_first; /* the nodes at which each process evaluates it */
+    bool *stopped, *touched, *turned; /* scratch: node_count */
+    bool reported;                    /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };
@@ -45,6 +45,9 @@ MUST_CHECK enum status run_folds_state(struct run *run, const struct state *stat
 
 /* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
 void run_folds_describe(const struct run *run, int which, char *text, size_t size);
+
+/* Whether the scene lets parts of the boundary touch, and not all of it. */
+bool run_touches_in_part(const struct run *run);
 
 /* Whether parts of the boundary have passed through each other though the scene lets some touch: it should
  * let all. */

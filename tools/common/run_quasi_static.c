@@ -35,10 +35,15 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
+        const char *remedy = run_folds_touch_in_part(run) ? "" /* it is named with the fold */
+                             : run_touches_in_part(run)
+                                 ? ": to let all of it touch (facets = *, against = *), a larger tolerance, "
+                                   "a finer cloud at the contacts, or supports against rigid motion may help"
+                                 : ": a larger tolerance, a finer cloud at the contacts, or supports against "
+                                   "rigid motion may help";
         run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement: a larger "
-                 "tolerance, a finer cloud at the contacts, or supports against rigid motion may help",
-                 scene->path, (long long)report->steps, load, report->error);
+                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s", scene->path,
+                 (long long)report->steps, load, report->error, remedy);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -84,16 +89,18 @@ void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     const struct body *body = &run->model->system.body;
-    struct relaxation_options options = {.tolerance = solver->tolerance,
-                                         .time_step_margin = solver->time_step_margin,
-                                         .ramp_steps = solver->ramp_steps,
-                                         .most_steps = solver->max_steps,
-                                         .frames = run->scene->output.frames,
-                                         .frame = run_put_equilibrium,
-                                         .progress = run_tell,
-                                         .context = run,
-                                         .interrupted = run->checkpoint.interrupted,
-                                         .restored = run_checkpoint_state(run)};
+    struct relaxation_options options = {
+        .tolerance = solver->tolerance,
+        .time_step_margin = solver->time_step_margin,
+        .ramp_steps = solver->ramp_steps,
+        .most_steps = solver->max_steps,
+        .frames = run->scene->output.frames,
+        .frame = run_put_equilibrium,
+        .progress = run_tell,
+        .context = run,
+        .interrupted = run->checkpoint.interrupted,
+        .folded = run->scene->output.folds_allowed ? NULL : &run->folds.now[FOLDED].seen,
+        .restored = run_checkpoint_state(run)};
     struct relaxation_report report;
     struct error error;
     run_check_rigid_modes(run);

@@ -39,7 +39,7 @@ static bool has_touched(const struct solid_system *system)
 {
     bool touched = false;
     for (int64_t c = 0; c < system->contact_count; c++) {
-        touched = touched || system->contacts[c].pressed;
+        touched = touched || system->contacts[c].deepest > 0.0;
     }
     return touched;
 }
