@@ -73,7 +73,8 @@ TEST(lists)
 TEST(fill_and_exactness)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 6 : 3);
+        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
+        FREED_BY(adaptive_points_free)
         struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
         double quadratic = 0.0, total = 0.0;
         int64_t at = 0;
@@ -101,8 +102,6 @@ TEST(fill_and_exactness)
         /* integrals of x y and z^2 over the box [0, .1]^dim */
         double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
         at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
-        adaptive_points_free(&points);
-        body_free(&body);
     }
 }
 
@@ -166,13 +165,14 @@ static struct adaptive_points brute(const struct body *body, int levels)
 TEST(convergence)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 6 : 3);
+        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
         int64_t n = body.cells.node_count, before = 0;
         int deepest = dim == 2 ? 3 : 2;
-        struct adaptive_points finest = brute(&body, deepest);
+        FREED_BY(adaptive_points_free) struct adaptive_points finest = brute(&body, deepest);
         double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
         double error_before = INFINITY;
         for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
+            FREED_BY(adaptive_points_free)
             struct adaptive_points points = integrate(&body, tolerance, deepest);
             double *K = stiffness(&body, points.count, points.x, points.weight);
             double error = apart(n, K, reference);
@@ -184,10 +184,7 @@ TEST(convergence)
             assert_int_equal(points.unresolved, 0);
             before = points.count;
             error_before = error;
-            adaptive_points_free(&points);
         }
-        adaptive_points_free(&finest);
-        body_free(&body);
     }
 }
 
@@ -226,19 +223,16 @@ TEST(threads)
 {
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 9 : 3);
+        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 9 : 3);
         omp_set_num_threads(1);
-        struct adaptive_points one = integrate(&body, 0.1, 3);
+        FREED_BY(adaptive_points_free) struct adaptive_points one = integrate(&body, 0.1, 3);
         omp_set_num_threads(3);
-        struct adaptive_points three = integrate(&body, 0.1, 3);
+        FREED_BY(adaptive_points_free) struct adaptive_points three = integrate(&body, 0.1, 3);
         assert_int_equal(one.count, three.count);
         assert_memory_equal(one.x, three.x, (size_t)(one.count * dim) * sizeof(double));
         assert_memory_equal(one.weight, three.weight, (size_t)one.count * sizeof(double));
         assert_memory_equal(one.cell, three.cell, (size_t)one.count * sizeof(int32_t));
         assert_memory_equal(one.level, three.level, (size_t)one.count * sizeof(int32_t));
-        adaptive_points_free(&one);
-        adaptive_points_free(&three);
-        body_free(&body);
     }
     omp_set_num_threads(before);
 }

@@ -37,9 +37,9 @@ TEST(linear_field_by_table)
 {
     static const double A[3][3] = {{0.02, 0.01, -0.01}, {0.03, -0.02, 0.01}, {0.01, -0.01, 0.015}};
     for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         struct error error, note;
-        int32_t *facet;
+        SCRATCH int32_t *facet = NULL;
         double *rows;
         struct lattice_options options = lattice_defaults(dim, 5);
         options.jitter = 0.1;
@@ -74,8 +74,6 @@ TEST(linear_field_by_table)
                 NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
             }
         }
-        free(facet);
-        lattice_free(&l);
     }
 }
 

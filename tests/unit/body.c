@@ -224,10 +224,10 @@ TEST(many_blocks)
     struct random random = {7};
     for (int i = 0; i < 4; i++) {
         bool by_faces = i >= 2;
-        struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
+        FREED_BY(sample_free) struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
         struct setup setup = three_materials(i % 2 == 1);
         setup.faces = by_faces;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * 2;
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *P = zeros(sample.assembly.point_count * 9, sizeof *P);
@@ -273,8 +273,6 @@ TEST(many_blocks)
             u[k] -= 2.0 * h * along[k];
         }
         NEAR_TO((high - body_energy(&body, u)) / (2.0 * h), slope, 1e-5 * fabs(slope));
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 

@@ -7,11 +7,11 @@ TEST(accumulation)
 {
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
         for (int averaged = 0; averaged < 2; averaged++) {
             struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, averaged == 1);
             setup.faces = true;
-            struct body body = make_body(&sample, &setup);
+            FREED_BY(body_free) struct body body = make_body(&sample, &setup);
             int64_t inner = 0;
             double *u = linear_field(&sample, A, NULL);
             double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
@@ -35,9 +35,7 @@ TEST(accumulation)
                 }
             }
             assert_true(inner > 0);
-            body_free(&body);
         }
-        sample_free(&sample);
     }
 }
 
@@ -130,7 +128,7 @@ TEST(enclosed_volume)
         const struct sample *sample = &samples[i];
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
         setup.faces = true;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, averages = 0.0,
                inside = 0.0;
         double *F = zeros(sample->assembly.point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
@@ -146,7 +144,6 @@ TEST(enclosed_volume)
         NEAR_TO(sum, inside, 1e-13 * rest);
 
         assert_true(fabs(averages - inside) > 1e-4 * rest); /* the determinants of the averages do not */
-        body_free(&body);
     }
 }
 
@@ -160,9 +157,9 @@ TEST(faces)
             const struct sample *sample = &samples[i];
             struct setup setup = three_materials(kind == 1);
             int64_t count = sample->cloud.node_count * sample->dim, size = sample->assembly.point_count * 9;
-            struct body by_table = make_body(sample, &setup);
+            FREED_BY(body_free) struct body by_table = make_body(sample, &setup);
             setup.faces = true;
-            struct body by_faces = make_body(sample, &setup);
+            FREED_BY(body_free) struct body by_faces = make_body(sample, &setup);
             double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
             double *F = zeros(size, sizeof *F), *F_expected = zeros(size, sizeof *F_expected);
             double *u = deformed_field(sample, &by_table, expected, &random);
@@ -193,8 +190,6 @@ TEST(faces)
             }
             energy = body_energy(&by_table, u);
             NEAR_TO(body_energy(&by_faces, u) - 1e-10 * stabilised, energy, 1e-4 * energy);
-            body_free(&by_table);
-            body_free(&by_faces);
         }
     }
 }
@@ -208,7 +203,7 @@ TEST(general_law)
         int64_t count = sample->cloud.node_count * sample->dim;
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4);
         setup.faces = sample->smoothed;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &body, force, &random);
         (void)body_force(&body, u, force);
@@ -220,7 +215,6 @@ TEST(general_law)
         for (int64_t k = 0; k < count; k++) {
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
-        body_free(&body);
     }
 }
 

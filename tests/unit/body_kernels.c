@@ -17,7 +17,7 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     int before = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
-        struct body body = make_body(sample, setup);
+        FREED_BY(body_free) struct body body = make_body(sample, setup);
         double *force = zeros(count, sizeof *force);
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
@@ -30,7 +30,6 @@ static void check_threads(const struct sample *sample, const struct setup *setup
             assert_memory_equal(force, first, (size_t)count * sizeof *first);
             NEAR_TO(body_energy(&body, u), energy, 0.0);
         }
-        body_free(&body);
     }
     omp_set_num_threads(before);
 }
@@ -79,7 +78,7 @@ TEST(compressible)
             none.material[m].bulk_modulus = whole.material[m].bulk_modulus =
                 1.5 * none.material[m].shear_modulus;
         }
-        struct body one = make_body(sample, &none), other = make_body(sample, &whole);
+        FREED_BY(body_free) struct body one = make_body(sample, &none), other = make_body(sample, &whole);
         int64_t count = sample->cloud.node_count * sample->dim;
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
@@ -89,8 +88,6 @@ TEST(compressible)
             NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
         }
         NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
-        body_free(&one);
-        body_free(&other);
     }
 }
 
@@ -99,9 +96,9 @@ TEST(nodal_volumes)
 {
     struct random random = {3};
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, false, 5);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, false, 5);
         struct setup setup = three_materials(true);
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         const struct nodal_volumes *volumes = &body.volumes;
         double *u = random_field(&sample, 1e-3, &random), volume = 0.0, content = 0.0, carried = 0.0,
                expected = 0.0;
@@ -126,8 +123,6 @@ TEST(nodal_volumes)
         NEAR_TO(volume, carried, 1e-15);
         NEAR_TO(content, expected, 1e-15);
         assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
@@ -192,13 +187,13 @@ TEST(edges)
 {
     struct random random = {5};
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
-        bool *at_edge = edge_nodes(&sample);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+        SCRATCH bool *at_edge = edge_nodes(&sample);
         struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
         one.faces = three.faces = true;
         one.at_edge = three.at_edge = at_edge;
         three.group = (int32_t[]){0, 0, 1};
-        struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
+        FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
         double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
         double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
         (void)body_energy(&body, u);
@@ -208,10 +203,6 @@ TEST(edges)
         check_shares(&sample, &body, at_edge);
         check_work(&sample, &body, &random);
         check_work(&sample, &mixed, &random);
-        body_free(&body);
-        body_free(&mixed);
-        free(at_edge);
-        sample_free(&sample);
     }
 }
 
@@ -229,8 +220,8 @@ TEST(nodal_pressures)
 {
     const double poisson_ratio[3] = {0.49, 0.4999, 0.49999};
     for (int k = 0; k < 6; k++) {
-        struct sample sample = make_sample(2 + k % 2, false, 5);
-        struct body body = make_alike(&sample, poisson_ratio[k / 2]);
+        FREED_BY(sample_free) struct sample sample = make_sample(2 + k % 2, false, 5);
+        FREED_BY(body_free) struct body body = make_alike(&sample, poisson_ratio[k / 2]);
         struct nodal_volumes *volumes = &body.volumes;
         const struct material *material = &body.materials[0];
         double *u = zeros(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
@@ -264,8 +255,6 @@ TEST(nodal_pressures)
         }
         AT_MOST(sqrt(missing2 / whole2),
                 2.0 * 0.02 / 0.98); /* by the iterations, and scaled for uniform ones */
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
@@ -311,7 +300,7 @@ TEST(diagonal)
         int dim = sample->dim;
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
         setup.faces = by_faces;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         int64_t count = sample->cloud.node_count * dim;
         double mu = setup.material[0].shear_modulus, h = 1e-8;
         double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
@@ -337,7 +326,6 @@ TEST(diagonal)
                 NEAR_TO(trace, bound[n] * (lambda + (dim + 1) * mu) / wave, 1e-6 * bound[n]);
             }
         }
-        body_free(&body);
     }
 }
 

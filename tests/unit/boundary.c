@@ -78,7 +78,9 @@ TEST(averages_split_at_corners)
 {
     for (int dim = 2; dim <= 3; dim++) {
         for (int smoothed = 0; smoothed < 2; smoothed++) {
+            FREED_BY(sample_free)
             struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
+            FREED_BY(boundary_averages_free)
             struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
             int64_t expected = 0;
             double area = 0.0, outward[3] = {0.0};
@@ -116,8 +118,6 @@ TEST(averages_split_at_corners)
             for (int c = 0; c < dim; c++) {
                 NEAR_TO(outward[c], 0.0, 1e-14);
             }
-            boundary_averages_free(&averages);
-            sample_free(&sample);
         }
     }
 }
@@ -127,10 +127,12 @@ TEST(averages_split_at_corners)
 TEST(sides)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
+        FREED_BY(boundary_averages_free)
         struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
         int64_t matched = 0;
         for (int side = 0; side < 2 * dim; side++) {
+            FREED_BY(boundary_averages_free)
             struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, side));
             double area = 0.0;
             check_averages(&sample, &averages);
@@ -153,11 +155,8 @@ TEST(sides)
                 }
             }
             NEAR_TO(area, pow(sample_size, dim - 1), 1e-15);
-            boundary_averages_free(&averages);
         }
         assert_int_equal(matched, whole.count);
-        boundary_averages_free(&whole);
-        sample_free(&sample);
     }
 }
 
@@ -167,7 +166,8 @@ TEST(sides)
 TEST(divergence_theorem)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
+        FREED_BY(boundary_averages_free)
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
         int64_t count = sample.cloud.node_count * dim;
         double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
@@ -193,8 +193,6 @@ TEST(divergence_theorem)
             NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
         }
         assert_true(largest > 0.01 * pow(sample_size, dim - 1));
-        boundary_averages_free(&averages);
-        sample_free(&sample);
     }
 }
 
@@ -202,9 +200,9 @@ TEST(divergence_theorem)
 TEST(other_vertex_orders)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
         struct facet_set set = all_facets(&sample);
-        struct boundary_averages expected = averages_of(&sample, set);
+        FREED_BY(boundary_averages_free) struct boundary_averages expected = averages_of(&sample, set);
         int32_t *turned = zeros(set.count * dim, sizeof *turned);
         for (int shift = 1; shift < dim + 1; shift++) {
             /* Begin with the next node; at last, swap two: inside out. */
@@ -215,6 +213,7 @@ TEST(other_vertex_orders)
                 }
             }
             double sign = dim == 2 || shift == dim ? -1.0 : 1.0;
+            FREED_BY(boundary_averages_free)
             struct boundary_averages averages = averages_of(&sample, (struct facet_set){set.count, turned});
             assert_int_equal(averages.count, expected.count);
             for (int64_t a = 0; a < averages.count; a++) {
@@ -229,10 +228,7 @@ TEST(other_vertex_orders)
                     NEAR_TO(averages.phi[i], expected.phi[i], 1e-14);
                 }
             }
-            boundary_averages_free(&averages);
         }
-        boundary_averages_free(&expected);
-        sample_free(&sample);
     }
 }
 
@@ -250,10 +246,10 @@ TEST(touching_facets)
         for (int i = 0; i < 9; i++) {
             shared += facets[i / 3] == facets[3 + i % 3];
         }
+        FREED_BY(boundary_averages_free)
         struct boundary_averages averages = averages_of(&sample, (struct facet_set){2, facets});
         assert_int_equal(averages.count, shared == 2 ? 4 : 6);
         pairs[shared]++;
-        boundary_averages_free(&averages);
     }
     assert_true(pairs[0] > 0 && pairs[1] > 0 && pairs[2] > 0);
 }
@@ -267,9 +263,9 @@ TEST(gentle_and_sharp_turns)
         double x[2 * (MOST + 1)] = {0.0}, phi[4 * MOST], widen[2 * MOST];
         int32_t cells[3 * MOST], facets[2 * MOST], idx[4 * MOST];
         int64_t ptr[2 * MOST + 1] = {0};
-        struct faces faces;
+        FREED_BY(faces_free) struct faces faces = {0};
         struct error error;
-        struct boundary_averages averages;
+        FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
         for (int i = 0; i < corners; i++) {
             x[2 * (i + 1)] = cos(2.0 * M_PI * i / corners);
             x[2 * (i + 1) + 1] = sin(2.0 * M_PI * i / corners);
@@ -309,8 +305,6 @@ TEST(gentle_and_sharp_turns)
             NEAR_TO(averages.normal[2 * a], x[2 * node], 1e-14);
             NEAR_TO(averages.normal[2 * a + 1], x[2 * node + 1], 1e-14);
         }
-        boundary_averages_free(&averages);
-        faces_free(&faces);
     }
 }
 
@@ -319,13 +313,13 @@ TEST(gentle_and_sharp_turns)
 TEST(whole_sides)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
         struct error error;
         for (int split = 0; split < 2; split++) {
-            struct boundary_averages averages;
-            struct boundary_sides sides;
+            FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+            FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};
             int64_t nodes = 0, parts = 0;
             double whole = pow(sample_size, dim - 1);
             GOOD(boundary_sides_build(&table, &set, split == 1, &averages, &sides, &error));
@@ -360,10 +354,7 @@ TEST(whole_sides)
                 }
                 NEAR_TO(area, whole, 1e-12 * whole);
             }
-            boundary_averages_free(&averages);
-            boundary_sides_free(&sides);
         }
-        sample_free(&sample);
     }
 }
 
@@ -372,10 +363,10 @@ TEST(node_values)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct error error;
-        struct sample sample = make_sample(dim, true, 5);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         const struct neighbours lists = sample.assembly.node_lists;
         const double *phi = sample.assembly.node_phi;
-        struct boundary_averages averages;
+        FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
         int64_t count = sample.cloud.node_count, expected = 0;
         double area = 0.0;
         struct face_table table = sample_face_table(&sample);
@@ -399,8 +390,6 @@ TEST(node_values)
             }
         }
         NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-        boundary_averages_free(&averages);
-        sample_free(&sample);
     }
 }
 
@@ -421,7 +410,7 @@ static bool on_side_below(const struct sample *sample, int64_t face, double limi
 TEST(ends)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         struct face_table table = sample_face_table(&sample);
         struct error error;
         bool *held = zeros(sample.assembly.faces.count, sizeof *held);
@@ -479,14 +468,13 @@ TEST(ends)
             }
             assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
         }
-        sample_free(&sample);
     }
 }
 
 TEST(faults)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
+        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
         struct face_table table = sample_face_table(&sample);
         struct boundary_averages averages;
         struct error error;
@@ -515,7 +503,6 @@ TEST(faults)
         assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
         assert_string_equal(error.text, "facets: no node -1");
         boundary_averages_free(&averages);
-        sample_free(&sample);
     }
 }
 

@@ -52,7 +52,7 @@ TEST(cells_fill_the_box)
     for (int dim = 2; dim <= 3; dim++) {
         for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
             struct cloud_options options = options_of((enum cloud_kind)kind, dim);
-            struct cloud cloud = make(&options);
+            FREED_BY(cloud_free) struct cloud cloud = make(&options);
             if (kind == CLOUD_HALTON) {
                 assert_int_equal(cloud.node_count, 5);
                 assert_int_equal(cloud.cell_count, 0);
@@ -61,7 +61,6 @@ TEST(cells_fill_the_box)
                 assert_int_equal(cloud.cell_count, dim == 2 ? 2 * 12 : 6 * 24);
                 assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) < 1e-14);
             }
-            cloud_free(&cloud);
         }
     }
 }
@@ -71,7 +70,7 @@ TEST(facets_look_outward)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-        struct cloud cloud = make(&options);
+        FREED_BY(cloud_free) struct cloud cloud = make(&options);
         double sum[6][3] = {{0}};
         double size[6] = {0};
         for (int64_t f = 0; f < cloud.facet_count; f++) {
@@ -92,7 +91,6 @@ TEST(facets_look_outward)
             }
             assert_true(fabs(size[side] - area) < 1e-13);
         }
-        cloud_free(&cloud);
     }
 }
 
@@ -100,15 +98,13 @@ TEST(neighbours_conform)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-        struct cloud cloud = make(&options);
+        FREED_BY(cloud_free) struct cloud cloud = make(&options);
         struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
-        struct faces boundary;
+        FREED_BY(faces_free) struct faces boundary = {0};
         struct error error;
         GOOD(faces_build(&cells, true, &boundary, &error));
         assert_int_equal(boundary.count, cloud.facet_count);
         assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
-        faces_free(&boundary);
-        cloud_free(&cloud);
     }
 }
 
@@ -201,7 +197,7 @@ TEST(wrong_options_are_refused)
     struct cloud_options good = options_of(CLOUD_JITTERED, 2);
     for (int i = 0; i < 7; i++) {
         struct cloud_options options = good;
-        struct cloud cloud;
+        FREED_BY(cloud_free) struct cloud cloud = {0};
         struct error error = {""};
         options.dim = i == 0 ? 4 : 2;
         options.count[1] = i == 1 ? 1 : i == 2 ? INT32_MAX : 4;
@@ -213,7 +209,6 @@ TEST(wrong_options_are_refused)
         }
         assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_INPUT);
         assert_ptr_equal(strstr(error.text, about[i]), error.text);
-        cloud_free(&cloud);
     }
 }
 

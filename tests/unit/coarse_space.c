@@ -184,7 +184,7 @@ TEST(ways)
     struct neighbours neighbours = {.count = ALL, .ptr = ptr, .idx = idx};
     make_ring(RING, ALONE, X, ptr, idx);
     for (int with_ways = 0; with_ways < 2; with_ways++) {
-        struct coarse_space coarse;
+        FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
         struct error error;
         GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, COARSE_MOST_CENTRES, &coarse,
                                 &error));
@@ -200,7 +200,6 @@ TEST(ways)
             }
             NEAR_TO(sum, 1.0, 1e-14);
         }
-        coarse_space_free(&coarse);
     }
 }
 

@@ -13,6 +13,7 @@ TEST(force_is_gradient)
     for (int round = 0; round < 40; round++) {
         int dim = 2 + round % 2;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.8, false), 7e3);
         double u[NODES * 3], force[NODES * 3] = {0.0}, aside[NODES * 3], h = 1e-7;
         push_out(u, &random);
@@ -31,7 +32,6 @@ TEST(force_is_gradient)
             u[i] = at;
             NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 1e-2);
         }
-        contact_free(&contact);
     }
     assert_true(contacts > 100);
 }
@@ -45,6 +45,7 @@ TEST(balance)
     for (int round = 0; round < 40; round++) {
         int dim = 2 + round % 2;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.7, false), 1e4);
         double u[NODES * 3], force[NODES * 3] = {0.0}, total[3], sum[3] = {0.0}, moment = 0.0, expected = 0.0;
         push_out(u, &random);
@@ -67,7 +68,6 @@ TEST(balance)
             NEAR_TO(sum[a], total[a], 1e-9);
         }
         NEAR_TO(moment, expected, 1e-9);
-        contact_free(&contact);
     }
 }
 
@@ -81,7 +81,9 @@ TEST(skipping)
     for (int round = 0; round < 16; round++) {
         int dim = 2 + round % 2;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        FREED_BY(contact_free)
         struct contact always = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
         double u[NODES * 3] = {0.0}, velocity[NODES * 3] = {0.0};
         for (int step = 0; step < 2000; step++) {
@@ -106,8 +108,6 @@ TEST(skipping)
             }
             steps++;
         }
-        contact_free(&contact);
-        contact_free(&always);
     }
     assert_true(contacts > steps && contacts < steps * CONTACT_NODES * 3 / 4);
     assert_true(skipped > steps * CONTACT_NODES / 3);
@@ -123,7 +123,9 @@ TEST(evaluations_change_no_state)
     for (int round = 0; round < 8; round++) {
         int dim = 2 + round % 2;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact walks = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
+        FREED_BY(contact_free)
         struct contact strays = built(&contact_nodes, make_shell(dim, 24, 0.8, round % 4 >= 2), 1e4);
         double u[NODES * 3] = {0.0}, away[NODES * 3], last[NODES * 3] = {0.0};
         for (int step = 0; step < 300; step++) {
@@ -159,8 +161,6 @@ TEST(evaluations_change_no_state)
             touches += touching(&walks);
             memcpy(last, force, sizeof force);
         }
-        contact_free(&walks);
-        contact_free(&strays);
     }
     assert_true(changes > 500 && touches > 500);
 }
@@ -174,6 +174,7 @@ TEST(augmentation)
         for (int a = 0; a < CONTACT_NODES; a++) {
             contact_nodes.X[a * dim] = 0.1 * a / CONTACT_NODES;
         }
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.5, false), 100.0);
         double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest = INFINITY;
         for (int round = 0; round < 40; round++) {
@@ -199,7 +200,6 @@ TEST(augmentation)
                 NEAR_TO(contact.pressure[a] * contact_nodes.area[a], pull - spring * 0.5, 1e-6);
             }
         }
-        contact_free(&contact);
     }
 }
 
@@ -248,7 +248,7 @@ TEST(round_the_rim)
             contact_nodes.X[2 * a] = path[0][0];
             contact_nodes.X[2 * a + 1] = path[0][1];
         }
-        struct contact contact = built(&contact_nodes, surface, 100.0);
+        FREED_BY(contact_free) struct contact contact = built(&contact_nodes, surface, 100.0);
         double u[NODES * 3] = {0.0}, force[NODES * 3];
         for (int leg = 1; leg < 10; leg++) {
             for (int step = 1; step <= detail; step++) {
@@ -260,7 +260,6 @@ TEST(round_the_rim)
             }
             assert_int_equal(contact.pressure[0] > 0.0, held[leg]);
         }
-        contact_free(&contact);
     }
 }
 
@@ -284,12 +283,12 @@ TEST(curved_boundary)
             contact_nodes.phi[3 * a + k] = weight[k];
         }
     }
+    FREED_BY(contact_free)
     struct contact contact = built(&contact_nodes, make_shell(2, CONTACT_NODES, 1.0, false), 1.0);
     contact_force(&contact, u, force);
     for (int a = 0; a < CONTACT_NODES; a++) {
         NEAR_TO(contact.gap[a], 0.0, 1e-14);
     }
-    contact_free(&contact);
 }
 
 /* The wrong side of the surface is noticed. */

@@ -71,7 +71,9 @@ TEST(moved_together)
     for (int round = 0; round < 20; round++) {
         int dim = 2 + round % 2;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact rests = built(&contact_nodes, make_shell(dim, 12, 0.8, false), 7e3);
+        FREED_BY(contact_free)
         struct contact moves = built(&contact_nodes, make_shell(dim, 12, 0.8, false), 7e3);
         moves.motion = some_motion(dim, &random);
         double u[NODES * 3], turned[NODES * 3];
@@ -104,8 +106,6 @@ TEST(moved_together)
             NEAR_TO(contact_energy(&moves), contact_energy(&rests), 1e-8 * contact_energy(&rests));
             contacts += touching(&moves);
         }
-        contact_free(&rests);
-        contact_free(&moves);
     }
     assert_true(contacts > 400);
 }
@@ -121,6 +121,7 @@ TEST(work_of_the_surface)
         int dim = 2 + round % 2, steps = 2000;
         double u[NODES * 3] = {0.0}, work = 0.0, unresolved = 0.0, begin = 0.0;
         make_contact_nodes(&contact_nodes, dim, 10.0, &random);
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.8, false), 7e3);
         contact.motion = some_motion(dim, &random);
         contact.motion.angle = fmod(contact.motion.angle, 0.3);
@@ -142,7 +143,6 @@ TEST(work_of_the_surface)
         double energy = contact_energy(&contact) - begin;
         NEAR_TO(work, energy, 1e-4 * fabs(energy) + 2.0 * unresolved);
         pressed += fabs(energy) > 1.0 && unresolved > 0.0 && unresolved < 1e-3 * fabs(energy);
-        contact_free(&contact);
     }
     assert_true(pressed >= 8);
 }
@@ -166,6 +166,7 @@ TEST(moment)
             }
         }
         contact_nodes.averages.position = position_;
+        FREED_BY(contact_free)
         struct contact contact = built(&contact_nodes, make_shell(dim, 12, 2.0, false), 7e3);
         contact.motion = some_motion(dim, &random);
         push_out(u, &random);
@@ -185,7 +186,6 @@ TEST(moment)
         for (int i = 0; i < 3; i++) {
             NEAR_TO(told[i], sum[i], 1e-8 * (1.0 + fabs(sum[i])));
         }
-        contact_free(&contact);
     }
 }
 

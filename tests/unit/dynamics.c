@@ -230,7 +230,7 @@ TEST(free_spin)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         options.jitter = 0.1;
         lattice_build(&l, &options);
         double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
@@ -255,7 +255,6 @@ TEST(free_spin)
             NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
         }
         AT_MOST(report.largest_drift, 1e-3);
-        lattice_free(&l);
     }
 }
 
@@ -266,8 +265,8 @@ TEST(pushed)
     static const double dampings[] = {0, 100};
     for (int k = 0; k < 2; k++) {
         struct lattice_options options = lattice_defaults(2, 7);
-        struct lattice l;
-        struct energy_log log = {0};
+        FREED_BY(lattice_free) struct lattice l = {0};
+        FREED_BY(energy_log_free) struct energy_log log = {0};
         struct error error;
         struct dynamics_report report;
         lattice_build(&l, &options);
@@ -296,8 +295,6 @@ TEST(pushed)
             NEAR_TO(P / expected, 1.0, 1e-4);
             NEAR_TO(end->work, end->internal + end->dissipated, 2e-3 * end->work);
         }
-        energy_log_free(&log);
-        lattice_free(&l);
     }
 }
 
@@ -485,7 +482,7 @@ TEST(any_number_of_threads)
     int most = omp_get_max_threads();
     size_t bytes = 0;
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         omp_set_num_threads(threads);
         int32_t curve = lattice_begin(&l, 3, 6, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4, curve);
@@ -500,7 +497,6 @@ TEST(any_number_of_threads)
         } else {
             assert_memory_equal(first, u, bytes);
         }
-        lattice_free(&l);
     }
     omp_set_num_threads(most);
 }

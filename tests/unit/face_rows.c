@@ -134,7 +134,7 @@ static void check_rows(const struct faces *faces, const int32_t *side)
 TEST(rows_of_faces)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
+        FREED_BY(cloud_free) struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
         struct cells cells = cells_of(&cloud);
         int32_t *side = zeros(cells.count, sizeof *side);
         struct faces faces;
@@ -160,7 +160,6 @@ TEST(rows_of_faces)
         assert_null(faces.row);
         assert_int_equal(faces.row_count, faces.boundary_count);
         faces_free(&faces);
-        cloud_free(&cloud);
     }
 }
 

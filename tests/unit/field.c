@@ -30,10 +30,11 @@ TEST(linear_fields_are_exact)
 {
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
+            FREED_BY(scattered_free)
             struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
             struct support_options options = support_defaults(dim);
             struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-            struct field_table table;
+            FREED_BY(field_table_free) struct field_table table = {0};
             struct error error;
             double *spacing = zeros(cloud.count, sizeof *spacing);
             double *values = linear_field(dim, cloud.count, cloud.x);
@@ -46,8 +47,6 @@ TEST(linear_fields_are_exact)
             for (int i = 0; i < 160; i++) {
                 at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
             }
-            field_table_free(&table);
-            scattered_free(&cloud);
         }
     }
 }
@@ -181,7 +180,8 @@ TEST(statistics_of_differences)
 TEST(comparisons)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
+        FREED_BY(scattered_free) struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
+        FREED_BY(scattered_free)
         struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
         double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
         struct nodal_field first = view(&coarse, a), second = view(&fine, b);
@@ -219,8 +219,6 @@ TEST(comparisons)
         assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
         assert_true(isnan(comparison.difference[0]));
         field_comparison_free(&comparison);
-        scattered_free(&coarse);
-        scattered_free(&fine);
     }
 }
 

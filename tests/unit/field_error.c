@@ -54,13 +54,11 @@ TEST(extrapolation)
 TEST(ratio_of_cells)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
+        FREED_BY(cloud_free) struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
         struct cells f = cells_of(&fine), c = cells_of(&coarse), nodes = c;
         at_most(fabs(field_error_ratio(&f, &c) - 2.0), 1e-14, "ratio of cells");
         nodes.count = 0;
         at_most(fabs(field_error_ratio(&f, &nodes) - 1.8), 1e-14, "ratio of nodes");
-        cloud_free(&fine);
-        cloud_free(&coarse);
     }
 }
 
@@ -70,7 +68,7 @@ TEST(mean_over_body)
     for (int dim = 2; dim <= 3; dim++) {
         struct cloud_options wanted = {
             .kind = CLOUD_GRADED, .dim = dim, .count = {7, 7, 7}, .high = {1.0, 1.0, 1.0}, .ratio = 10.0};
-        struct cloud cloud;
+        FREED_BY(cloud_free) struct cloud cloud = {0};
         struct error error;
         GOOD(cloud_make(&wanted, &cloud, &error));
         struct cells cells = cells_of(&cloud);
@@ -87,7 +85,6 @@ TEST(mean_over_body)
             value[n] = NAN;
         }
         assert_true(isnan(field_error_mean(&cells, value)));
-        cloud_free(&cloud);
     }
 }
 
@@ -95,7 +92,7 @@ TEST(mean_over_body)
 TEST(linear_fields_have_no_error)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = lattice(dim, 7, 0.0);
+        FREED_BY(cloud_free) struct cloud cloud = lattice(dim, 7, 0.0);
         struct cells cells = cells_of(&cloud);
         struct error error;
         double *values = array_of(cells.node_count * 2, -7.0), *squared = array_of(cells.count, -1.0);
@@ -126,7 +123,6 @@ TEST(linear_fields_have_no_error)
         }
         values[5] = NAN;
         FAILS(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error), STATUS_INPUT, "row 2");
-        cloud_free(&cloud);
     }
 }
 
@@ -138,7 +134,7 @@ TEST(quadratic_fields_converge)
     for (int dim = 2; dim <= 3; dim++) {
         double total[2];
         for (int i = 0; i < 2; i++) {
-            struct cloud cloud = lattice(dim, i == 0 ? 9 : 17, 0.0);
+            FREED_BY(cloud_free) struct cloud cloud = lattice(dim, i == 0 ? 9 : 17, 0.0);
             struct cells cells = cells_of(&cloud);
             struct error error;
             double *values = array_of(cells.node_count, 0.0), *squared = array_of(cells.count, 0.0);
@@ -153,7 +149,6 @@ TEST(quadratic_fields_converge)
             /* The gradient 2 x is off by up to h in a cell: h^2 / 3 in the mean square. */
             double h = i == 0 ? 1.0 / 8 : 1.0 / 16, exact = h * h / 3.0;
             at_most(fabs(log(total[i] / exact)), log(1.5), "recovered by exact error");
-            cloud_free(&cloud);
         }
         at_most(fabs(total[0] / total[1] - 4.0), 0.6, "squares of errors with cells of half the size");
     }
@@ -163,7 +158,7 @@ TEST(quadratic_fields_converge)
 TEST(equal_errors_keep_a_mesh_even)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = lattice(dim, 6, 0.0);
+        FREED_BY(cloud_free) struct cloud cloud = lattice(dim, 6, 0.0);
         struct cells cells = cells_of(&cloud);
         struct size_field_request request = {.share = 0.25, .most_nodes = 1e9};
         struct size_field field;
@@ -198,7 +193,6 @@ TEST(equal_errors_keep_a_mesh_even)
             assert_true(inside ? field.size[n] > spacing[n] : field.size[n] <= spacing[n]);
         }
         size_field_free(&field);
-        cloud_free(&cloud);
     }
 }
 
@@ -207,7 +201,7 @@ TEST(equal_errors_keep_a_mesh_even)
 TEST(bad_cells)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = lattice(dim, 9, 0.0);
+        FREED_BY(cloud_free) struct cloud cloud = lattice(dim, 9, 0.0);
         struct cells cells = cells_of(&cloud);
         struct size_field_request request = {.share = 0.5, .most_nodes = 1e9};
         struct size_field field;
@@ -249,7 +243,6 @@ TEST(bad_cells)
                 at_most(fabs(least / request.least - 1.0), 1e-12, "least size");
             }
         }
-        cloud_free(&cloud);
     }
 }
 

@@ -54,8 +54,8 @@ static double least_of_all(struct lattice *l, struct constraint *constraint, con
 TEST(agrees_with_all_eigenvalues)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
-        struct preconditioner preconditioner;
+        FREED_BY(lattice_free) struct lattice l = {0};
+        FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
         struct error error;
         struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
         double *mass, *scratch;
@@ -85,8 +85,6 @@ TEST(agrees_with_all_eigenvalues)
         /* From above; a relaxation takes .8 of it for the least. */
         assert_true(spectrum.lowest > (1.0 - 1e-9) * least);
         AT_MOST(0.8 * spectrum.lowest, least);
-        preconditioner_free(&preconditioner);
-        lattice_free(&l);
     }
 }
 
@@ -96,8 +94,8 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
 {
     const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
     for (int k = 0; k < 2; k++) {
-        struct lattice l;
-        struct preconditioner preconditioner;
+        FREED_BY(lattice_free) struct lattice l = {0};
+        FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
         struct error error;
         struct lattice_options options = lattice_defaults(2, 9);
         struct spectrum spectrum;
@@ -129,8 +127,6 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
             assert_true(spectrum.lowest < 0.0 && stability.least < 0.0);
             AT_MOST(0.1 - l.system.X[stability.node * 2 + 1], 1e-9); /* on the free side */
         }
-        preconditioner_free(&preconditioner);
-        lattice_free(&l);
     }
 }
 

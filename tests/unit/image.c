@@ -426,7 +426,7 @@ TEST(round_trips)
             make_kind(&kinds[k], version, version == 1);
             put_sform(&file, 2, oblique);
             accepted();
-            struct image first = image;
+            FREED_BY(image_free) struct image first = image;
             strcpy(first.description, "made by hand");
             strcpy(first.intent_name, "what");
             first.intent = IMAGE_INTENT_LABEL;
@@ -437,7 +437,6 @@ TEST(round_trips)
                 assert_string_equal(image.note, ""); /* the quaternion tells the same as the matrix */
                 image_free(&image);
             }
-            image_free(&first);
         }
     }
 }

@@ -176,10 +176,9 @@ TEST(stretches_make_no_difference)
         struct inverse_factor whole;
         GOOD(inverse_factor_build(system, &whole, &error));
         for (size_t k = 0; k < sizeof stretches / sizeof *stretches; k++) {
-            struct inverse_factor factor;
+            FREED_BY(inverse_factor_free) struct inverse_factor factor = {0};
             GOOD(inverse_factor_build_by(system, stretches[k], &factor, &error));
             same_bits(&factor.rows, &whole.rows);
-            inverse_factor_free(&factor);
         }
         assert_true((memcmp(whole.rows.value, cube.factor.rows.value, sizeof(double)) != 0) == (weak == 1));
         inverse_factor_free(&whole);

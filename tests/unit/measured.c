@@ -82,7 +82,7 @@ TEST(dependence)
         double part = k == 0 ? 0.05 : 0.2; /* of its length */
         double side = sqrt((1 - part * part) / 2);
         const double third[] = {side, side, part};
-        struct constraint_rows rows;
+        FREED_BY(constraint_rows_free) struct constraint_rows rows = {0};
         struct error error;
         bool dependent[4];
         constraint_rows_init(&rows, 2);
@@ -93,7 +93,6 @@ TEST(dependence)
         GOOD(measured_dependent(&rows, 3, dependent, &error));
         assert_int_equal(dependent[0] + dependent[1] + dependent[2], k == 0);
         assert_false(dependent[3]);
-        constraint_rows_free(&rows);
     }
 }
 

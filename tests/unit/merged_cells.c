@@ -137,10 +137,10 @@ TEST(linear)
 {
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
+        FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
         setup.faces = true;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t nodes = sample.cloud.node_count;
         double *u = linear_field(&sample, A, NULL), *force = zeros(nodes * dim, sizeof *force);
         double *F = zeros(sample.assembly.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
@@ -154,8 +154,6 @@ TEST(linear)
             total += body.weight[q];
         }
         NEAR_TO(sum, determinant(A) * total, 1e-11 * total);
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
@@ -165,10 +163,10 @@ TEST(gradient)
     struct random random = {5};
     for (int i = 0; i < 8; i++) {
         int dim = 2 + i % 2;
-        struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
+        FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
         struct setup setup = i < 4 ? one_material(MATERIAL_NEO_HOOKEAN, i < 2) : three_materials(i < 6);
         setup.faces = true;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * dim;
         double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
         double *u = random_field(&sample, 0.005 * sample_size, &random),
@@ -187,8 +185,6 @@ TEST(gradient)
             all += fabs(force[n] * v[n]);
         }
         NEAR_TO(work, (value[0] - value[1]) / (2.0 * h), 1e-6 * all);
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
@@ -196,10 +192,10 @@ TEST(gradient)
 TEST(groups)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
+        FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
         struct setup setup = three_materials(true);
         setup.faces = true;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t merged = 0;
         for (int64_t b = 0; b < body.block_count; b++) {
             const struct block *block = &body.blocks[b];
@@ -217,8 +213,6 @@ TEST(groups)
         }
         assert_int_equal(merged, body.cells.merged_count);
         assert_true(merged > 0);
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 

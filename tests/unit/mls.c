@@ -31,11 +31,12 @@ TEST(reproduction)
 {
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
+            FREED_BY(scattered_free)
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
             for (int b = 0; b < BASIS_COUNT; b++) {
                 for (int w = 0; w < WEIGHT_COUNT; w++) {
                     struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                    struct table table;
+                    FREED_BY(table_free) struct table table = {0};
                     struct error error;
                     GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                     struct defects worst =
@@ -49,10 +50,8 @@ TEST(reproduction)
                     at_most(worst.position, 1e-12, "sum phi x - x");
                     at_most(worst.gradient_sum, 1e-12, "sum grad phi");
                     at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
-                    table_free(&table);
                 }
             }
-            scattered_free(&cloud);
         }
     }
 }
@@ -81,9 +80,10 @@ TEST(quadratic_reproduction)
 {
     for (int dim = 2; dim <= 3; dim++) {
         for (int p = 0; p < PLACE_COUNT; p++) {
+            FREED_BY(scattered_free)
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
             struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
-            struct table table;
+            FREED_BY(table_free) struct table table = {0};
             struct error error;
             GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
             for (int64_t q = 0; q < 100; q++) {
@@ -102,8 +102,6 @@ TEST(quadratic_reproduction)
                     at_most(fabs(slope[a] - expected[a]) * cloud.size, 1e-9, "gradient of a quadratic");
                 }
             }
-            table_free(&table);
-            scattered_free(&cloud);
         }
     }
 }
@@ -132,11 +130,12 @@ enum { MOST = 1000 };
 TEST(gradients)
 {
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
         for (int b = 0; b < BASIS_COUNT; b++) {
             for (int w = 0; w < WEIGHT_COUNT; w++) {
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                struct table table;
+                FREED_BY(table_free) struct table table = {0};
                 struct error error;
                 GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
                 double h = 1e-5 * cloud.spacing;
@@ -161,10 +160,8 @@ TEST(gradients)
                         }
                     }
                 }
-                table_free(&table);
             }
         }
-        scattered_free(&cloud);
     }
 }
 
@@ -202,9 +199,10 @@ static struct mls with_mu(struct mls mls, double mu)
 TEST(limits_of_modified)
 {
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
         struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
-        struct table table;
+        FREED_BY(table_free) struct table table = {0};
         struct error error;
         GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
@@ -215,8 +213,6 @@ TEST(limits_of_modified)
         struct mls middle = with_mu(modified, 1e-2);
         assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
         assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
-        table_free(&table);
-        scattered_free(&cloud);
     }
 }
 
@@ -224,11 +220,12 @@ TEST(limits_of_modified)
 TEST(units_of_mu)
 {
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
         struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
         options.radius = 2.1 * cloud.spacing;
         options.widen = false;
-        struct table table;
+        FREED_BY(table_free) struct table table = {0};
         struct error error;
         GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         double s4 = pow(options.radius, 4.0);
@@ -240,8 +237,6 @@ TEST(units_of_mu)
             one.mu[k] = 1.0;
             assert_true(apart(&relative, &one, &cloud, &table) > 1e-4);
         }
-        table_free(&table);
-        scattered_free(&cloud);
     }
 }
 
@@ -251,8 +246,11 @@ TEST(invariance)
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             const double factor = 1024.0;
+            FREED_BY(scattered_free)
             struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+            FREED_BY(scattered_free)
             struct scattered scaled = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+            FREED_BY(scattered_free)
             struct scattered moved = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
             for (int64_t i = 0; i < cloud.count * dim; i++) {
                 scaled.x[i] *= factor;
@@ -263,7 +261,7 @@ TEST(invariance)
                 moved.points[i] += 1.0;
             }
             struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
-            struct table one, two, three;
+            FREED_BY(table_free) struct table one = {0}, two = {0}, three = {0};
             struct error error;
             GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
             GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
@@ -281,12 +279,6 @@ TEST(invariance)
                 at_most(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8,
                         "grad phi after a translation");
             }
-            table_free(&one);
-            table_free(&two);
-            table_free(&three);
-            scattered_free(&cloud);
-            scattered_free(&scaled);
-            scattered_free(&moved);
         }
     }
 }
@@ -300,11 +292,12 @@ TEST(normal_equations)
     int64_t decided = 0, left = 0;
     assert_non_null(scratch);
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 100, &places[2], 0.4, 12);
         for (int b = 0; b < BASIS_COUNT; b++) {
             for (int w = 0; w < WEIGHT_COUNT; w++) {
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                struct table table;
+                FREED_BY(table_free) struct table table = {0};
                 struct error error;
                 GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 for (int64_t p = 0; p < 100; p++) {
@@ -333,10 +326,8 @@ TEST(normal_equations)
                         }
                     }
                 }
-                table_free(&table);
             }
         }
-        scattered_free(&cloud);
     }
     print_message("# %d points decided by the normal equations, %d left\n", (int)decided, (int)left);
     assert_true(decided > 3 * left && left > 0);

@@ -200,7 +200,7 @@ TEST(hexahedra_conform)
 {
     for (uint32_t seed = 1; seed <= 50; seed++) {
         struct sketch *s = random_grid(seed);
-        struct mesh mesh = build(s, NULL);
+        FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
         double sum[6][3] = {{0}};
         assert_int_equal(mesh.cell_count, 6 * 27);
         assert_true(fabs(total_volume(&mesh) - 27) < 1e-12);
@@ -220,7 +220,6 @@ TEST(hexahedra_conform)
                 assert_true(fabs(sum[side][a] - (a == side / 2 ? outward : 0)) < 1e-12);
             }
         }
-        mesh_free(&mesh);
     }
 }
 
@@ -257,13 +256,12 @@ TEST(mixed_cells_conform)
             add_element(s, PRISM, -1, node);
         }
         ADD(s, TETRAHEDRON, -1, n[9], n[10], n[13], n[14]);
-        struct mesh mesh = build(s, NULL);
+        FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
         assert_int_equal(mesh.cell_count, 7 * 2 + 2 * 3 + 1);
         assert_true(fabs(total_volume(&mesh) - (8 + 8 + 8.0 / 3 + 10.0 / 6)) < 1e-12);
         assert_int_equal(boundary_count(&mesh), 2 * 5 + 2 * 2 + 4 + (4 - 1) + 3);
         assert_int_equal(mesh.regions.count, 1);
         assert_string_equal(mesh.regions.name[0], "body");
-        mesh_free(&mesh);
     }
 }
 
@@ -276,10 +274,9 @@ TEST(quadrangles_of_any_shape)
             add_node(s, at[(k + first) % 4][0], at[(k + first) % 4][1], 7);
         }
         ADD(s, QUADRANGLE, -1, 3, 2, 1, 0); /* and clockwise */
-        struct mesh mesh = build(s, NULL);
+        FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
         assert_int_equal(mesh.cell_count, 2);
         assert_true(fabs(total_volume(&mesh) - 4) < 1e-14);
-        mesh_free(&mesh);
     }
 }
 
@@ -307,14 +304,13 @@ TEST(cells_are_turned_and_facets_look_outward)
         ADD(s, LINE, side, 2, 0);
         ADD(s, LINE, side, 3, 1);
         ADD(s, LINE, side, 1, 3); /* twice in the file */
-        struct mesh mesh = build(s, NULL);
+        FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
         assert_true(fabs(total_volume(&mesh) - 2) < 1e-14);
         assert_int_equal(mesh.facet_count, 3);
         assert_memory_equal(mesh.facets, ((int32_t[]){2, 0, 1, 3, 2, 0}), 6 * sizeof(int32_t));
         assert_memory_equal(mesh.facet_set, ((int32_t[]){0, 0, 1}), 3 * sizeof(int32_t));
         assert_string_equal(mesh.facet_sets.name[0], "side");
         assert_string_equal(mesh.facet_sets.name[1], "left");
-        mesh_free(&mesh);
     }
 }
 

@@ -50,8 +50,8 @@ TEST(every_form_gives_the_same_mesh)
 {
     for (int form = 0; form < FIXTURE_FORMS; form++) {
         struct fixture f = fixture_make(form);
-        struct msh msh;
-        struct mesh mesh;
+        FREED_BY(msh_free) struct msh msh = {0};
+        FREED_BY(mesh_free) struct mesh mesh = {0};
         struct error error = {""};
         enum status status = read_bytes(&msh, f.bytes, f.size, &error);
         assert_string_equal(error.text, "");
@@ -77,8 +77,6 @@ TEST(every_form_gives_the_same_mesh)
         assert_int_equal(mesh.set_ptr[1], 1);
         assert_int_equal(mesh.set_idx[0], 0);
         assert_int_equal(mesh.notes.count, 1); /* the node of no cell */
-        mesh_free(&mesh);
-        msh_free(&msh);
     }
 }
 
@@ -104,7 +102,7 @@ TEST(tags_in_any_order)
     static const char *const tags[] = {"30", "2147483647"};
     for (int i = 0; i < 2; i++) {
         struct fixture f = fixture_make(ASCII_22);
-        struct msh msh;
+        FREED_BY(msh_free) struct msh msh = {0};
         struct error error;
         char to[64];
         static const char *const lines[4][2] = {
@@ -123,7 +121,6 @@ TEST(tags_in_any_order)
         assert_int_equal(msh.node_tag[0], atoll(tags[i]));
         assert_memory_equal(msh.node_idx, ((int32_t[]){4, 0, 1, 0, 1, 2, 0, 2, 3}), 9 * sizeof(int32_t));
         assert_memory_equal(msh.node_ptr, ((int64_t[]){0, 1, 3, 6, 9}), 5 * sizeof(int64_t));
-        msh_free(&msh);
     }
 }
 

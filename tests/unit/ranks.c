@@ -224,7 +224,7 @@ static void *evaluate_member(void *context)
     if (reads_some) {
         keep_some(&member->ranks, &member->sample->assembly, &sample.assembly);
     }
-    struct body body = make_body(&sample, &setup);
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
     if (reads_some) { /* the body has fetched what it needs */
         free((void *)(uintptr_t)sample.assembly.lists.ptr);
         free((void *)(uintptr_t)sample.assembly.lists.idx);
@@ -233,7 +233,6 @@ static void *evaluate_member(void *context)
     }
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
-    body_free(&body);
     return NULL;
 }
 

@@ -208,14 +208,13 @@ TEST(reaction_does_the_work)
     for (int large = 0; large < 2; large++) {
         double energy[3], force[3], down = large ? -0.02 : -1e-7, change = large ? 1e-4 : 0;
         for (int k = 0; k < 3; k++) {
-            struct lattice l;
+            FREED_BY(lattice_free) struct lattice l = {0};
             double *row_force;
             clamp(&l, 7, down + (k - 1) * change, 0, true);
             row_force = zeros(l.system.rows.count, sizeof *row_force);
             double *u = relaxed(&l, 1e-9, row_force);
             force[k] = lattice_reaction(&l, row_force, 1);
             energy[k] = body_energy(&l.system.body, u);
-            lattice_free(&l);
         }
         if (large) {
             NEAR_TO((energy[2] - energy[0]) / (2 * change) / force[1], 1, 1e-4);
@@ -277,7 +276,7 @@ TEST(estimate_is_a_bound)
 {
     static const double tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
     for (int problem = 0; problem < 5; problem++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         double *mass, largest_overestimate = 0;
         problem_of_bound(&l, problem);
         double *exact = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
@@ -297,7 +296,6 @@ TEST(estimate_is_a_bound)
         }
         print_message("problem %d: the error is overestimated by at most %.3g\n", problem,
                       largest_overestimate);
-        lattice_free(&l);
     }
 }
 
@@ -317,7 +315,7 @@ TEST(ramp_does_not_matter)
     static const int64_t ramps[] = {0, 150, 1000};
     double *first = NULL;
     for (int k = 0; k < 3; k++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         clamp(&l, 7, -0.02, 0.01, true);
         double *u = lattice_vector(&l);
         struct relaxation_options options = to(1e-8);
@@ -330,14 +328,13 @@ TEST(ramp_does_not_matter)
         } else {
             AT_MOST(largest_difference(first, u, l.system.node_count * 2), 1e-7 * 0.02);
         }
-        lattice_free(&l);
     }
 }
 
 /* A load on in ten steps inverts a cell. From the state kept before, it goes on at half its rate at once. */
 TEST(load_goes_on_after_an_inversion)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     clamp(&l, 15, -0.02, 0.0, true);
     double *u = lattice_vector(&l), *slow = relaxed(&l, 1e-7, NULL);
     struct relaxation_options options = to(1e-7);
@@ -347,7 +344,6 @@ TEST(load_goes_on_after_an_inversion)
     assert_true(report.loading_steps > 10); /* it went back */
     assert_true(report.loading_steps <= 50);
     AT_MOST(largest_difference(slow, u, l.system.node_count * 2), 1e-6 * 0.02);
-    lattice_free(&l);
 }
 
 TEST(any_number_of_threads)
@@ -355,7 +351,7 @@ TEST(any_number_of_threads)
     double *first = NULL;
     int most = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         omp_set_num_threads(threads);
         int32_t curve = lattice_begin(&l, 3, 5, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4 | 1u << 0, curve);
@@ -368,7 +364,6 @@ TEST(any_number_of_threads)
         } else {
             assert_memory_equal(first, u, (size_t)l.system.node_count * 3 * sizeof *u);
         }
-        lattice_free(&l);
     }
     omp_set_num_threads(most);
 }
@@ -378,7 +373,7 @@ TEST(any_number_of_threads)
 TEST(pressures_are_augmented)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         struct lattice_options options = lattice_defaults(dim, 5);
         static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         options.jitter = 0.2;
@@ -400,7 +395,6 @@ TEST(pressures_are_augmented)
             most = fmax(most, fabs(expected[i]));
         }
         AT_MOST(largest_difference(force, expected, size), 0.01 * most);
-        lattice_free(&l);
     }
 }
 
@@ -497,7 +491,7 @@ TEST(frames_and_outcomes)
     NEAR_TO(album.last[7], lattice_field(&l, u, l.system.node_count - 1, 1), 0);
     /* Each is what a run to that load alone comes to. */
     for (int k = 1; k <= 7; k++) {
-        struct lattice alone;
+        FREED_BY(lattice_free) struct lattice alone = {0};
         double s = k / 7.0, factor = s * s * s * (10 - 15 * s + 6 * s * s);
         clamp(&alone, 5, -0.01 * factor, 0, true);
         memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
@@ -508,7 +502,6 @@ TEST(frames_and_outcomes)
                 1e-5 * 0.01 * factor);
         NEAR_TO(album.force[k], row_force[alone.system.rows.count - 1], 1e-4 * fabs(album.force[k]));
         assert_true(fabs(album.force[k]) > fabs(album.force[k - 1]));
-        lattice_free(&alone);
     }
     memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
     options = to(1e-12);

@@ -261,13 +261,12 @@ TEST(concave_corners)
     for (int i = 0; i < 6; i++) {
         add_facet(&shape, ell[i], ell[(i + 1) % 6], NULL);
     }
-    struct rigid_surface surface = built(&shape, false);
+    FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
     for (int i = 0; i < 3000; i++) {
         double x[2] = {uniform(&random, -0.5, 2.5), uniform(&random, -0.5, 2.5)};
         bool inside = x[0] > 0 && x[1] > 0 && x[0] < 2 && x[1] < 2 && !(x[0] > 1 && x[1] > 1);
         assert_true((rigid_closest(&surface, x, INFINITY).gap < 0.0) == inside);
     }
-    rigid_free(&surface);
 }
 
 /* On a vertex and on a facet the normal is the surface's, not a quotient of round-off. */
@@ -300,7 +299,7 @@ TEST(flipped)
         } else {
             make_boulder(&shape, 3, 0.2, &random);
         }
-        struct rigid_surface surface = built(&shape, false), other = built(&shape, true);
+        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false), other = built(&shape, true);
         for (int i = 0; i < 500; i++) {
             double x[3];
             for (int a = 0; a < 3; a++) {
@@ -313,8 +312,6 @@ TEST(flipped)
                 NEAR_TO(one.normal[a], -two.normal[a], 0.0);
             }
         }
-        rigid_free(&surface);
-        rigid_free(&other);
     }
 }
 
@@ -336,7 +333,7 @@ TEST(loose_facets)
             }
             add_facet(&shape, corner, corner + dim, corner + 2 * dim);
         }
-        struct rigid_surface surface = built(&shape, false);
+        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
         assert_int_equal(surface.vertex_count, 300 * dim);
         int found = 0;
         for (int i = 0; i < 2000; i++) {
@@ -354,7 +351,6 @@ TEST(loose_facets)
             }
         }
         assert_in_range(found, 10, 1990);
-        rigid_free(&surface);
     }
 }
 
@@ -417,7 +413,7 @@ TEST(seams)
         double a[2] = {cos(0.1 * i) + 1e-13, sin(0.1 * i)}, b[2] = {cos(0.1 * (i + 1)), sin(0.1 * (i + 1))};
         add_facet(&shape, a, b, NULL);
     }
-    struct rigid_surface surface = built(&shape, false);
+    FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
     assert_int_equal(surface.vertex_count, 41);
     int64_t rims = 0;
     for (int64_t v = 0; v < surface.vertex_count; v++) {
@@ -431,7 +427,6 @@ TEST(seams)
         assert_true(contact.found);
         NEAR_TO(contact.gap, r - 1.0, 2e-3);
     }
-    rigid_free(&surface);
 }
 
 /* Straight over the end of a facet, however it lies: found; straight over a place where the rim of one facet
@@ -448,7 +443,7 @@ TEST(over_the_rim)
             corner[i] = uniform(&random, -1.0, 1.0);
         }
         add_facet(&shape, corner, corner + dim, corner + 2 * dim);
-        struct rigid_surface surface = built(&shape, false);
+        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
         part = round % 4 < 2 ? 0.0 : part; /* over a corner, over an edge */
         for (int a = 0; a < dim; a++) {
             x[a] = corner[a] + (dim == 3 ? part * (corner[3 + a] - corner[a]) : 0.0) +
@@ -457,18 +452,16 @@ TEST(over_the_rim)
         struct rigid_contact contact = rigid_closest(&surface, x, INFINITY);
         assert_true(contact.found);
         NEAR_TO(contact.gap, height, 1e-14);
-        rigid_free(&surface);
     }
     static const double floor[][2] = {{1, 0}, {-1, 0}}, wall[][2] = {{0, 1}, {0, 0}};
     for (int order = 0; order < 2; order++) {
         shape = (struct shape){.dim = 2};
         add_facet(&shape, order ? floor[0] : wall[0], order ? floor[1] : wall[1], NULL);
         add_facet(&shape, order ? wall[0] : floor[0], order ? wall[1] : floor[1], NULL);
-        struct rigid_surface surface = built(&shape, false);
+        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
         struct rigid_contact contact = rigid_closest(&surface, (double[]){0.0, -0.3}, INFINITY);
         assert_true(contact.found);
         NEAR_TO(contact.gap, -0.3, 1e-15);
-        rigid_free(&surface);
     }
 }
 

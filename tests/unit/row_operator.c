@@ -49,7 +49,7 @@ TEST(columns_are_summed_in_order)
     GOOD(sparse_transpose(&table, &transposed, &error));
     expect(&transposed, x, expected);
     for (int threads = 1; threads < 2 * COLUMNS; threads = 2 * threads + 1) {
-        struct row_operator rows = {0};
+        FREED_BY(row_operator_free) struct row_operator rows = {0};
         make_table(&rows.matrix);
         GOOD(row_operator_finish(&rows, 0, COLUMNS, threads, &error));
         assert_int_equal(rows.stripe_count, threads);
@@ -59,7 +59,6 @@ TEST(columns_are_summed_in_order)
         for (int64_t c = 0; c < COLUMNS; c++) {
             assert_memory_equal(&y[c * STRIDE], &expected[c], sizeof *y);
         }
-        row_operator_free(&rows);
     }
 }
 

@@ -239,12 +239,11 @@ TEST(line_length)
             fails(text, 2, "longer than 198 bytes");
             continue;
         }
-        struct scene scene;
+        FREED_BY(scene_free) struct scene scene = {0};
         struct error error;
         write_bytes(text, strlen(text));
         GOOD(scene_read(path, &scene, &error));
         assert_int_equal(strlen(scene.title), title);
-        scene_free(&scene);
     }
 }
 
@@ -382,12 +381,11 @@ TEST(wrong_files)
 TEST(truncation)
 {
     for (size_t size = 0; size < sizeof full; size++) {
-        struct scene scene;
+        FREED_BY(scene_free) struct scene scene = {0};
         struct error error = {""};
         write_bytes(full, size);
         enum status status = scene_read(path, &scene, &error);
         assert_true(status == STATUS_OK ? full[size - 1] == '\n' : error.text[0] != '\0');
-        scene_free(&scene);
     }
 }
 

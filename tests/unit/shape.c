@@ -86,9 +86,9 @@ TEST(quadrature_degrees)
 TEST(cells_and_faces)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = box_cloud(dim, 6, dim == 2 ? 0.4 : 0.1, 1.0);
+        FREED_BY(cloud_free) struct cloud cloud = box_cloud(dim, 6, dim == 2 ? 0.4 : 0.1, 1.0);
         struct cells cells = cells_of(&cloud);
-        struct faces faces, boundary;
+        FREED_BY(faces_free) struct faces faces = {0}, boundary = {0};
         struct error error;
         double volume = 0.0, area_unit = pow(0.1, dim - 1);
         GOOD(cells_check(&cells, &error));
@@ -137,9 +137,6 @@ TEST(cells_and_faces)
         for (int64_t i = 0; i < cells.count * dim; i++) {
             at_most(fabs(closed[i]) / area_unit, 1e-14, "sum of the normals of a cell");
         }
-        faces_free(&faces);
-        faces_free(&boundary);
-        cloud_free(&cloud);
     }
 }
 
@@ -220,7 +217,7 @@ TEST(smoothing_is_consistent)
     for (int dim = 2; dim <= 3; dim++) {
         for (int b = 0; b < BASIS_COUNT; b++) {
             for (double offset = 0.0; offset <= 1.0; offset += 1.0) {
-                struct smoothed s;
+                FREED_BY(smoothed_free) struct smoothed s = {0};
                 int64_t per_axis = dim == 2 ? 9 : 6;
                 smoothed_build(&s, dim, per_axis, (enum basis)b, offset);
                 double *centroids = zeros(s.cells.count * dim, sizeof *centroids);
@@ -242,7 +239,6 @@ TEST(smoothing_is_consistent)
                 at_most(worst.position, 1e-12, "sum phi x - centroid");
                 at_most(worst.gradient_sum, 1e-12, "sum grad phi");
                 at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
-                smoothed_free(&s);
             }
         }
     }
@@ -252,7 +248,7 @@ TEST(smoothing_is_consistent)
 TEST(smoothing_telescopes)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct smoothed s;
+        FREED_BY(smoothed_free) struct smoothed s = {0};
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
         struct quadrature_rule rule = quadrature_face_rule(dim);
         double *sum = zeros(s.cells.node_count * dim, sizeof *sum);
@@ -279,7 +275,6 @@ TEST(smoothing_telescopes)
         for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
             at_most(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14, "cells against the boundary");
         }
-        smoothed_free(&s);
     }
 }
 
@@ -291,14 +286,13 @@ TEST(smoothing_threads)
     int before = omp_get_max_threads();
     smoothed_build(&first, 2, 20, BASIS_MODIFIED, 0.0);
     for (int i = 0; i < 3; i++) {
-        struct smoothed s;
+        FREED_BY(smoothed_free) struct smoothed s = {0};
         omp_set_num_threads(numbers[i]);
         smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
         size_t pairs = (size_t)s.averages.ptr[s.faces.row_count];
         assert_int_equal(pairs, first.averages.ptr[s.faces.row_count]);
         assert_memory_equal(s.averages.idx, first.averages.idx, pairs * sizeof(int32_t));
         assert_memory_equal(s.averages.phi, first.averages.phi, pairs * sizeof(double));
-        smoothed_free(&s);
     }
     omp_set_num_threads(before);
 }
@@ -308,7 +302,7 @@ TEST(smoothing_threads)
 TEST(averages_of_values)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct smoothed s;
+        FREED_BY(smoothed_free) struct smoothed s = {0};
         smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
         double *row = zeros(s.cells.node_count, sizeof *row);
         int64_t outer = 0;
@@ -341,7 +335,6 @@ TEST(averages_of_values)
         assert_int_equal(outer, s.faces.boundary_count);
         assert_memory_equal(s.averages.boundary_phi, s.table.phi,
                             (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
-        smoothed_free(&s);
     }
 }
 

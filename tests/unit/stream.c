@@ -12,18 +12,15 @@ TEST(round_trip)
     FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int variant = 0; variant < 4; variant++) {
         bool text = variant % 2 == 0, from_pipe = variant / 2 == 1;
-        struct stream copy;
+        FREED_BY(stream_free) struct stream copy = {0};
         struct error error;
         size_t size, again_size;
-        char *bytes = written_bytes(&sample, text, &size);
+        SCRATCH char *bytes = written_bytes(&sample, text, &size);
         GOOD(read_bytes(bytes, size, from_pipe, &copy, &error));
         assert_same_stream(&sample, &copy);
-        char *again = written_bytes(&copy, text, &again_size);
+        SCRATCH char *again = written_bytes(&copy, text, &again_size);
         assert_int_equal(size, again_size);
         assert_memory_equal(bytes, again, size);
-        stream_free(&copy);
-        free(bytes);
-        free(again);
     }
 }
 
@@ -78,12 +75,11 @@ TEST(truncation_at_every_byte)
     FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int text = 0; text < 2; text++) {
         size_t size;
-        char *bytes = written_bytes(&sample, text == 1, &size);
+        SCRATCH char *bytes = written_bytes(&sample, text == 1, &size);
         for (size_t length = 0; length < size; length++) {
             assert_refused(bytes, length, false);
             assert_refused(bytes, length, true);
         }
-        free(bytes);
     }
 }
 

@@ -447,11 +447,10 @@ TEST(what_is_filled)
     struct labels labels = labels_of(&shape);
     for (int coarse = 0; coarse < 2; coarse++) {
         struct stuffing_options options = {.spacing = coarse ? 6e-3 : 2e-3, .keep = keep};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         GOOD(stuffing_lost(&labels, keep, &stuffing, lost, &error));
         assert_int_equal(lost[0], 0);
         assert_int_equal(lost[2] > 1000, coarse);
-        stuffing_free(&stuffing);
     }
     free(shape.label);
 }

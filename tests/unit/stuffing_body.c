@@ -115,11 +115,10 @@ TEST(parts_that_hang_by_an_edge)
     struct labels labels = labels_of(&shape);
     for (int h = 2; h <= 6; h++) {
         struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         check_cells(&stuffing);
         check_apart(&stuffing);
         cut += stuffing.pinched;
-        stuffing_free(&stuffing);
     }
     assert_true(cut > 0);
     for (uint64_t seed = 1; seed <= 20; seed++) {

@@ -22,7 +22,7 @@ TEST(grid_against_brute_force)
             for (int n = 0; n < NODES; n++) {
                 radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
             }
-            struct point_grid grid;
+            FREED_BY(point_grid_free) struct point_grid grid = {0};
             struct index_list list = {0};
             struct error error;
             GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
@@ -51,7 +51,6 @@ TEST(grid_against_brute_force)
                 assert_int_equal(at, list.count);
             }
             free(list.index);
-            point_grid_free(&grid);
         }
     }
     gsl_rng_free(random);
@@ -66,10 +65,11 @@ TEST(lists_against_brute_force)
     assert_non_null(random);
     for (int dim = 2; dim <= 3; dim++) {
         for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
+            FREED_BY(scattered_free)
             struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
             struct support_options options = support_defaults(dim);
-            struct point_grid grid;
-            struct support_lists lists;
+            FREED_BY(point_grid_free) struct point_grid grid = {0};
+            FREED_BY(support_free) struct support_lists lists = {0};
             struct error error;
             double *radius = zeros(cloud.count, sizeof *radius);
             options.widen = false;
@@ -106,9 +106,6 @@ TEST(lists_against_brute_force)
             }
             assert_int_equal(lists.fewest, fewest);
             assert_int_equal(lists.most, most);
-            support_free(&lists);
-            point_grid_free(&grid);
-            scattered_free(&cloud);
         }
     }
     gsl_rng_free(random);
@@ -146,6 +143,7 @@ static int compare_doubles(const void *a, const void *b)
 TEST(spacing_against_brute_force)
 {
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
         double *spacing = zeros(cloud.count, sizeof *spacing);
         double *distance = zeros(cloud.count, sizeof *distance);
@@ -168,7 +166,6 @@ TEST(spacing_against_brute_force)
             }
             at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
         }
-        scattered_free(&cloud);
     }
 }
 
@@ -186,8 +183,8 @@ TEST(nearest_with_ties)
     static const int64_t most[] = {1, 4, 5, 7};
     for (int i = 0; i < 4; i++) {
         struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
-        struct point_grid grid;
-        struct support_lists lists;
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
         struct error error;
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
@@ -195,8 +192,6 @@ TEST(nearest_with_ties)
         GOOD(support_build(&options, &grid, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));
-        support_free(&lists);
-        point_grid_free(&grid);
     }
 }
 
@@ -347,7 +342,7 @@ TEST(trap_sphere)
         for (double at = 0.0; at <= 1.0; at += 0.125) {
             struct support_options options = {.radius = 3.0, .mls = mls_default(3)};
             double point[3] = {at * 0.6, at * 0.0, at * 0.8};
-            struct table table;
+            FREED_BY(table_free) struct table table = {0};
             struct error error;
             options.mls.basis = (enum basis)b;
             enum status status = tabulate(&options, 50, trap.x, 1, point, &table, &error);
@@ -357,7 +352,6 @@ TEST(trap_sphere)
                 at_most(worst.position, 1e-10, "sphere");
                 at_most(worst.gradient_position, 1e-10, "sphere");
             }
-            table_free(&table);
         }
     }
 }
@@ -489,7 +483,7 @@ TEST(trap_few)
         for (int64_t count = 1; count <= dim + 1; count++) {
             double x[4 * 3] = {0.0};
             struct support_options options = support_defaults(dim);
-            struct table table;
+            FREED_BY(table_free) struct table table = {0};
             struct error error;
             for (int64_t n = 1; n < count; n++) {
                 x[n * dim + n - 1] = 1.0;
@@ -499,7 +493,6 @@ TEST(trap_few)
             if (status == STATUS_OK) {
                 at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
             }
-            table_free(&table);
         }
     }
 }

@@ -64,11 +64,11 @@ TEST(lists_stop_at_the_interface)
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
         options.widen = false;
-        struct halves halves = make_halves(dim, &options);
-        struct support_space space;
-        struct support_lists lists;
+        FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
+        FREED_BY(support_space_free) struct support_space space = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
         struct error error;
-        double *x = scatter_points(dim, COUNT);
+        SCRATCH double *x = scatter_points(dim, COUNT);
         int64_t crossing = 0;
         options.side = halves.side;
         GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
@@ -94,10 +94,6 @@ TEST(lists_stop_at_the_interface)
         }
         assert_true(crossing > 100);
         assert_int_equal(lists.around_count, 0);
-        support_free(&lists);
-        support_space_free(&space);
-        halves_free(&halves);
-        free(x);
     }
 }
 
@@ -106,8 +102,8 @@ TEST(places_tell_the_side)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct support_options options = support_defaults(dim);
-        struct halves halves = make_halves(dim, &options);
-        struct support_space space;
+        FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
+        FREED_BY(support_space_free) struct support_space space = {0};
         struct support_lists found, given;
         struct error error;
         int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
@@ -133,8 +129,6 @@ TEST(places_tell_the_side)
             support_free(&found);
             support_free(&given);
         }
-        support_space_free(&space);
-        halves_free(&halves);
     }
 }
 
@@ -144,7 +138,7 @@ TEST(kinks_are_exact)
     for (int dim = 2; dim <= 3; dim++) {
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
-        struct halves halves = make_halves(dim, &options);
+        FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
         struct error error;
         double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
         double *field = zeros(halves.cells.node_count, sizeof *field);
@@ -153,7 +147,7 @@ TEST(kinks_are_exact)
             field[n] = fabs(at[0] - 0.5) + 0.3 * at[dim - 1];
         }
         for (int stops = 0; stops < 2; stops++) {
-            struct field_table table;
+            FREED_BY(field_table_free) struct field_table table = {0};
             options.side = stops ? halves.side : NULL;
             GOOD(field_table_build(&options, NULL, &halves.cells, halves.radius, COUNT, x, "points", &table,
                                    &error));
@@ -162,11 +156,9 @@ TEST(kinks_are_exact)
                 double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];
                 worst[stops] = worse(worst[stops], got[p] - exact);
             }
-            field_table_free(&table);
         }
         at_most(worst[1], 1e-12, "a kink at the interface");
         assert_true(worst[0] > 1e-2);
-        halves_free(&halves);
         free(x);
     }
 }
@@ -179,8 +171,8 @@ TEST(inclusions)
     struct error error;
     struct reach_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
-        struct support_space space;
-        struct support_lists lists;
+        FREED_BY(support_space_free) struct support_space space = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
         for (int64_t c = 0; c < halves.cells.count; c++) {
             double middle[2];
             cell_centroid(&halves.cells, c, middle);
@@ -195,8 +187,6 @@ TEST(inclusions)
         for (int64_t i = 1; i < lists.around_count; i++) {
             assert_true(lists.around_pair[i] > lists.around_pair[i - 1]);
         }
-        support_free(&lists);
-        support_space_free(&space);
     }
 }
 

@@ -154,12 +154,11 @@ TEST(truncation)
 {
     static const char text[] = "# E nu\n3000 .49\n3100 .45\n\n2000 .4\n";
     for (size_t size = 0; size < sizeof text; size++) {
-        struct table table;
+        FREED_BY(table_free) struct table table = {0};
         struct error error = {""};
         write_to(path, text, size);
         enum status status = table_read(path, 2, 2, &table, &error);
         assert_true(status == STATUS_OK ? text[size - 1] == '\n' : error.text[0] != '\0');
-        table_free(&table);
     }
 }
 
@@ -205,7 +204,7 @@ TEST(triangles)
     }
     write_to(path, text, strlen(text));
     for (int form = 0; form < 3; form++) {
-        struct table table;
+        FREED_BY(table_free) struct table table = {0};
         struct error error = {""};
         if (form > 0) {
             write_to(stl_path, form == 1 ? (const void *)ascii : binary,
@@ -216,7 +215,6 @@ TEST(triangles)
         assert_int_equal(table.cols, 9);
         assert_memory_equal(table.values, triangle, sizeof triangle);
         assert_int_equal(table.block_count, 1);
-        table_free(&table);
     }
 
     fails_in(path, 3, "0 0 0 1 1 1 2 2 2\n", 18, 1, "triangle without area");
