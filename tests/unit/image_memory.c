@@ -48,8 +48,7 @@ static double *u;
 static enum status move(struct error *error)
 {
     FREED_BY(motion_free) struct motion motion = {0};
-    enum status status = motion_build(&cells, u, false, NULL, &motion, error);
-    return status;
+    return motion_build(&cells, u, false, NULL, &motion, error);
 }
 
 TEST(motions)

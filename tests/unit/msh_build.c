@@ -119,8 +119,7 @@ static int64_t boundary_count(const struct mesh *mesh)
     FREED_BY(faces_free) struct faces faces = {0};
     struct error error;
     GOOD(faces_build(&cells, true, &faces, &error));
-    int64_t count = faces.count;
-    return count;
+    return faces.count;
 }
 
 /* Unit square of two triangles in group 'body', corners 0 to 3. */

@@ -20,8 +20,7 @@ static enum status try_read(struct error *error)
         assert_true(fixture_replace(&f, "\n9 ", "\n300000 "));
         assert_true(fixture_replace(&f, "\"body\"", "\"the body\""));
     }
-    enum status status = msh_parse(&msh, f.bytes, f.size, error);
-    return status;
+    return msh_parse(&msh, f.bytes, f.size, error);
 }
 
 /* Two squares side by side, their border, a named corner, and a node of no cell. */
@@ -57,8 +56,7 @@ static enum status try_cloud(struct error *error)
     struct cloud_options options = {
         .kind = CLOUD_JITTERED, .dim = 3, .count = {3, 3, 3}, .high = {1, 1, 1}, .jitter = 0.1, .seed = 1};
     FREED_BY(cloud_free) struct cloud cloud = {0};
-    enum status status = cloud_make(&options, &cloud, error);
-    return status;
+    return cloud_make(&options, &cloud, error);
 }
 
 TEST(files)

@@ -24,8 +24,7 @@ static enum status parse_copy(struct msh *msh, const char *bytes, size_t size, s
     SCRATCH char *copy = malloc(size > 0 ? size : 1);
     assert_non_null(copy);
     memcpy(copy, bytes, size);
-    enum status status = msh_parse(msh, copy, size, error);
-    return status;
+    return msh_parse(msh, copy, size, error);
 }
 
 /* What comes out of a file is built or refused, with a message. */
