@@ -20,7 +20,6 @@ static struct body body_of(int dim, int64_t per_axis)
     struct cloud_options wanted = {
         .kind = CLOUD_JITTERED, .dim = dim, .jitter = dim == 2 ? 0.3 : 0.12, .seed = 3};
     struct body body = {.options = adaptive_defaults(dim)};
-    struct error error;
     for (int a = 0; a < dim; a++) {
         wanted.count[a] = per_axis;
         wanted.low[a] = 1.0;
@@ -47,7 +46,6 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
 {
     struct adaptive_options options = body->options;
     struct adaptive_points points;
-    struct error error;
     options.tolerance = tolerance;
     options.levels = levels;
     GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
@@ -113,7 +111,6 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     double *K = zeros(n * n, sizeof *K);
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(support_free) struct support_lists found = {0};
-    struct error error;
     GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
     GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
     double *phi = zeros(found.ptr[count], sizeof *phi);
@@ -242,7 +239,6 @@ TEST(failures)
     FREED_BY(body_free) struct body body = body_of(2, 4);
     struct adaptive_options options = body.options;
     struct adaptive_points points;
-    struct error error;
     options.rule_points = 5;
     FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
           "no rule of 5 points");

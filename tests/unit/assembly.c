@@ -38,7 +38,7 @@ TEST(linear_field_by_table)
     static const double A[3][3] = {{0.02, 0.01, -0.01}, {0.03, -0.02, 0.01}, {0.01, -0.01, 0.015}};
     for (int dim = 2; dim <= 3; dim++) {
         FREED_BY(lattice_free) struct lattice l = {0};
-        struct error error, note;
+        struct error note;
         SCRATCH int32_t *facet = NULL;
         double *rows;
         struct lattice_options options = lattice_defaults(dim, 5);
@@ -82,7 +82,6 @@ TEST(linear_field_by_table)
 TEST(held_faces)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    struct error error;
     SCRATCH int32_t *low = NULL, *high = NULL;
     SCRATCH bool *held = NULL, *slides = NULL;
     int64_t count = 0;
@@ -110,7 +109,7 @@ TEST(held_faces)
 TEST(shared_corners)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    struct error error, note;
+    struct error note, said;
     SCRATCH int32_t *low = NULL, *side = NULL;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
@@ -118,9 +117,9 @@ TEST(shared_corners)
         {.name = "low", .where = "s:1: [displacement low]", .facets = side_facets(&l, 1u << 2, &low)},
         {.name = "side", .where = "s:2: [displacement side]", .facets = side_facets(&l, 1u, &side)}};
     conditions[1].components[1] = 1e-3;
-    assert_int_equal(assemble(&l, conditions, 2, &note, &error), STATUS_INPUT);
-    assert_ptr_equal(strstr(error.text, "s:2: [displacement side]: node "), error.text);
-    assert_non_null(strstr(error.text, "0 m in [displacement low]"));
+    assert_int_equal(assemble(&l, conditions, 2, &note, &said), STATUS_INPUT);
+    assert_ptr_equal(strstr(said.text, "s:2: [displacement side]: node "), said.text);
+    assert_non_null(strstr(said.text, "0 m in [displacement low]"));
     conditions[0].components[1] = 0.95e-3;
     GOOD(assemble(&l, conditions, 2, &note, &error));
     assert_non_null(strstr(note.text, "is prescribed twice"));

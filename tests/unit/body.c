@@ -139,7 +139,6 @@ TEST(linear_fields)
 static void fault_of_smoothing(void)
 {
     struct body body;
-    struct error error;
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
@@ -151,17 +150,15 @@ static void fault_of_smoothing(void)
            *node_phi = stream_find(&sample->stream, "node.phi")->data;
     double *changed = &face_phi[sample->assembly.lists.ptr[7]], before = *changed;
     *changed += 0.01;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text,
-                        "face.phi: row 7: not the shape functions at this row: run shapefn again");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "face.phi: row 7: not the shape functions at this row: run shapefn again");
     body_free(&body);
     *changed = before;
     changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
     *changed += 0.01;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text,
-                        "node.phi: node 5: not the shape functions at this node: run shapefn again");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "node.phi: node 5: not the shape functions at this node: run shapefn again");
     body_free(&body);
     *changed = before;
     struct faces fewer = sample->assembly.faces;
@@ -183,7 +180,6 @@ static void fault_of_smoothing(void)
 TEST(faults)
 {
     struct body body;
-    struct error error;
     static const struct material material = {.shear_modulus = 1.0, .bulk_modulus = 1.0};
     static const double x[4] = {0.0}, dphi[4] = {0.0};
     static const int32_t idx[2] = {0, 1}, none[2] = {0};
@@ -200,20 +196,19 @@ TEST(faults)
                                .materials = &material,
                                .material = none,
                                .material_count = 1};
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.weight: row 1: no weight or no neighbours");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "points.weight: row 1: no weight or no neighbours");
     body_free(&body);
     ptr[1] = 1;
     weight[0] = (double)NAN;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.weight: row 0: no weight or no neighbours");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "points.weight: row 0: no weight or no neighbours");
     body_free(&body);
     weight[0] = 1.0;
     GOOD(body_build(&input, &body, &error));
     body_free(&body);
     input.point_count = 0;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.x: 0 points: none, or too many");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT, "points.x: 0 points: none, or too many");
     fault_of_smoothing();
 }
 

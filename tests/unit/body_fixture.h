@@ -29,7 +29,6 @@ static const double sample_size = 0.1;
 /* The jittered lattice of a sample. */
 static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 {
-    struct error error;
     struct cloud made;
     struct cloud_options cloud = {.kind = CLOUD_JITTERED,
                                   .dim = dim,
@@ -45,7 +44,6 @@ static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 /* Of a cloud, which becomes the sample's; factor: support radius by local spacing. */
 static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud, double factor)
 {
-    struct error error;
     struct quadrature_rule rule;
     struct sample sample = {.dim = dim, .smoothed = smoothed, .cloud = cloud};
     int per_cell = smoothed ? 1 : dim + 1, corners = dim + 1;

@@ -262,7 +262,6 @@ TEST(nodal_pressures)
 TEST(empty_volumes)
 {
     FREED_BY(body_free) struct body body = {0};
-    struct error error;
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
                                    make_material(MATERIAL_NEO_HOOKEAN, 6000.0)};
     struct body_input input = {.dim = 2,

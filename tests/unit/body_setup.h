@@ -52,7 +52,6 @@ static inline int32_t material_at(const struct sample *sample, const struct setu
 static inline struct body make_body(const struct sample *sample, const struct setup *setup)
 {
     struct body body;
-    struct error error;
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
     SCRATCH int32_t *material = NULL;
     ARRAY(material, sample->assembly.point_count);

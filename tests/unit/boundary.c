@@ -23,7 +23,6 @@ static struct facet_set facets_of_side(const struct sample *sample, int side)
 static struct boundary_averages averages_of(const struct sample *sample, struct facet_set set)
 {
     struct boundary_averages averages;
-    struct error error;
     struct face_table table = sample_face_table(sample);
     GOOD(boundary_averages_build(&table, &set, &averages, &error));
     return averages;
@@ -264,7 +263,6 @@ TEST(gentle_and_sharp_turns)
         int32_t cells[3 * MOST], facets[2 * MOST], idx[4 * MOST];
         int64_t ptr[2 * MOST + 1] = {0};
         FREED_BY(faces_free) struct faces faces = {0};
-        struct error error;
         FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
         for (int i = 0; i < corners; i++) {
             x[2 * (i + 1)] = cos(2.0 * M_PI * i / corners);
@@ -316,7 +314,6 @@ TEST(whole_sides)
         FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         struct face_table table = sample_face_table(&sample);
         struct facet_set set = all_facets(&sample);
-        struct error error;
         for (int split = 0; split < 2; split++) {
             FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
             FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};
@@ -362,7 +359,6 @@ TEST(whole_sides)
 TEST(node_values)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct error error;
         FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         const struct neighbours lists = sample.assembly.node_lists;
         const double *phi = sample.assembly.node_phi;
@@ -412,7 +408,6 @@ TEST(ends)
     for (int dim = 2; dim <= 3; dim++) {
         FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
         struct face_table table = sample_face_table(&sample);
-        struct error error;
         bool *held = zeros(sample.assembly.faces.count, sizeof *held);
         bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
         bool *end = zeros(sample.cloud.node_count, sizeof *end);
@@ -477,7 +472,6 @@ TEST(faults)
         FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
         struct face_table table = sample_face_table(&sample);
         struct boundary_averages averages;
-        struct error error;
         int32_t facets[6];
         struct facet_set set = {2, facets};
         memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
@@ -487,21 +481,21 @@ TEST(faults)
             inner++;
         }
         memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+                   "facets: row 1 of the set is no boundary face of the cells");
         boundary_averages_free(&averages);
         /* Nodes that are no face at all, and none that exist. */
         facets[dim] = facets[dim + 1] = facets[0];
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
+        FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+                   "facets: row 1 of the set is no boundary face of the cells");
         boundary_averages_free(&averages);
         facets[dim] = (int32_t)sample.cloud.node_count;
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, dim == 2 ? "facets: no node 16" : "facets: no node 64");
+        FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+                   dim == 2 ? "facets: no node 16" : "facets: no node 64");
         boundary_averages_free(&averages);
         facets[dim] = -1;
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: no node -1");
+        FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+                   "facets: no node -1");
         boundary_averages_free(&averages);
     }
 }

@@ -11,7 +11,6 @@ static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, d
 {
     struct cloud_options options = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter, .seed = 5};
     struct cloud cloud;
-    struct error error;
     for (int a = 0; a < dim; a++) {
         options.count[a] = per_axis;
         options.low[a] = offset;

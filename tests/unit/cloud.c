@@ -19,10 +19,7 @@ static struct cloud_options options_of(enum cloud_kind kind, int dim)
 static struct cloud make(const struct cloud_options *options)
 {
     struct cloud cloud;
-    struct error error = {""};
-    enum status status = cloud_make(options, &cloud, &error);
-    assert_string_equal(error.text, "");
-    assert_int_equal(status, STATUS_OK);
+    GOOD(cloud_make(options, &cloud, &error));
     return cloud;
 }
 
@@ -101,7 +98,6 @@ TEST(neighbours_conform)
         FREED_BY(cloud_free) struct cloud cloud = make(&options);
         struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
         FREED_BY(faces_free) struct faces boundary = {0};
-        struct error error;
         GOOD(faces_build(&cells, true, &boundary, &error));
         assert_int_equal(boundary.count, cloud.facet_count);
         assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));

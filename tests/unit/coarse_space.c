@@ -28,7 +28,6 @@ static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count
 {
     struct cloud cloud = {.size = node_count * dim};
     struct random random = {(uint64_t)(17 * dim + centre_count)};
-    struct error error;
     cloud.X = numbers(cloud.size, -0.1, 0.1, &random);
     for (int64_t n = 0; n < node_count; n++) {
         cloud.X[n * dim] += 5.0 * cloud.X[n * dim + 1]; /* slender, so that some shares vanish */
@@ -185,7 +184,6 @@ TEST(ways)
     make_ring(RING, ALONE, X, ptr, idx);
     for (int with_ways = 0; with_ways < 2; with_ways++) {
         FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
-        struct error error;
         GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, COARSE_MOST_CENTRES, &coarse,
                                 &error));
         double both = 0.0;

@@ -45,7 +45,6 @@ TEST(forces_do_not_jump)
 static struct rigid_surface groove(int dim, double angle)
 {
     struct rigid_surface surface;
-    struct error error;
     double x = 2.0 * cos(angle), y = 2.0 * sin(angle);
     if (dim == 2) {
         const double corners[] = {-x, y, 0.0, 0.0, 0.0, 0.0, x, y};

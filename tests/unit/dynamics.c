@@ -17,7 +17,6 @@ static struct dynamics_report run(struct lattice *l, const struct dynamics_optio
                                   double *v, struct energy_log *log)
 {
     struct dynamics_report report;
-    struct error error;
     GOOD(dynamics_run(&l->system, options, u, v, NULL, log, &report, &error));
     return report;
 }
@@ -267,7 +266,6 @@ TEST(pushed)
         struct lattice_options options = lattice_defaults(2, 7);
         FREED_BY(lattice_free) struct lattice l = {0};
         FREED_BY(energy_log_free) struct energy_log log = {0};
-        struct error error;
         struct dynamics_report report;
         lattice_build(&l, &options);
         static const double points[] = {0, 0, 0.05, 1, 0.3, 1};
@@ -365,7 +363,6 @@ TEST(bounce)
     struct lattice_options options = lattice_defaults(2, 6);
     FREED_BY(lattice_free) struct lattice l = {0};
     FREED_BY(energy_log_free) struct energy_log log = {0};
-    struct error error;
     struct rigid_surface floor;
     static const double corners[4] = {-1, -0.01, 1, -0.01};
     options.nodal_volume = false;
@@ -463,7 +460,6 @@ TEST(conditions_twice)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
     struct dynamics_report report;
-    struct error error;
     int32_t curve = lattice_begin(&l, 2, 4, 0.0, CURVE_SMOOTH);
     lattice_push(&l, 3, -0.001, curve);
     lattice_push(&l, 3, -0.001, curve);

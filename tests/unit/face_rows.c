@@ -69,7 +69,6 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
     int64_t next = 0;
     SCRATCH int32_t *cell = NULL;
     int dim = faces->dim;
-    struct error error;
     GOOD(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error));
     for (int64_t i = 0; i < faces->count * FACE_ROWS(dim); i++) {
         int64_t f = i / FACE_ROWS(dim), k = i % FACE_ROWS(dim), row = face_row(faces, f, (int)k), with = 0;
@@ -138,7 +137,6 @@ TEST(rows_of_faces)
         struct cells cells = cells_of(&cloud);
         int32_t *side = zeros(cells.count, sizeof *side);
         struct faces faces;
-        struct error error;
         int64_t own[2];
         for (int64_t c = 0; c < cells.count; c++) {
             double middle[3];

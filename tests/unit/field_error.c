@@ -16,7 +16,6 @@ static struct cloud lattice(int dim, int n, double jitter)
                                    .jitter = jitter,
                                    .seed = 1};
     struct cloud cloud;
-    struct error error;
     GOOD(cloud_make(&wanted, &cloud, &error));
     assert_true(cloud.cell_count > 0);
     return cloud;
@@ -69,7 +68,6 @@ TEST(mean_over_body)
         struct cloud_options wanted = {
             .kind = CLOUD_GRADED, .dim = dim, .count = {7, 7, 7}, .high = {1.0, 1.0, 1.0}, .ratio = 10.0};
         FREED_BY(cloud_free) struct cloud cloud = {0};
-        struct error error;
         GOOD(cloud_make(&wanted, &cloud, &error));
         struct cells cells = cells_of(&cloud);
         double *value = array_of(cells.node_count, 0.0);
@@ -94,7 +92,6 @@ TEST(linear_fields_have_no_error)
     for (int dim = 2; dim <= 3; dim++) {
         FREED_BY(cloud_free) struct cloud cloud = lattice(dim, 7, 0.0);
         struct cells cells = cells_of(&cloud);
-        struct error error;
         double *values = array_of(cells.node_count * 2, -7.0), *squared = array_of(cells.count, -1.0);
         int32_t *region = zeros(cells.count, sizeof *region);
         for (int64_t q = 0; q < cells.count; q++) {
@@ -136,7 +133,6 @@ TEST(quadratic_fields_converge)
         for (int i = 0; i < 2; i++) {
             FREED_BY(cloud_free) struct cloud cloud = lattice(dim, i == 0 ? 9 : 17, 0.0);
             struct cells cells = cells_of(&cloud);
-            struct error error;
             double *values = array_of(cells.node_count, 0.0), *squared = array_of(cells.count, 0.0);
             for (int64_t n = 0; n < cells.node_count; n++) {
                 values[n] = cells.x[n * dim] * cells.x[n * dim];
@@ -162,7 +158,6 @@ TEST(equal_errors_keep_a_mesh_even)
         struct cells cells = cells_of(&cloud);
         struct size_field_request request = {.share = 0.25, .most_nodes = 1e9};
         struct size_field field;
-        struct error error;
         double *squared = array_of(cells.count, 3.0), *spacing = array_of(cells.node_count, 0.0);
         GOOD(cells_node_spacing(&cells, spacing, &error));
         GOOD(size_field_build(&cells, squared, &request, &field, &error));
@@ -205,7 +200,6 @@ TEST(bad_cells)
         struct cells cells = cells_of(&cloud);
         struct size_field_request request = {.share = 0.5, .most_nodes = 1e9};
         struct size_field field;
-        struct error error;
         double *squared = array_of(cells.count, 1e-6), least;
         int64_t bad = dim == 2 ? 4 * 9 + 4 : (4 * 9 + 4) * 9 + 4; /* in the middle */
         for (int64_t i = 0; i < cells.count * (dim + 1); i++) {
@@ -252,7 +246,6 @@ TEST(facets_near_their_curve)
     FREED_BY(cloud_free) struct cloud ring = lattice(2, 13, 0.0), square = lattice(2, 13, 0.0);
     struct size_field_request request = {.share = 1.0, .most_nodes = 1e9};
     FREED_BY(size_field_free) struct size_field bent = {0}, straight = {0}, limited = {0};
-    struct error error;
     for (int64_t n = 0; n < ring.node_count; n++) {
         double r = 2.0 - ring.x[2 * n], angle = 2.0 * ring.x[2 * n + 1];
         ring.x[2 * n] = r * cos(angle);
@@ -290,7 +283,6 @@ TEST(nodes_of_no_cell)
     struct cells cells = {2, 4, x, 1, node};
     struct size_field_request request = {.share = 1.0, .most_nodes = 100.0};
     FREED_BY(size_field_free) struct size_field field = {0};
-    struct error error;
     FAILS(size_field_build(&cells, squared, &request, &field, &error), STATUS_INPUT, "node 3");
 }
 

@@ -56,7 +56,6 @@ TEST(agrees_with_all_eigenvalues)
     for (int dim = 2; dim <= 3; dim++) {
         FREED_BY(lattice_free) struct lattice l = {0};
         FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
-        struct error error;
         struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
         double *mass, *scratch;
         struct spectrum spectrum;
@@ -96,7 +95,6 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
     for (int k = 0; k < 2; k++) {
         FREED_BY(lattice_free) struct lattice l = {0};
         FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
-        struct error error;
         struct lattice_options options = lattice_defaults(2, 9);
         struct spectrum spectrum;
         struct stability stability;

@@ -33,7 +33,6 @@ static enum status read_and_write(struct error *error)
 
 TEST(images)
 {
-    struct error error;
     begin_nifti(&file, 1, false, 4, 3, 2, 16, 32);
     put_dim(&file, 0, 5);
     put_dim(&file, 5, 3);
@@ -53,7 +52,6 @@ static enum status move(struct error *error)
 
 TEST(motions)
 {
-    struct error error;
     struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
     FREED_BY(cloud_free) struct cloud cloud = {0};
     static double none[4 * 4 * 4 * 3];

@@ -14,7 +14,6 @@ struct cube {
 
 static void build(struct cube *cube, bool bonded)
 {
-    struct error error;
     struct scalar_stiffness stiffness;
     struct scalar_row row;
     struct lattice_options options = lattice_defaults(3, 5);
@@ -121,7 +120,6 @@ TEST(the_diagonal_is_one)
 TEST(the_transpose_is_undone)
 {
     struct cube cube;
-    struct error error;
     struct constraint_rows rows;
     build(&cube, false);
     struct random random = {3};
@@ -165,7 +163,6 @@ TEST(stretches_make_no_difference)
     static const int64_t stretches[] = {1, 7, 60, 124};
     for (int weak = 0; weak < 2; weak++) {
         struct cube cube;
-        struct error error;
         build(&cube, true);
         struct solid_system *system = &cube.l.system;
         for (int64_t q = 0; q < system->body.point_count && weak == 1; q++) {

@@ -202,42 +202,36 @@ done:
 /* One thread, and a first run unwatched: what OpenMP allocates for itself is not ours to test. */
 TEST(tables)
 {
-    struct error error;
     GOOD(try_table(&error));
     fail_each(try_table, 30);
 }
 
 TEST(around_corners)
 {
-    struct error error;
     GOOD(try_reach(&error));
     fail_each(try_reach, 30);
 }
 
 TEST(sides)
 {
-    struct error error;
     GOOD(try_sides(&error));
     fail_each(try_sides, 60);
 }
 
 TEST(adaptive)
 {
-    struct error error;
     GOOD(try_adaptive(&error));
     fail_each(try_adaptive, 30);
 }
 
 TEST(comparisons)
 {
-    struct error error;
     GOOD(try_compare(&error));
     fail_each(try_compare, 30);
 }
 
 TEST(sizes)
 {
-    struct error error;
     GOOD(try_sizes(&error));
     fail_each(try_sizes, 10);
 }

@@ -37,7 +37,6 @@ TEST(reproduction)
                 for (int w = 0; w < WEIGHT_COUNT; w++) {
                     struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                     FREED_BY(table_free) struct table table = {0};
-                    struct error error;
                     GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                     struct defects worst =
                         table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
@@ -84,7 +83,6 @@ TEST(quadratic_reproduction)
             struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
             struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
             FREED_BY(table_free) struct table table = {0};
-            struct error error;
             GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
             for (int64_t q = 0; q < 100; q++) {
                 double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
@@ -112,7 +110,6 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
 {
     FREED_BY(mls_work_free) struct mls_work work = {0};
     enum mls_verdict verdict;
-    struct error error;
     struct mls_support support = {.x = x,
                                   .nodes = cloud->x,
                                   .radius = table->radius,
@@ -136,7 +133,6 @@ TEST(gradients)
             for (int w = 0; w < WEIGHT_COUNT; w++) {
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 FREED_BY(table_free) struct table table = {0};
-                struct error error;
                 GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
                 double h = 1e-5 * cloud.spacing;
                 for (int64_t p = 0; p < 20; p++) {
@@ -203,7 +199,6 @@ TEST(limits_of_modified)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
         struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
         FREED_BY(table_free) struct table table = {0};
-        struct error error;
         GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
         struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
@@ -226,7 +221,6 @@ TEST(units_of_mu)
         options.radius = 2.1 * cloud.spacing;
         options.widen = false;
         FREED_BY(table_free) struct table table = {0};
-        struct error error;
         GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
         double s4 = pow(options.radius, 4.0);
         struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
@@ -262,7 +256,6 @@ TEST(invariance)
             }
             struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
             FREED_BY(table_free) struct table one = {0}, two = {0}, three = {0};
-            struct error error;
             GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
             GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
             GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
@@ -298,7 +291,6 @@ TEST(normal_equations)
             for (int w = 0; w < WEIGHT_COUNT; w++) {
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
                 FREED_BY(table_free) struct table table = {0};
-                struct error error;
                 GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 for (int64_t p = 0; p < 100; p++) {
                     struct mls_support support = {.x = cloud.points + p * dim,
@@ -350,7 +342,6 @@ static double fit_error(int dim, enum basis basis, int per_axis)
     struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
     options.radius = (basis == BASIS_LINEAR ? 1.8 : 2.6) * cloud.spacing;
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     double sum = 0.0;
     GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
     for (int64_t p = 0; p < 400; p++) {

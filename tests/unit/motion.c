@@ -5,8 +5,6 @@
 #include "approx/motion.h"
 #include "approx/raster.h"
 
-static struct error error;
-
 /* A jittered cloud in the unit square or cube, and a field on it. */
 struct body {
     struct cloud cloud;

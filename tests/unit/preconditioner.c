@@ -15,7 +15,6 @@ struct strained {
 
 static void measure(struct strained *s, bool coarse)
 {
-    struct error error;
     double *mass;
     mass = zeros(s->l.system.node_count, sizeof *mass);
     (void)system_residual(&s->l.system, s->u, s->residual);
@@ -116,7 +115,6 @@ TEST(mass_and_inverse_agree)
 
 static void frequencies(struct strained *s, double *largest, double *lowest)
 {
-    struct error error;
     double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
     struct spectrum spectrum;
     scratch = zeros(4 * s->size, sizeof *scratch);
@@ -175,7 +173,6 @@ TEST(bulk_modulus_is_limited)
 TEST(contacts_are_followed)
 {
     struct strained s;
-    struct error error;
     struct rigid_surface plate;
     const double corners[4] = {-1.0, 0.1, 2.0, 0.1}; /* the body is below: on the right of it */
     strain_bar(&s, 2, -0.05, false, true);

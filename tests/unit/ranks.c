@@ -286,7 +286,6 @@ TEST(large_body)
 /* Stretches are of about the same work, cover all items in turn, and say whose an item is. */
 TEST(shares)
 {
-    struct error error;
     struct ranks ranks = {.count = 3};
     const double work[8] = {4.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 4.0};
     int64_t *first;
@@ -311,7 +310,6 @@ TEST(shares)
 
 TEST(rows_in_stretches)
 {
-    struct error error;
     struct stretches stretches;
     const bool wanted[9] = {true, true, false, true, false, false, true, true, true};
     GOOD(stretches_of(1, 8, wanted, &stretches, &error));
@@ -331,13 +329,13 @@ static void *agree_member(void *context)
 {
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
-    struct error error = {"?"};
+    struct error said = {"?"};
     SCRATCH int64_t *each = NULL;
     GOOD(ranks_agree(ranks, STATUS_OK, &error));
     enum status status =
-        ranks->rank > 0 ? (fail)(&error, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
-    assert_int_equal(ranks_agree(ranks, status, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "by 1");
+        ranks->rank > 0 ? (fail)(&said, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
+    assert_int_equal(ranks_agree(ranks, status, &said), STATUS_INPUT);
+    assert_string_equal(said.text, "by 1");
     GOOD(ranks_list(ranks, 10 + ranks->rank, &each, &error));
     for (int r = 0; r < ranks->count; r++) {
         assert_int_equal(each[r], 10 + r);
@@ -348,9 +346,8 @@ static void *agree_member(void *context)
 TEST(agreement)
 {
     struct member members[3] = {{.sample = NULL}};
-    struct error error;
     run_team(3, members, agree_member);
-    assert_int_equal(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT);
+    FAILS(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT, "");
 }
 
 enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
@@ -358,7 +355,6 @@ enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
 /* A chain in each of some blocks that do not couple. */
 static void make_chains(struct envelope *factor)
 {
-    struct error error;
     int64_t ptr[SOLVED + 1] = {0}, column[3 * SOLVED], at = 0;
     double value[3 * SOLVED];
     for (int64_t i = 0; i < SOLVED; i++) {
@@ -377,7 +373,6 @@ static void *solve_member(void *context)
 {
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
-    struct error error;
     FREED_BY(envelope_free) struct envelope factor = {0};
     SCRATCH int64_t *first = NULL;
     double *x = member->results + ranks->rank * SOLVED;

@@ -63,7 +63,6 @@ static void add_cube(const int *cube, sheet_function *sheet)
 
 static void build(int dim, const int *size, solid_function *solid, sheet_function *sheet)
 {
-    struct error error;
     body = (struct voxels){.dim = dim};
     for (int k = 0; k < (dim == 3 ? size[2] : 1); k++) {
         for (int j = 0; j < size[1]; j++) {
@@ -107,7 +106,6 @@ static struct found found;
 
 static void find(double radius, bool widen)
 {
-    struct error error;
     int dim = body.dim;
     found = (struct found){.count = body.cell_count, .options = support_defaults(dim)};
     found.options.widen = widen;
@@ -167,7 +165,6 @@ TEST(convex)
     for (int dim = 2; dim <= 3; dim++) {
         for (int wide = 0; wide < 2; wide++) {
             struct support_lists plain;
-            struct error error;
             build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
             find(wide ? 2.3 : 0.9, true);
             assert_true(wide || found.lists.widened > 0);
@@ -194,7 +191,6 @@ TEST(located)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct support_lists other;
-        struct error error;
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
         find(2.0, true);
         GOOD(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x,
@@ -413,7 +409,6 @@ TEST(gradients)
         double *moved = zeros(found.count * dim, sizeof *moved);
         double *stepped[2] = {NULL, NULL};
         struct support_lists lists[2];
-        struct error error;
         const double step = 1e-5;
         struct reach_places inside = {.cell = found.cell, .points_per_row = 1};
         GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi,
@@ -466,7 +461,6 @@ TEST(gradients)
 
 static bool reaches(struct ways *ways, int32_t from, int64_t place)
 {
-    struct error error;
     bool reached;
     ways_begin(ways, from);
     GOOD(ways_reach(ways, place, &reached, &error));
@@ -477,7 +471,6 @@ static bool reaches(struct ways *ways, int32_t from, int64_t place)
  * from one lip to the other. */
 TEST(ways)
 {
-    struct error error;
     struct ways ways;
     for (int dim = 2; dim <= 3; dim++) {
         build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);

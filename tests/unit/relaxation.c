@@ -13,7 +13,6 @@ static struct relaxation_report relax(struct lattice *l, const struct relaxation
                                       double *row_force)
 {
     struct relaxation_report report;
-    struct error error;
     GOOD(relaxation_run(&l->system, options, u, row_force, &report, &error));
     return report;
 }
@@ -402,7 +401,6 @@ TEST(pressures_are_augmented)
 TEST(conditions_twice)
 {
     FREED_BY(lattice_free) struct lattice once = {0}, twice = {0};
-    struct error error;
     struct relaxation_report report;
     clamp(&once, 5, -0.01, 0, true);
     clamp(&twice, 5, -0.01, 0, true);

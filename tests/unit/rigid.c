@@ -26,7 +26,6 @@ static void add_facet(struct shape *shape, const double *a, const double *b, con
 static struct rigid_surface built(const struct shape *shape, bool flip)
 {
     struct rigid_surface surface;
-    struct error error;
     GOOD(rigid_build(shape->dim, shape->count, shape->corners, flip, &surface, &error));
     return surface;
 }
@@ -468,9 +467,7 @@ TEST(over_the_rim)
 static void fails(int dim, int64_t count, const double *corners, const char *expected)
 {
     FREED_BY(rigid_free) struct rigid_surface surface = {0};
-    struct error error = {""};
-    assert_int_equal(rigid_build(dim, count, corners, false, &surface, &error), STATUS_INPUT);
-    assert_string_equal(error.text, expected);
+    FAILS_WITH(rigid_build(dim, count, corners, false, &surface, &error), STATUS_INPUT, expected);
 }
 
 TEST(faults)

@@ -11,7 +11,6 @@ enum { ROWS = 300, COLUMNS = 90, STRIDE = 4 };
  */
 static void make_table(struct sparse *table)
 {
-    struct error error;
     struct random random = {5};
     GOOD(sparse_new(ROWS, COLUMNS, ROWS * 12, table, &error));
     for (int64_t r = 0; r < ROWS; r++) {
@@ -37,7 +36,6 @@ static void expect(const struct sparse *transposed, const double *x, double *y)
 
 TEST(columns_are_summed_in_order)
 {
-    struct error error;
     FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
     double x[ROWS * STRIDE], y[COLUMNS * STRIDE], expected[COLUMNS];
     struct random random = {7};
@@ -64,7 +62,6 @@ TEST(columns_are_summed_in_order)
 
 TEST(some_columns_are_transposed)
 {
-    struct error error;
     FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
     struct sparse some;
     FREED_BY(row_operator_free) struct row_operator rows = {0};

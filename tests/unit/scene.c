@@ -86,12 +86,9 @@ static void same(double value, double expected)
 TEST(reads_everything)
 {
     struct scene scene;
-    struct error error = {""};
     char expected[128];
     write_bytes(full, sizeof full - 1);
-    enum status status = scene_read(path, &scene, &error);
-    assert_string_equal(error.text, "");
-    assert_int_equal(status, STATUS_OK);
+    GOOD(scene_read(path, &scene, &error));
     assert_int_equal(scene.dim, 2);
     assert_int_equal(scene.analysis, SCENE_DYNAMIC);
     assert_string_equal(scene.title, "A whole scene");
@@ -146,7 +143,6 @@ TEST(reads_everything)
 TEST(defaults)
 {
     FREED_BY(scene_free) struct scene scene = {0};
-    struct error error;
     write_bytes(HEAD BODY, sizeof(HEAD BODY) - 1);
     GOOD(scene_read(path, &scene, &error));
     assert_string_equal(scene.title, "");
@@ -240,7 +236,6 @@ TEST(line_length)
             continue;
         }
         FREED_BY(scene_free) struct scene scene = {0};
-        struct error error;
         write_bytes(text, strlen(text));
         GOOD(scene_read(path, &scene, &error));
         assert_int_equal(strlen(scene.title), title);
@@ -284,7 +279,6 @@ TEST(density_that_is_not_felt)
 {
     static const char text[] = HEAD "[material m]\nregion = r\nE = 3\nnu = .3\n";
     FREED_BY(scene_free) struct scene scene = {0};
-    struct error error = {""};
     write_bytes(text, sizeof text - 1);
     GOOD(scene_read(path, &scene, &error));
     assert_true(scene.materials[0].density > 0);
@@ -370,9 +364,8 @@ TEST(solver_and_output)
 TEST(wrong_files)
 {
     struct scene scene;
-    struct error error;
-    assert_int_equal(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "/nonexistent/x.scene: No such file or directory");
+    FAILS_WITH(scene_read("/nonexistent/x.scene", &scene, &error), STATUS_INPUT,
+               "/nonexistent/x.scene: No such file or directory");
     FAILS(scene_read(folder, &scene, &error), STATUS_INPUT, "is a folder");
     FAILS(scene_read("/dev/zero", &scene, &error), STATUS_INPUT, "is a device");
 }

@@ -54,7 +54,6 @@ done:
 
 TEST(read_text_and_binary)
 {
-    struct error error;
     for (int form = 0; form < 4; form++) {
         descriptor = memfd_create("stream", 0);
         begin = form / 2;

@@ -46,7 +46,6 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
 {
     struct cells cells = cells_of(stuffing);
     FREED_BY(faces_free) struct faces faces = {0};
-    struct error error;
     int64_t count = 0;
     bool *seen = zeros(stuffing->node_count, sizeof *seen);
     GOOD(faces_build(&cells, false, &faces, &error));
@@ -116,7 +115,6 @@ TEST(five_labels_at_a_node)
         check_cells(&stuffing);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
         struct stuffing_star star;
-        struct error error;
         GOOD(star_make(&stuffing, NULL, NULL, &star, &error));
         for (int64_t n = 0; n < stuffing.node_count; n++) {
             most = star.labels[n] > most ? star.labels[n] : most;
@@ -250,7 +248,6 @@ TEST(by_sizes)
 {
     struct label_shape shape;
     struct sized_cube cube;
-    struct error error;
     assert_true(label_shape_make("sphere", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
@@ -352,7 +349,6 @@ TEST(slices)
         assert_true(fabs(found[l] / area[l] - 1) < 0.01);
     }
     stuffing_free(&stuffing);
-    struct error error = {""};
     options.finest = 1e-3;
     FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "not for slices");
 }
@@ -422,7 +418,6 @@ TEST(what_is_lost)
     for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
         total += shape.label[v] == 2;
     }
-    struct error error;
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept};
     struct stuffing stuffing = make(&labels, &options);
     GOOD(stuffing_lost(&labels, options.keep, &stuffing, lost, &error));
@@ -442,7 +437,6 @@ TEST(what_is_filled)
     struct label_shape shape;
     static const bool keep[3] = {false, true, false};
     int64_t lost[3];
-    struct error error;
     assert_true(label_shape_make("thin", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     for (int coarse = 0; coarse < 2; coarse++) {
@@ -459,7 +453,6 @@ TEST(refusals)
 {
     struct label_shape shape;
     struct stuffing stuffing;
-    struct error error;
     assert_true(label_shape_make("layer", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 1e-6, .keep = all_kept};

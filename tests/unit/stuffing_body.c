@@ -32,7 +32,6 @@ TEST(surface_over_labels)
 static int64_t count_hinges(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int64_t hinges = 0;
     int32_t *across = zeros(cells.count * 4, sizeof *across);
     SCRATCH int32_t *part =
@@ -85,7 +84,6 @@ TEST(parts_are_joined)
 static int32_t count_bodies(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     GOOD(cells_parts(&cells, part, &count, &error));
     return count;
@@ -95,7 +93,6 @@ static int32_t count_bodies(const struct stuffing *stuffing)
 static void check_apart(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);

@@ -31,10 +31,7 @@ static inline struct labels labels_of(const struct label_shape *shape)
 static inline struct stuffing make(const struct labels *labels, const struct stuffing_options *options)
 {
     struct stuffing stuffing;
-    struct error error = {""};
-    enum status status = stuffing_make(labels, options, &stuffing, &error);
-    assert_string_equal(error.text, "");
-    assert_int_equal(status, STATUS_OK);
+    GOOD(stuffing_make(labels, options, &stuffing, &error));
     return stuffing;
 }
 
@@ -50,7 +47,6 @@ static inline void check_cells(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
     struct faces faces;
-    struct error error = {""};
     int dim = stuffing->dim;
     double volume = 0, flux = 0;
     assert_true(stuffing->cell_count > 0);

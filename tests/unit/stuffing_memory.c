@@ -48,7 +48,6 @@ static enum status try_label_table(struct error *error)
 
 TEST(cells)
 {
-    struct error error = {""};
     omp_set_num_threads(1);
     GOOD(try_stuffing(&error)); /* OpenMP has what it keeps */
     fail_each(try_stuffing, 40);

@@ -24,7 +24,6 @@ TEST(grid_against_brute_force)
             }
             FREED_BY(point_grid_free) struct point_grid grid = {0};
             struct index_list list = {0};
-            struct error error;
             GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
             if (kind >= 2) {
                 GOOD(point_grid_list_touching(&grid, &error));
@@ -70,7 +69,6 @@ TEST(lists_against_brute_force)
             struct support_options options = support_defaults(dim);
             FREED_BY(point_grid_free) struct point_grid grid = {0};
             FREED_BY(support_free) struct support_lists lists = {0};
-            struct error error;
             double *radius = zeros(cloud.count, sizeof *radius);
             options.widen = false;
             for (int64_t n = 0; n < cloud.count; n++) {
@@ -117,7 +115,6 @@ TEST(grid_odd_clouds)
     double x[6] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, radius[3] = {0.5, 1e9, 1e-9}, at[2] = {1.1, 2.0};
     struct point_grid grid;
     struct index_list list = {0};
-    struct error error;
     GOOD(point_grid_build(&grid, 2, 3, x, radius, &error));
     GOOD(point_grid_query(&grid, at, 1.0, &list, &error));
     GOOD(point_grid_query(&grid, x, 1.0, &list, &error));
@@ -147,7 +144,6 @@ TEST(spacing_against_brute_force)
         struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
         double *spacing = zeros(cloud.count, sizeof *spacing);
         double *distance = zeros(cloud.count, sizeof *distance);
-        struct error error;
         cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
         GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
         for (int64_t n = 0; n < cloud.count; n++) {
@@ -185,7 +181,6 @@ TEST(nearest_with_ties)
         struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
         FREED_BY(point_grid_free) struct point_grid grid = {0};
         FREED_BY(support_free) struct support_lists lists = {0};
-        struct error error;
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
         GOOD(point_grid_build(&grid, 2, 25, x, radius, &error));
@@ -201,7 +196,6 @@ TEST(least_neighbours)
     struct support_options options = support_defaults(2);
     options.least = 15;
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     GOOD(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error));
     int64_t widened = 0;
     double widest = 1.0;
@@ -226,7 +220,7 @@ TEST(threads)
     FREED_BY(scattered_free) struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
     struct support_options options = support_defaults(3);
     struct table tables[3];
-    struct error error, errors[3];
+    struct error errors[3];
     int before = omp_get_max_threads();
     for (int i = 0; i < 3; i++) {
         omp_set_num_threads(numbers[i]);
@@ -262,7 +256,6 @@ TEST(not_finite)
     FREED_BY(scattered_free) struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     struct table table;
-    struct error error;
     static const double wrong[] = {NAN, INFINITY};
     for (int i = 0; i < 2; i++) {
         cloud.points[9] = wrong[i];
@@ -430,7 +423,6 @@ TEST(trap_coincident)
     }
     struct support_options options = support_defaults(2);
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     FAILS(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error), STATUS_INPUT,
           "nodes.x: row 31");
 }
@@ -463,7 +455,6 @@ TEST(trap_graded)
         struct cloud_options graded = {
             .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
         struct cloud cloud;
-        struct error error;
         GOOD(cloud_make(&graded, &cloud, &error));
         trap.dim = dim;
         trap.count = cloud.node_count;

@@ -18,7 +18,6 @@ static struct halves make_halves(int dim, const struct support_options *options)
     struct cloud_options wanted = {
         .kind = CLOUD_REGULAR, .dim = dim, .count = {9, dim == 2 ? 9 : 5, 5}, .high = {1.0, 1.0, 1.0}};
     struct halves halves = {0};
-    struct error error;
     GOOD(cloud_make(&wanted, &halves.cloud, &error));
     struct cloud *cloud = &halves.cloud;
     halves.cells = (struct cells){dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
@@ -67,7 +66,6 @@ TEST(lists_stop_at_the_interface)
         FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
         FREED_BY(support_space_free) struct support_space space = {0};
         FREED_BY(support_free) struct support_lists lists = {0};
-        struct error error;
         SCRATCH double *x = scatter_points(dim, COUNT);
         int64_t crossing = 0;
         options.side = halves.side;
@@ -105,7 +103,6 @@ TEST(places_tell_the_side)
         FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
         FREED_BY(support_space_free) struct support_space space = {0};
         struct support_lists found, given;
-        struct error error;
         int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
         double *middle = zeros(cells * dim, sizeof *middle);
         int32_t *cell = zeros(cells, sizeof *cell);
@@ -139,7 +136,6 @@ TEST(kinks_are_exact)
         enum { COUNT = 300 };
         struct support_options options = support_defaults(dim);
         FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
-        struct error error;
         double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
         double *field = zeros(halves.cells.node_count, sizeof *field);
         for (int64_t n = 0; n < halves.cells.node_count; n++) {
@@ -168,7 +164,6 @@ TEST(inclusions)
 {
     struct support_options options = support_defaults(2);
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
-    struct error error;
     struct reach_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
         FREED_BY(support_space_free) struct support_space space = {0};
@@ -197,13 +192,11 @@ TEST(failures_name_the_row)
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
     FREED_BY(support_space_free) struct support_space space = {0};
     struct support_lists lists;
-    struct error error;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    assert_int_equal(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error),
-                     STATUS_INPUT);
-    assert_string_equal(error.text, "points.x: row 2: not a finite coordinate");
+    FAILS_WITH(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
+               "points.x: row 2: not a finite coordinate");
     options.least = 1000;
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
     FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,

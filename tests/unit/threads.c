@@ -24,7 +24,6 @@ static int64_t row_of_chains(int64_t i, int64_t *column, double *value)
 
 static void make_chains(struct envelope *factor)
 {
-    struct error error;
     int64_t *ptr = zeros(ROWS + 1, sizeof *ptr), *column = zeros(3 * ROWS, sizeof *column);
     double *value = zeros(3 * ROWS, sizeof *value);
     for (int64_t i = 0; i < ROWS; i++) {
@@ -67,7 +66,6 @@ TEST(blocks)
 /* Rows of all lengths, most entries in the first ones, some without any; twice, y = A x and y += A x. */
 TEST(rows)
 {
-    struct error error;
     struct sparse matrix;
     struct random random = {3};
     int before = omp_get_max_threads();
