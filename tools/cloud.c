@@ -46,8 +46,6 @@ static const char usage[] =
 #include "cell_report.h"
 #include "tool.h"
 
-#include <stdlib.h>
-
 /* Exits where an option that goes with another kind was given. */
 static void check_kind(const struct tool *tool, const char *option, bool applies)
 {

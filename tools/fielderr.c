@@ -63,7 +63,6 @@ static const char usage[] =
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Cells per direction by the ratio that is used: outside of this it is noted. */

@@ -40,7 +40,6 @@ static const char usage[] =
 #include "stage_options.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 /* What -v tells. */

@@ -46,7 +46,6 @@ static const char usage[] =
 #include "approx/field_error.h"
 #include "approx/size_field.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* What the command line asks for. */

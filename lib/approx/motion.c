@@ -6,8 +6,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const int newton_most = 30;

@@ -8,7 +8,6 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 /* Singular values below this share of the largest are noise: the points do not determine that combination. */
 static const double cut = 1e-5;

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Normals are opposed when their cosine is below this: 120 degrees. */

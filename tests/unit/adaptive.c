@@ -4,7 +4,6 @@
 
 #include "approx/adaptive.h"
 #include "approx/cloud.h"
-#include "approx/quadrature.h"
 #include "approx/sorted.h"
 
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */

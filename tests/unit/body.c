@@ -2,8 +2,6 @@
  * linear fields, and faults told. */
 #include "body_setup.h"
 
-#include "solid/kernel.h"
-
 /* Translation, quarter turns and other rotations make no forces, and no energy. */
 static void check_rigid_motion(const struct sample *sample, const struct setup *setup, struct random *random)
 {

@@ -7,7 +7,6 @@
 #include "solid/dynamics.h"
 #include "solid/relaxation.h"
 
-#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <sys/stat.h>

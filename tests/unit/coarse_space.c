@@ -2,7 +2,6 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
-#include "base/memory.h"
 #include "solid/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */

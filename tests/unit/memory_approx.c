@@ -4,11 +4,9 @@
 #include "approx/cloud.h"
 #include "approx/field_compare.h"
 #include "approx/field_error.h"
-#include "approx/quadrature.h"
 #include "approx/size_field.h"
 #include "approx/support_space.h"
 #include "approx/ways.h"
-#include "base/memory.h"
 
 #include <gsl/gsl_errno.h>
 

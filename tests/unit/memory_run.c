@@ -9,7 +9,6 @@
 
 #ifdef FAILING_ALLOCATOR
 
-#include "base/memory.h"
 #include "solid/dynamics.h"
 #include "solid/relaxation.h"
 

@@ -4,7 +4,6 @@
 #include "approx/cloud.h"
 #include "approx/partition.h"
 #include "approx/support.h"
-#include "base/memory.h"
 
 struct body {
     struct cloud cloud;

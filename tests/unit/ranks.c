@@ -3,7 +3,6 @@
 #include "body_setup.h"
 
 #include "base/envelope.h"
-#include "base/memory.h"
 #include "base/ranks.h"
 
 #include <pthread.h>

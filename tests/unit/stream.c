@@ -3,8 +3,6 @@
 
 #include "io/sections.h"
 
-#include "base/memory.h"
-
 #include <fcntl.h>
 
 TEST(round_trip)

@@ -7,8 +7,6 @@
 #ifdef FAILING_ALLOCATOR
 #include "stream_fixture.h"
 
-#include "base/memory.h"
-
 static struct stream sample;
 static int descriptor; /* of the sample, written */
 static off_t begin;    /* where it begins: what does not begin its file is read, not mapped */

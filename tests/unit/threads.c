@@ -2,10 +2,7 @@
 #include "unit.h"
 
 #include "base/envelope.h"
-#include "base/memory.h"
 #include "base/sparse.h"
-
-#include <string.h>
 
 enum { ROWS = 60000, BLOCKS = 3, MOST_THREADS = 5 };
 

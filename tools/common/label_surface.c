@@ -5,7 +5,6 @@
 #include "approx/cells.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */

@@ -3,7 +3,6 @@
 
 #include "base/vector.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* The facets of the groups; of * all on the boundary. */

@@ -3,7 +3,6 @@
 #include "base/processor.h"
 
 #include <string.h>
-#include <unistd.h>
 
 /* ---- signals: a run that is asked to end finishes its step ---- */
 
