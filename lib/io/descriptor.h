@@ -12,4 +12,7 @@ MUST_CHECK enum status descriptor_read(int descriptor, void *bytes, size_t size,
 /* Write all `size` bytes. The message of a failure is the cause alone. */
 MUST_CHECK enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error);
 
+/* Close it, unless it is -1 or standard input: for FREED_BY. */
+void descriptor_close(const int *descriptor);
+
 #endif

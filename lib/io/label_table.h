@@ -32,7 +32,7 @@ struct label_table {
  * others but 0; a NAME - makes these labels outside; rows of one name are one region. A third word - leaves
  * the cells out, and names their walls. '#' begins a comment. Errors, as `FILE:LINE: ...`: those of
  * textfile_read; STATUS_INPUT for other words, a number that stands twice, a name with a comma, quote or
- * colon, 'outside', and a name that is both kept and left out. On failure the table is empty. */
+ * colon, 'outside', and a name that is both kept and left out. To be freed also on failure. */
 MUST_CHECK enum status label_table_read(const char *path, struct label_table *table, struct error *error);
 void label_table_free(struct label_table *table);
 

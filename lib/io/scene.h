@@ -194,7 +194,7 @@ struct scene {
 
 /* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as
  * `FILE:LINE: [kind NAME]: key: what: remedy`: STATUS_INPUT for anything malformed, STATUS_SYSTEM for read
- * failures and memory. On failure the scene is empty. */
+ * failures and memory. The scene is to be freed also on failure. */
 MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct error *error);
 
 /* Release everything the scene owns; it becomes empty. */

@@ -20,7 +20,9 @@ struct table {
 
 /* Read a table of least..most columns. Errors, as `FILE:LINE: ...`: those of textfile_read; STATUS_INPUT for
  * a word that is not a finite decimal number (a decimal comma among them), rows of different lengths, a
- * number of columns outside of least..most, and a file without rows. On failure the table is empty. */
+ * number of columns outside of least..most, and a file without rows. The table is to be freed also on
+ * failure.
+ */
 MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,
                                   struct error *error);
 

@@ -49,9 +49,11 @@ TEST(values_that_are_open)
     assert_true(table.values[3] == 4 && table.values[7] == 8);
     table_free(&table);
     FAILS(table_read(path, 4, 4, &table, &error), STATUS_INPUT, "");
+    table_free(&table);
     write_to(path, wrong, strlen(wrong));
     FAILS(table_read_open(path, 4, 4, 2, 3, &table, &error), STATUS_INPUT,
           ":1: column 2: '-' is not a finite number");
+    table_free(&table);
 }
 
 TEST(blocks)
@@ -86,7 +88,7 @@ TEST(grows)
 /* dim = 0: as a table of 2 to 4 columns, else as a surface. */
 static void fails_in(const char *name, int dim, const void *bytes, size_t size, int line, const char *words)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     struct error error = {""};
     char where[96];
     write_to(name, bytes, size);
@@ -97,8 +99,6 @@ static void fails_in(const char *name, int dim, const void *bytes, size_t size, 
         strstr(error.text, words) == NULL) {
         fail_msg("status %d, message \"%s\" is not \"%s ... %s\"", (int)status, error.text, where, words);
     }
-    assert_null(table.values);
-    assert_int_equal(table.rows, 0);
 }
 
 static void fails(const char *text, int line, const char *words)
@@ -220,7 +220,7 @@ TEST(triangles)
     memset(binary + 80, 0, 4);
     fails_in(stl_path, 3, binary, 84, 0, "holds no triangle");
     for (size_t size = 0; size < strlen(ascii); size++) { /* only the solid's closing name may go missing */
-        struct table table;
+        FREED_BY(table_free) struct table table = {0};
         write_to(stl_path, ascii, size);
         FAILS(surface_read(stl_path, 3, &table, &error), STATUS_INPUT, "");
     }
