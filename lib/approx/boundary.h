@@ -6,8 +6,7 @@
  * supports stop meets it, there is one average for each side, so that the multipliers can carry a traction
  * that jumps there: with the quadrature that smooths the cells the linear patch test then holds to round-off.
  */
-#ifndef APPROX_BOUNDARY_H
-#define APPROX_BOUNDARY_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/shape.h"
@@ -104,5 +103,3 @@ MUST_CHECK enum status boundary_find_ends(const struct face_table *table, enum b
                                           struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);
-
-#endif

@@ -1,6 +1,5 @@
 /* Background cells: simplices (triangles, tetrahedra) on the nodes, and their faces. */
-#ifndef APPROX_CELLS_H
-#define APPROX_CELLS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -73,5 +72,3 @@ MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, 
 
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
-
-#endif

@@ -7,8 +7,7 @@
  * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
  * N_a (X - X_a) H (X
  * - X_a) / 2. */
-#ifndef APPROX_MOTION_H
-#define APPROX_MOTION_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/support.h"
@@ -52,5 +51,3 @@ void motion_place(const struct motion *motion, int64_t cell, const double *X, do
  * - x| at the end, m. */
 bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
                     double *residual);
-
-#endif

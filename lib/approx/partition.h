@@ -8,8 +8,7 @@
  * are its own cells with their faces; for that it needs the nodes whose supports reach them (the halo). To
  * compute supports and shape functions at its own cells as in the whole body, it needs as well all cells at
  * these nodes, and the cells around these. */
-#ifndef APPROX_PARTITION_H
-#define APPROX_PARTITION_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/point_grid.h"
@@ -78,5 +77,3 @@ MUST_CHECK enum status body_part_build(const struct partition *partition, int32_
                                        struct body_part_work *work, struct body_part *body,
                                        struct error *error);
 void body_part_free(struct body_part *body);
-
-#endif

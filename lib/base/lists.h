@@ -1,6 +1,5 @@
 /* Lists of lists (CSR): row r has idx[ptr[r]] to before idx[ptr[r + 1]]. */
-#ifndef BASE_LISTS_H
-#define BASE_LISTS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -34,5 +33,3 @@ int compare_placed(const void *left, const void *right);
 int compare_int32(const void *left, const void *right);
 int compare_int64(const void *left, const void *right);
 int compare_double(const void *left, const void *right);
-
-#endif

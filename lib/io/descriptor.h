@@ -1,6 +1,5 @@
 /* Reading and writing by descriptors, past signals and short writes. */
-#ifndef IO_DESCRIPTOR_H
-#define IO_DESCRIPTOR_H
+#pragma once
 
 #include "base/status.h"
 
@@ -14,5 +13,3 @@ MUST_CHECK enum status descriptor_write(int descriptor, const void *bytes, size_
 
 /* Close it, unless it is -1 or standard input: for FREED_BY. */
 void descriptor_close(const int *descriptor);
-
-#endif

@@ -1,7 +1,6 @@
 /* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii), plain or compressed by gzip, of either byte
  * order. */
-#ifndef IO_IMAGE_H
-#define IO_IMAGE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -96,5 +95,3 @@ void image_world(const struct image *image, const double voxel[3], double world[
 
 /* The length of a voxel along its axis, m. */
 double image_step(const struct image *image, int axis);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the labels of an image are called: a table in a text file. */
-#ifndef IO_LABEL_TABLE_H
-#define IO_LABEL_TABLE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -46,5 +45,3 @@ MUST_CHECK enum status label_table_add(struct label_table *table, const struct l
 
 /* Look a label up: false where no row names it. 0 is outside, -1, without a row. */
 bool label_table_find(const struct label_table *table, int64_t label, int32_t *name);
-
-#endif

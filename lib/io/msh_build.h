@@ -1,6 +1,5 @@
 /* The steps of mesh_build, private to lib/io. */
-#ifndef IO_MSH_BUILD_H
-#define IO_MSH_BUILD_H
+#pragma once
 
 #include "base/status.h"
 #include "io/msh.h"
@@ -114,5 +113,3 @@ int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int 
 /* The nodes of a face, oriented outward from its cell: in 2D the cell is on the left from first to second
  * node, in 3D the right-hand normal points out. */
 void msh_face_nodes(const struct msh_faces *faces, int64_t face, int32_t node[]);
-
-#endif

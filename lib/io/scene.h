@@ -27,8 +27,7 @@
  *   time_step_margin (0..1)
  *
  * unit = m|cm|mm|um is the unit of the lengths in a table; curve = smooth (default)|linear|step|FILE. */
-#ifndef IO_SCENE_H
-#define IO_SCENE_H
+#pragma once
 
 #include "base/memory.h"
 
@@ -199,5 +198,3 @@ MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct 
 
 /* Release everything the scene owns; it becomes empty. */
 void scene_free(struct scene *scene);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * One row per line, its numbers separated by blanks or tabs, all rows of one length; '#' at the start of a
  * line or after a blank begins a comment; blank lines separate blocks, as in gnuplot. */
-#ifndef IO_TABLE_H
-#define IO_TABLE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -39,5 +38,3 @@ MUST_CHECK enum status table_append(struct table *table, const double *row, int6
 
 /* End a block after the last row, unless it ends there already. */
 MUST_CHECK enum status table_end_block(struct table *table, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Files written by people and untrusted, read whole: scenes, tables, surfaces. */
-#ifndef IO_TEXTFILE_H
-#define IO_TEXTFILE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -29,5 +28,3 @@ MUST_CHECK enum status textfile_check(const char *path, const struct textfile *f
 
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);
-
-#endif

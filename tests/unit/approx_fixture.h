@@ -1,7 +1,6 @@
 /* What the tests of lib/approx share: scattered clouds in several units and places, and the defects of a
  * table of shape functions against the properties that it must have. */
-#ifndef TESTS_APPROX_FIXTURE_H
-#define TESTS_APPROX_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -177,5 +176,3 @@ static inline struct support_options options_for(int dim, enum basis basis, enum
     options.factor = basis == BASIS_QUADRATIC ? 2.6 : 1.8;
     return options;
 }
-
-#endif

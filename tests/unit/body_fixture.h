@@ -1,7 +1,6 @@
 /* A small body for tests: a jittered lattice in a square or cube of 0.1 m, and its tables by either
  * integration scheme. */
-#ifndef TESTS_BODY_FIXTURE_H
-#define TESTS_BODY_FIXTURE_H
+#pragma once
 
 #include "cell_table.h"
 #include "tables_fixture.h"
@@ -132,5 +131,3 @@ static inline struct face_table sample_face_table(const struct sample *sample)
                                .lists = &sample->assembly.boundary_lists,
                                .phi = sample->assembly.boundary_phi};
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* How the tests of the force loop make bodies of the fixture's samples, and what they have in common: fields,
  * and a check of every kind of body. */
-#ifndef TESTS_BODY_SETUP_H
-#define TESTS_BODY_SETUP_H
+#pragma once
 
 #include "body_fixture.h"
 
@@ -157,5 +156,3 @@ static inline double *deformed_field(const struct sample *sample, struct body *b
     }
     return u;
 }
-
-#endif

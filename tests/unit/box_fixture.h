@@ -1,6 +1,5 @@
 /* A jittered lattice over a square or cube of .1 m, with its cells. */
-#ifndef TESTS_BOX_FIXTURE_H
-#define TESTS_BOX_FIXTURE_H
+#pragma once
 
 #include "approx_fixture.h"
 
@@ -29,5 +28,3 @@ static inline struct cells cells_of(const struct cloud *cloud)
                           .count = cloud->cell_count,
                           .node = cloud->cells};
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* What the tests of contacts share: contact nodes made up of a few nodes, particles, and closed or open
  * shells. */
-#ifndef TESTS_CONTACT_FIXTURE_H
-#define TESTS_CONTACT_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -136,5 +135,3 @@ static inline int touching(const struct contact *contact)
     }
     return count;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The allocator of a test program, which can be told to fail. Sanitizers bring their own: with them
  * FAILING_ALLOCATOR is not defined, and there is nothing to test. */
-#ifndef FAILING_ALLOCATOR_H
-#define FAILING_ALLOCATOR_H
+#pragma once
 
 #include "unit.h"
 
@@ -124,5 +123,4 @@ static inline void fail_each(enum status (*try)(struct error *error), long least
     assert_true(failed > least);
 }
 
-#endif
 #endif

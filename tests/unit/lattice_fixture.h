@@ -1,7 +1,6 @@
 /* Small bodies for tests of whole systems: a box of lattice cells, its tables and its system as the tools
  * make them, and conditions on its sides. */
-#ifndef TESTS_LATTICE_FIXTURE_H
-#define TESTS_LATTICE_FIXTURE_H
+#pragma once
 
 #include "cell_table.h"
 #include "tables_fixture.h"
@@ -186,5 +185,3 @@ static inline double *lattice_vector(const struct lattice *l)
 {
     return zeros(l->system.node_count * l->options.dim, sizeof(double));
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A small stream with every type and the hard values of each, and reading from bytes, for the tests of the
  * stream. */
-#ifndef TESTS_STREAM_FIXTURE_H
-#define TESTS_STREAM_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -106,5 +105,3 @@ static inline void assert_same_stream(const struct stream *a, const struct strea
         assert_same_section(&a->sections[i], &b->sections[i]);
     }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Cells made of label images, and what holds of all. */
-#ifndef STUFFING_FIXTURE_H
-#define STUFFING_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -90,5 +89,3 @@ static inline struct stuffing make_of_shape(const char *name, uint64_t seed, dou
     check_cells(&stuffing);
     return stuffing;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Tables of shape functions on a lattice of nodes in a box, made by the stages as the tools make them. */
-#ifndef TESTS_TABLES_FIXTURE_H
-#define TESTS_TABLES_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -37,5 +36,3 @@ static inline void make_tables(const struct cloud_options *options, int gauss_po
     assert_true(cloud->cell_count > 0);
     make_tables_of(cloud, gauss_points, factor, stream, assembly);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What all unit tests share: tests that list themselves, checks, and pseudo-random numbers. */
-#ifndef TESTS_UNIT_H
-#define TESTS_UNIT_H
+#pragma once
 
 #include "base/memory.h"
 
@@ -163,5 +162,3 @@ static inline double uniform(struct random *random, double low, double high)
     random->state = random->state * 6364136223846793005u + 1442695040888963407u;
     return low + (high - low) * (double)(random->state >> 11) * 0x1p-53;
 }
-
-#endif
