@@ -182,9 +182,7 @@ static inline void place(const struct motion *motion, int dim, int64_t cell, con
                 }
             }
         }
-        for (int i = 0; i < dim; i++) {
-            moved[i] += N[a] * part[a][i];
-        }
+        add_scaled(dim, N[a], part[a], moved);
     }
     for (int i = 0; i < dim && F != NULL; i++) {
         for (int j = 0; j < dim; j++) {

@@ -256,9 +256,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
         weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
         total += weight;
-        for (int a = 0; a < dim; a++) {
-            mean[a] += weight * fit->row[nearest->row[i] * fit->row_size + a];
-        }
+        add_scaled(dim, weight, fit->row + nearest->row[i] * fit->row_size, mean);
     }
     for (int a = 0; a < dim; a++) {
         mean[a] /= total;

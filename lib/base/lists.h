@@ -29,7 +29,7 @@ struct placed {
 /* For qsort of struct placed: ascending places, items of one place by their numbers. */
 int compare_placed(const void *left, const void *right);
 
-/* For qsort and bsearch, ascending: of these numbers, and of structs that begin with one. */
+/* For qsort and bsearch, ascending: of such numbers, and of structs that begin with one. */
 int compare_int32(const void *left, const void *right);
 int compare_int64(const void *left, const void *right);
 int compare_double(const void *left, const void *right);

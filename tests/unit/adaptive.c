@@ -5,6 +5,7 @@
 #include "approx/adaptive.h"
 #include "approx/cloud.h"
 #include "approx/sorted.h"
+#include "base/vector.h"
 
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
 struct body {
@@ -83,9 +84,7 @@ TEST(fill_and_exactness)
                 volume += points.weight[at];
                 total += points.weight[at];
                 quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
-                for (int a = 0; a < dim; a++) {
-                    first[a] += points.weight[at] * x[a];
-                }
+                add_scaled(dim, points.weight[at], x, first);
             }
             double exact = cell_volume(&body.cells, c);
             at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");

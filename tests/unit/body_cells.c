@@ -2,6 +2,8 @@
  * make up the volume within the boundary. */
 #include "body_setup.h"
 
+#include "base/vector.h"
+
 /* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
 TEST(accumulation)
 {
@@ -62,9 +64,7 @@ static void mean_of_face(const struct sample *sample, int64_t face, const double
         for (int64_t i = sample->assembly.boundary_lists.ptr[p];
              i < sample->assembly.boundary_lists.ptr[p + 1]; i++) {
             double share = rule.weight[p % points] * sample->assembly.boundary_phi[i];
-            for (int a = 0; a < dim; a++) {
-                mean[a] += share * u[(int64_t)sample->assembly.boundary_lists.idx[i] * dim + a];
-            }
+            add_scaled(dim, share, u + (int64_t)sample->assembly.boundary_lists.idx[i] * dim, mean);
         }
     }
 }
@@ -77,14 +77,7 @@ static void area_of(int dim, double x[3][3], double area[3])
         a[i] = x[1][i] - x[0][i];
         b[i] = dim == 3 ? 0.5 * (x[2][i] - x[0][i]) : i == 2 ? 1.0 : 0.0;
     }
-    for (int i = 0; i < 3; i++) {
-        area[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    vector_cross(a, b, area);
 }
 
 /* What a facet of the boundary adds to the volume inside: of the cone over the triangle of its deformed
@@ -112,12 +105,12 @@ static double volume_below(const struct sample *sample, int64_t face, const doub
         }
     }
     area_of(dim, rest, area);
-    double sense = dot(area, inside) < 0.0 ? 1.0 : -1.0;
+    double sense = vector_dot(3, area, inside) < 0.0 ? 1.0 : -1.0;
     area_of(dim, x, area);
     for (int a = 0; a < 3; a++) {
         mean[a] += centre[a] / dim - centre[a];
     }
-    return sense * dot(mean, area);
+    return sense * vector_dot(3, mean, area);
 }
 
 /* Whatever the field, the volume ratios of smoothed cells make up the volume within the boundary. */

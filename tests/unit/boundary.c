@@ -1,6 +1,7 @@
 /* Boundary averages: sums, linear fields, boundary averages split where the boundary turns, areas, the
  * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
+#include "base/vector.h"
 
 static struct facet_set all_facets(const struct sample *sample)
 {
@@ -48,16 +49,12 @@ static void check_averages(const struct sample *sample, const struct boundary_av
         for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
             sum += averages->phi[i];
             assert_true(i == averages->ptr[a] || averages->idx[i - 1] < averages->idx[i]);
-            for (int c = 0; c < dim; c++) {
-                mean[c] += averages->phi[i] * sample->cloud.x[(int64_t)averages->idx[i] * dim + c];
-            }
+            add_scaled(dim, averages->phi[i], sample->cloud.x + (int64_t)averages->idx[i] * dim, mean);
         }
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             share += averages->sample_share[s];
             assert_true(averages->sample_share[s] > 0.0);
-            for (int c = 0; c < dim; c++) {
-                sampled[c] += averages->sample_share[s] * averages->sample_x[s * dim + c];
-            }
+            add_scaled(dim, averages->sample_share[s], averages->sample_x + s * dim, sampled);
         }
         NEAR_TO(sum, 1.0, 1e-12);
         NEAR_TO(share, 1.0, 1e-14);

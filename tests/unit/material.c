@@ -3,6 +3,7 @@
 #include "unit.h"
 
 #include "solid/material.h"
+#include "base/vector.h"
 
 static struct material make(enum material_model model, double poisson_ratio)
 {
@@ -34,9 +35,7 @@ static void stress(const struct material *material, const double F[9], double P[
     double C[9];
     material_shape_stress(material, F, P);
     cofactor(F, C);
-    for (int i = 0; i < 9; i++) {
-        P[i] += material_pressure(material, determinant(F)) * C[i];
-    }
+    add_scaled(9, material_pressure(material, determinant(F)), C, P);
 }
 
 /* A = B C */

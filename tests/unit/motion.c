@@ -4,6 +4,7 @@
 #include "approx/cloud.h"
 #include "approx/motion.h"
 #include "approx/raster.h"
+#include "base/vector.h"
 
 /* A jittered cloud in the unit square or cube, and a field on it. */
 struct body {
@@ -60,15 +61,6 @@ static void drop_body(struct body *body)
     free(body->u);
 }
 
-static double distance(int dim, const double *a, const double *b)
-{
-    double square = 0;
-    for (int i = 0; i < dim; i++) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sqrt(square);
-}
-
 /* Barycentric coordinates of sample s of a cell: inside, on faces, at corners. */
 static void sample_place(const struct cells *cells, int64_t cell, int s, double *X)
 {
@@ -83,9 +75,7 @@ static void sample_place(const struct cells *cells, int64_t cell, int s, double 
     }
     for (int a = 0; a <= cells->dim; a++) {
         const double *node = cells->x + cells->node[cell * (cells->dim + 1) + a] * cells->dim;
-        for (int i = 0; i < cells->dim; i++) {
-            X[i] += weights[s][a] / sum * node[i];
-        }
+        add_scaled(cells->dim, weights[s][a] / sum, node, X);
     }
 }
 
@@ -105,10 +95,10 @@ static double largest_error(const struct motion *motion, field_function field, d
             for (int i = 0; i < dim; i++) {
                 exact[i] = X[i] + u[i];
             }
-            most = fmax(most, distance(dim, moved, exact));
+            most = fmax(most, vector_distance(dim, moved, exact));
             assert_true(motion_inverse(motion, c, moved, 1e-12, back, &residual));
             assert_true(residual <= 1e-12);
-            *inverse_error = fmax(*inverse_error, distance(dim, back, X));
+            *inverse_error = fmax(*inverse_error, vector_distance(dim, back, X));
         }
     }
     return most;
@@ -173,7 +163,7 @@ TEST(walks)
                 sample_place(&body.cells, c, 0, X);
                 motion_place(&motion, c, X, moved);
                 assert_true(motion_inverse(&motion, start, moved, 1e-12, back, &residual));
-                assert_true(distance(3, back, X) <= 1e-10);
+                assert_true(vector_distance(3, back, X) <= 1e-10);
             }
         }
     }

@@ -1,6 +1,7 @@
 /* Rigid surfaces: closest points against brute force, signs against winding numbers, open rims, faults. */
 #include "unit.h"
 
+#include "base/vector.h"
 #include "solid/rigid.h"
 
 enum { MAX_FACETS = 4096 };
@@ -82,40 +83,14 @@ static void make_boulder(struct shape *shape, int n, double roughness, struct ra
     }
 }
 
-static double dot3(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double norm(int dim, const double *a)
-{
-    double sum = 0.0;
-    for (int i = 0; i < dim; i++) {
-        sum += a[i] * a[i];
-    }
-    return sqrt(sum);
-}
-
 static double to_segment(int dim, const double *a, const double *b, const double *x)
 {
-    double length2 = 0.0, product = 0.0, away[3];
-    for (int i = 0; i < dim; i++) {
-        length2 += (b[i] - a[i]) * (b[i] - a[i]);
-        product += (b[i] - a[i]) * (x[i] - a[i]);
-    }
-    double s = fmin(fmax(product / length2, 0.0), 1.0);
-    for (int i = 0; i < dim; i++) {
-        away[i] = x[i] - a[i] - s * (b[i] - a[i]);
-    }
-    return norm(dim, away);
-}
-
-static void cross(const double *a, const double *b, double *c)
-{
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        c[i] = a[j] * b[k] - a[k] * b[j];
-    }
+    double along[3], away[3];
+    vector_subtract(dim, b, a, along);
+    vector_subtract(dim, x, a, away);
+    double s = fmin(fmax(vector_dot(dim, along, away) / vector_dot(dim, along, along), 0.0), 1.0);
+    add_scaled(dim, -s, along, away);
+    return vector_length(dim, away);
 }
 
 /* The distance to a triangle: to its plane where the foot is inside of all three edges, else to an edge. */
@@ -123,23 +98,19 @@ static double to_triangle(const double *corner, const double *x)
 {
     double least = INFINITY, e0[3], e1[3], normal[3], away[3];
     bool inside = true;
-    for (int a = 0; a < 3; a++) {
-        e0[a] = corner[3 + a] - corner[a];
-        e1[a] = corner[6 + a] - corner[a];
-    }
-    cross(e0, e1, normal);
+    vector_subtract(3, corner + 3, corner, e0);
+    vector_subtract(3, corner + 6, corner, e1);
+    vector_cross(e0, e1, normal);
     for (int k = 0; k < 3; k++) {
         const double *from = corner + 3 * k, *to = corner + 3 * ((k + 1) % 3);
         double edge[3], inward[3];
-        for (int a = 0; a < 3; a++) {
-            edge[a] = to[a] - from[a];
-            away[a] = x[a] - from[a];
-        }
-        cross(normal, edge, inward);
-        inside = inside && dot3(inward, away) >= 0.0;
+        vector_subtract(3, to, from, edge);
+        vector_subtract(3, x, from, away);
+        vector_cross(normal, edge, inward);
+        inside = inside && vector_dot(3, inward, away) >= 0.0;
         least = fmin(least, to_segment(3, from, to, x));
     }
-    return inside ? fabs(dot3(normal, away)) / norm(3, normal) : least;
+    return inside ? fabs(vector_dot(3, normal, away)) / vector_length(3, normal) : least;
 }
 
 static double brute_distance(const struct shape *shape, const double *x)
@@ -161,18 +132,16 @@ static double winding(const struct shape *shape, const double *x)
         const double *corner = shape->corners + f * shape->dim * shape->dim;
         double r[3][3] = {{0.0}}, turned[3], length[3];
         for (int k = 0; k < shape->dim; k++) {
-            for (int a = 0; a < shape->dim; a++) {
-                r[k][a] = corner[k * shape->dim + a] - x[a];
-            }
-            length[k] = norm(3, r[k]);
+            vector_subtract(shape->dim, corner + k * shape->dim, x, r[k]);
+            length[k] = vector_length(3, r[k]);
         }
-        cross(r[0], r[1], turned);
+        vector_cross(r[0], r[1], turned);
         if (shape->dim == 2) {
-            sum += atan2(turned[2], dot3(r[0], r[1])) / (2.0 * M_PI);
+            sum += atan2(turned[2], vector_dot(3, r[0], r[1])) / (2.0 * M_PI);
         } else {
-            double below = length[0] * length[1] * length[2] + dot3(r[0], r[1]) * length[2] +
-                           dot3(r[1], r[2]) * length[0] + dot3(r[2], r[0]) * length[1];
-            sum += 2.0 * atan2(dot3(turned, r[2]), below) / (4.0 * M_PI);
+            double below = length[0] * length[1] * length[2] + vector_dot(3, r[0], r[1]) * length[2] +
+                           vector_dot(3, r[1], r[2]) * length[0] + vector_dot(3, r[2], r[0]) * length[1];
+            sum += 2.0 * atan2(vector_dot(3, turned, r[2]), below) / (4.0 * M_PI);
         }
     }
     return sum;
@@ -185,17 +154,17 @@ static void check_closed(const struct shape *shape, const struct rigid_surface *
     double expected = brute_distance(shape, x), foot[3] = {0.0}, on_foot;
     struct rigid_contact contact = rigid_closest(surface, x, INFINITY);
     assert_true(contact.found);
-    NEAR_TO(contact.distance, expected, 1e-13 * (1.0 + norm(dim, x)));
+    NEAR_TO(contact.distance, expected, 1e-13 * (1.0 + vector_length(dim, x)));
     NEAR_TO(fabs(contact.gap), contact.distance, 0.0);
     if (expected > 1e-9) {
         NEAR_TO(contact.gap > 0.0 ? 0.0 : 1.0, winding(shape, x), 1e-6);
     }
-    NEAR_TO(norm(dim, contact.normal), 1.0, 1e-14);
+    NEAR_TO(vector_length(dim, contact.normal), 1.0, 1e-14);
     for (int a = 0; a < dim; a++) {
         foot[a] = x[a] - contact.gap * contact.normal[a];
     }
     on_foot = brute_distance(shape, foot);
-    NEAR_TO(on_foot, 0.0, 1e-13 * (1.0 + norm(dim, x)));
+    NEAR_TO(on_foot, 0.0, 1e-13 * (1.0 + vector_length(dim, x)));
     /* Only what is within reach is found. */
     struct rigid_contact reached = rigid_closest(surface, x, 1.01 * expected + 1e-6);
     assert_memory_equal(&reached, &contact, sizeof contact);

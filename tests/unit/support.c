@@ -3,6 +3,7 @@
 #include "approx_fixture.h"
 
 #include "approx/cloud.h"
+#include "base/lists.h"
 
 /* Radii over three decades, two nodes at one place. */
 TEST(grid_against_brute_force)
@@ -131,12 +132,6 @@ TEST(grid_odd_clouds)
     }
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 TEST(spacing_against_brute_force)
 {
     for (int dim = 2; dim <= 3; dim++) {
@@ -156,7 +151,7 @@ TEST(spacing_against_brute_force)
                 }
                 distance[i] = sqrt(sum);
             }
-            qsort(distance, (size_t)cloud.count, sizeof *distance, compare_doubles);
+            qsort(distance, (size_t)cloud.count, sizeof *distance, compare_double);
             for (int k = 1; k <= 2 * dim; k++) {
                 mean += distance[k] / (2 * dim);
             }
