@@ -70,9 +70,7 @@ TEST(linear_field_by_table)
         assert_int_equal(report.outcome, RELAXATION_CONVERGED);
         assembly_nodal_field(&l.assembly, u, field);
         for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
-            for (int i = 0; i < dim; i++) {
-                NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
-            }
+            ALL_NEAR(dim, field + n * dim, rows + n * 2 * dim + dim, 1e-9);
         }
     }
 }

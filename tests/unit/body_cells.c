@@ -160,9 +160,7 @@ TEST(faces)
                                other = body_force(&by_faces, u, force);
             body_gradient(&by_table, F_expected);
             body_gradient(&by_faces, F);
-            for (int64_t k = 0; k < size; k++) {
-                NEAR_TO(F[k], F_expected[k], 1e-12);
-            }
+            ALL_NEAR(size, F, F_expected, 1e-12);
             NEAR_TO(least.least_jacobian, other.least_jacobian, 1e-12);
             assert_int_equal(least.point, other.point);
             double energy, stabilised = 0.0;
@@ -205,9 +203,7 @@ TEST(general_law)
             body.blocks[b].neo_hookean = false;
         }
         (void)body_force(&body, u, expected);
-        for (int64_t k = 0; k < count; k++) {
-            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
-        }
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
     }
 }
 

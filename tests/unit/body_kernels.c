@@ -56,9 +56,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
         }
         body.kernels = kernels;
         (void)body_force(&body, u, force);
-        for (int64_t i = 0; i < count; i++) {
-            NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
-        }
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
     }
 }
 
@@ -84,9 +82,7 @@ TEST(compressible)
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
         (void)body_force(&one, u, expected);
         (void)body_force(&other, u, force);
-        for (int64_t k = 0; k < count; k++) {
-            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
-        }
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
         NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
     }
 }
@@ -350,9 +346,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
                         u[(int64_t)sample->idx[i] * dim + k / dim] * sample->dphi[i * dim + k % dim];
                 }
             }
-            for (int k = 0; k < 9; k++) {
-                NEAR_TO(F[9 * q + k], G[k], 1e-11);
-            }
+            ALL_NEAR(9, F + 9 * q, G, 1e-11);
             least = determinant(F + 9 * q) < determinant(F + 9 * least) ? q : least;
         }
         assert_true(deformation.least_jacobian < 0.0);

@@ -111,9 +111,7 @@ TEST(averages_split_at_corners)
                 assert_int_equal(aligned, 1); /* no part mixes two sides */
             }
             NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-            for (int c = 0; c < dim; c++) {
-                NEAR_TO(outward[c], 0.0, 1e-14);
-            }
+            ALL_NEAR(dim, outward, NULL, 1e-14);
         }
     }
 }
@@ -378,9 +376,7 @@ TEST(node_values)
                 assert_int_equal(averages.idx[averages.ptr[a] + i], lists.idx[lists.ptr[node] + i]);
                 NEAR_TO(averages.phi[averages.ptr[a] + i], phi[lists.ptr[node] + i], 0.0);
             }
-            for (int c = 0; c < dim; c++) {
-                NEAR_TO(averages.position[a * dim + c], sample.cloud.x[(int64_t)node * dim + c], 0.0);
-            }
+            ALL_NEAR(dim, averages.position + a * dim, sample.cloud.x + (int64_t)node * dim, 0.0);
         }
         NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
     }

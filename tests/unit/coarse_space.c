@@ -81,12 +81,8 @@ TEST(plain_sums)
                 sum_plainly(&cloud, weight, expected, field);
                 coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
                 coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
-                for (int64_t i = 0; i < size; i++) {
-                    NEAR_TO(amount[i], expected[i], 1e-12 * NODES);
-                }
-                for (int64_t i = 0; i < cloud.size; i++) {
-                    NEAR_TO(u[i], field[i], 1e-13);
-                }
+                ALL_NEAR(size, amount, expected, 1e-12 * NODES);
+                ALL_NEAR(cloud.size, u, field, 1e-13);
                 free(amount);
                 free(expected);
                 free(u);

@@ -91,9 +91,7 @@ TEST(dependent_rows_share)
     GOOD(constraint_share_out(&constraint, shared, &error));
     spread(&line, force, before);
     spread(&line, shared, after);
-    for (int n = 0; n < NODES; n++) {
-        NEAR_TO(after[n], before[n], 1e-12);
-    }
+    ALL_NEAR(NODES, after, before, 1e-12);
     NEAR_TO(shared[3], shared[4], 1e-12);
     NEAR_TO(shared[3] + shared[4], force[3] + force[4], 1e-12);
     /* The least norm is across the combination (1, 1, -2) / 2 that is zero, in the metric of the diagonal. */

@@ -64,9 +64,7 @@ TEST(balance)
             expected += strength * (position(&contact_nodes, u, a, 0) * normal[1] -
                                     position(&contact_nodes, u, a, 1) * normal[0]);
         }
-        for (int a = 0; a < dim; a++) {
-            NEAR_TO(sum[a], total[a], 1e-9);
-        }
+        ALL_NEAR(dim, sum, total, 1e-9);
         NEAR_TO(moment, expected, 1e-9);
     }
 }
@@ -285,9 +283,7 @@ TEST(curved_boundary)
     FREED_BY(contact_free)
     struct contact contact = built(&contact_nodes, make_shell(2, CONTACT_NODES, 1.0, false), 1.0);
     contact_force(&contact, u, force);
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        NEAR_TO(contact.gap[a], 0.0, 1e-14);
-    }
+    ALL_NEAR(CONTACT_NODES, contact.gap, NULL, 1e-14);
 }
 
 /* The wrong side of the surface is noticed. */

@@ -40,9 +40,7 @@ TEST(motions)
         NEAR_TO(x[0], 0.5, 1e-15);
         NEAR_TO(x[1], 3.0, 1e-15);
         NEAR_TO(normal[1], 1.0, 1e-15);
-        for (int i = 0; i < dim; i++) {
-            NEAR_TO(back[i], X[i], 1e-14);
-        }
+        ALL_NEAR(dim, back, X, 1e-14);
         NEAR_TO(rigid_motion_way(&motion, dim, X), (dim == 2 ? 1.0 : sqrt(26.0)) + M_PI, 1e-14);
         motion = (struct rigid_motion){.moves = true,
                                        .translation = {1.0, 0.0, 5.0},
@@ -98,9 +96,7 @@ TEST(moved_together)
             for (int n = 0; n < NODES; n++) {
                 rigid_place_turn(&place, dim, force + n * dim);
             }
-            for (int i = 0; i < NODES * dim; i++) {
-                NEAR_TO(other[i], force[i], 1e-7);
-            }
+            ALL_NEAR(NODES * dim, other, force, 1e-7);
             NEAR_TO(contact_energy(&moves), contact_energy(&rests), 1e-8 * contact_energy(&rests));
             contacts += touching(&moves);
         }

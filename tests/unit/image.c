@@ -146,9 +146,7 @@ TEST(scaling)
 static void same_space(double expected[3][4])
 {
     for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 4; c++) {
-            NEAR_TO(image.to_world[r][c], expected[r][c], 1e-8);
-        }
+        ALL_NEAR(4, image.to_world[r], expected[r], 1e-8);
     }
 }
 

@@ -93,6 +93,18 @@ static inline void near_to(double value, double expected, double tolerance, cons
     }
 }
 
+/* The same of each of values[count] and expected[count]; NULL: zeros. */
+#define ALL_NEAR(count, values, expected, tolerance)                                                         \
+    all_near((count), (values), (expected), (tolerance), __func__, __LINE__)
+
+static inline void all_near(int64_t count, const double *values, const double *expected, double tolerance,
+                            const char *where, int line)
+{
+    for (int64_t i = 0; i < count; i++) {
+        near_to(values[i], expected != NULL ? expected[i] : 0.0, tolerance, where, line);
+    }
+}
+
 /* value <= bound; NaN fails. */
 #define AT_MOST(value, bound)                                                                                \
     do {                                                                                                     \
