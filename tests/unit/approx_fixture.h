@@ -96,11 +96,10 @@ static inline enum status tabulate(const struct support_options *options, int64_
                                    int64_t point_count, const double *points, struct table *table,
                                    struct error *error)
 {
-    enum status status;
     int dim = options->mls.dim;
     double *spacing = calloc((size_t)count, sizeof *spacing);
     *table = (struct table){.radius = calloc((size_t)count, sizeof(double))};
-    status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
+    enum status status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
     if (status == STATUS_OK) {
         status = support_radii(options, count, spacing, table->radius, error);
     }

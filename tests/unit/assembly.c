@@ -40,11 +40,10 @@ TEST(linear_field_by_table)
         FREED_BY(lattice_free) struct lattice l = {0};
         struct error note;
         SCRATCH int32_t *facet = NULL;
-        double *rows;
         struct lattice_options options = lattice_defaults(dim, 5);
         options.jitter = 0.1;
         lattice_build(&l, &options);
-        rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
+        double *rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
         for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
             for (int i = 0; i < dim; i++) {
                 rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];

@@ -78,8 +78,7 @@ TEST(linear_fields_have_their_energy)
         build(&cube, bonded);
         const struct body *body = &cube.l.system.body;
         const struct material *material = body->materials;
-        double *x;
-        x = zeros(cube.n, sizeof *x);
+        double *x = zeros(cube.n, sizeof *x);
         for (int64_t i = 0; i < cube.n; i++) {
             x[i] = 1.0;
         }
@@ -102,8 +101,7 @@ TEST(the_diagonal_is_one)
     struct cube cube;
     build(&cube, true);
     const struct inverse_factor *factor = &cube.factor;
-    double *x;
-    x = zeros(cube.n, sizeof *x);
+    double *x = zeros(cube.n, sizeof *x);
     for (int64_t i = 0; i < cube.n; i++) {
         assert_int_equal(factor->rows.idx[factor->rows.ptr[i + 1] - 1], i);
         memset(x, 0, (size_t)cube.n * sizeof *x);

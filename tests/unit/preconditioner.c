@@ -15,8 +15,7 @@ struct strained {
 
 static void measure(struct strained *s, bool coarse)
 {
-    double *mass;
-    mass = zeros(s->l.system.node_count, sizeof *mass);
+    double *mass = zeros(s->l.system.node_count, sizeof *mass);
     (void)system_residual(&s->l.system, s->u, s->residual);
     system_relaxation_mass(&s->l.system, false, mass);
     GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));

@@ -106,13 +106,12 @@ TEST(simple_shear)
     static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
     struct lattice_options options = lattice_defaults(2, 7);
     FREED_BY(lattice_free) struct lattice l = {0};
-    double *stress;
     options.jitter = 0.2;
     lattice_build(&l, &options);
     prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
     double *u = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
     (void)system_residual(&l.system, u, residual);
-    stress = zeros(l.system.body.point_count * 9, sizeof *stress);
+    double *stress = zeros(l.system.body.point_count * 9, sizeof *stress);
     body_stress(&l.system.body, stress);
     for (int64_t q = 0; q < l.system.body.point_count; q++) {
         const double *P = stress + 9 * q;
@@ -128,13 +127,12 @@ TEST(simple_shear)
 static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    double *row_force;
     int top = 2 * dim - 1;
     int32_t curve = lattice_begin(&l, dim, dim == 2 ? 6 : 4, 0.1, CURVE_SMOOTH);
     unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
     lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
     lattice_push(&l, top, (stretch - 1) * 0.1, curve);
-    row_force = zeros(l.system.rows.count, sizeof *row_force);
+    double *row_force = zeros(l.system.rows.count, sizeof *row_force);
     double *u = relaxed(&l, 1e-9, row_force);
     double area = dim == 2 ? 0.1 : 0.01;
     NEAR_TO(lattice_reaction(&l, row_force, 1u << top) / area / expected, 1, 1e-6);
@@ -208,9 +206,8 @@ TEST(reaction_does_the_work)
         double energy[3], force[3], down = large ? -0.02 : -1e-7, change = large ? 1e-4 : 0;
         for (int k = 0; k < 3; k++) {
             FREED_BY(lattice_free) struct lattice l = {0};
-            double *row_force;
             clamp(&l, 7, down + (k - 1) * change, 0, true);
-            row_force = zeros(l.system.rows.count, sizeof *row_force);
+            double *row_force = zeros(l.system.rows.count, sizeof *row_force);
             double *u = relaxed(&l, 1e-9, row_force);
             force[k] = lattice_reaction(&l, row_force, 1);
             energy[k] = body_energy(&l.system.body, u);

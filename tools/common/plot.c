@@ -154,10 +154,9 @@ static enum status find_mesh(struct plot *plot, struct error *error)
 /* Fields: those of the stream, what follows from them, and the groups. */
 static enum status find_fields(struct plot *plot, struct error *error)
 {
-    int64_t most;
     RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));
     RETURN_IF_ERROR(derived_add_groups(&plot->stream, &plot->cells, &plot->derived, error));
-    most = plot->stream.section_count + plot->derived.count;
+    int64_t most = plot->stream.section_count + plot->derived.count;
     RETURN_IF_ERROR(NEW_ARRAY(&plot->fields, most, error));
     return NEW_ARRAY(&plot->labels, most, error);
 }
