@@ -68,37 +68,35 @@ TEST(lists)
 }
 
 /* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */
-TEST(fill_and_exactness)
+TEST_IN_EACH_DIM(fill_and_exactness)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
-        FREED_BY(adaptive_points_free)
-        struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
-        double quadratic = 0.0, total = 0.0;
-        int64_t at = 0;
-        for (int64_t c = 0; c < body.cells.count; c++) {
-            double volume = 0.0, first[3] = {0}, centroid[3];
-            for (; at < points.count && points.cell[at] == c; at++) {
-                const double *x = points.x + at * dim;
-                assert_true(points.weight[at] > 0.0);
-                volume += points.weight[at];
-                total += points.weight[at];
-                quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
-                add_scaled(dim, points.weight[at], x, first);
-            }
-            double exact = cell_volume(&body.cells, c);
-            at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");
-            cell_centroid(&body.cells, c, centroid);
-            for (int a = 0; a < dim; a++) {
-                at_most(fabs(first[a] / exact - centroid[a]), 1e-13, "first moment of a cell");
-            }
+    FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
+    FREED_BY(adaptive_points_free)
+    struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
+    double quadratic = 0.0, total = 0.0;
+    int64_t at = 0;
+    for (int64_t c = 0; c < body.cells.count; c++) {
+        double volume = 0.0, first[3] = {0}, centroid[3];
+        for (; at < points.count && points.cell[at] == c; at++) {
+            const double *x = points.x + at * dim;
+            assert_true(points.weight[at] > 0.0);
+            volume += points.weight[at];
+            total += points.weight[at];
+            quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
+            add_scaled(dim, points.weight[at], x, first);
         }
-        assert_int_equal(at, points.count);
-        at_most(fabs(total / pow(0.1, dim) - 1.0), 1e-12, "volume");
-        /* integrals of x y and z^2 over the box [0, .1]^dim */
-        double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
-        at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
+        double exact = cell_volume(&body.cells, c);
+        at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");
+        cell_centroid(&body.cells, c, centroid);
+        for (int a = 0; a < dim; a++) {
+            at_most(fabs(first[a] / exact - centroid[a]), 1e-13, "first moment of a cell");
+        }
     }
+    assert_int_equal(at, points.count);
+    at_most(fabs(total / pow(0.1, dim) - 1.0), 1e-12, "volume");
+    /* integrals of x y and z^2 over the box [0, .1]^dim */
+    double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
+    at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
 }
 
 /* K_ij = sum_q w_q grad phi_i . grad phi_j of all nodes, dense, times the size to the power 2 - dim. */
@@ -157,29 +155,27 @@ static struct adaptive_points brute(const struct body *body, int levels)
 }
 
 /* The whole body's K is within the tolerance of that of brute subdivision, with fewer points the looser. */
-TEST(convergence)
+TEST_IN_EACH_DIM(convergence)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
-        int64_t n = body.cells.node_count, before = 0;
-        int deepest = dim == 2 ? 3 : 2;
-        FREED_BY(adaptive_points_free) struct adaptive_points finest = brute(&body, deepest);
-        double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
-        double error_before = INFINITY;
-        for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
-            FREED_BY(adaptive_points_free)
-            struct adaptive_points points = integrate(&body, tolerance, deepest);
-            double *K = stiffness(&body, points.count, points.x, points.weight);
-            double error = apart(n, K, reference);
-            print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance,
-                          (int)points.count, (int)finest.count, error);
-            at_most(error, tolerance, "K against brute subdivision");
-            assert_true(error <= error_before);
-            assert_true(points.count >= before && points.count < finest.count / 2);
-            assert_int_equal(points.unresolved, 0);
-            before = points.count;
-            error_before = error;
-        }
+    FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
+    int64_t n = body.cells.node_count, before = 0;
+    int deepest = dim == 2 ? 3 : 2;
+    FREED_BY(adaptive_points_free) struct adaptive_points finest = brute(&body, deepest);
+    double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
+    double error_before = INFINITY;
+    for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
+        FREED_BY(adaptive_points_free)
+        struct adaptive_points points = integrate(&body, tolerance, deepest);
+        double *K = stiffness(&body, points.count, points.x, points.weight);
+        double error = apart(n, K, reference);
+        print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance, (int)points.count,
+                      (int)finest.count, error);
+        at_most(error, tolerance, "K against brute subdivision");
+        assert_true(error <= error_before);
+        assert_true(points.count >= before && points.count < finest.count / 2);
+        assert_int_equal(points.unresolved, 0);
+        before = points.count;
+        error_before = error;
     }
 }
 

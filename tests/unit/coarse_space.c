@@ -66,29 +66,26 @@ static void sum_plainly(const struct cloud *cloud, const double *weight, double 
     }
 }
 
-TEST(plain_sums)
+TEST_IN_EACH_DIM(plain_sums)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
-            for (int weighted = 0; weighted < 2; weighted++) {
-                struct cloud cloud = make_cloud(dim, NODES, centres);
-                int64_t size = cloud.coarse.count * dim;
-                const double *weight = weighted ? cloud.weight : NULL;
-                double *amount = array_new(size, sizeof *amount),
-                       *expected = array_new(size, sizeof *expected);
-                double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
-                assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
-                sum_plainly(&cloud, weight, expected, field);
-                coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
-                coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
-                ALL_NEAR(size, amount, expected, 1e-12 * NODES);
-                ALL_NEAR(cloud.size, u, field, 1e-13);
-                free(amount);
-                free(expected);
-                free(u);
-                free(field);
-                release(&cloud);
-            }
+    for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
+        for (int weighted = 0; weighted < 2; weighted++) {
+            struct cloud cloud = make_cloud(dim, NODES, centres);
+            int64_t size = cloud.coarse.count * dim;
+            const double *weight = weighted ? cloud.weight : NULL;
+            double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
+            double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
+            assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
+            sum_plainly(&cloud, weight, expected, field);
+            coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
+            coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
+            ALL_NEAR(size, amount, expected, 1e-12 * NODES);
+            ALL_NEAR(cloud.size, u, field, 1e-13);
+            free(amount);
+            free(expected);
+            free(u);
+            free(field);
+            release(&cloud);
         }
     }
 }
@@ -125,28 +122,26 @@ TEST(same_bits)
 }
 
 /* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
-TEST(linear_fields)
+TEST_IN_EACH_DIM(linear_fields)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = make_cloud(dim, 500, 6);
-        const struct coarse_space *coarse = &cloud.coarse;
-        double *u = array_new(cloud.size, sizeof *u);
-        assert_non_null(u);
-        memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
-        for (int c = 0; c < coarse->centre_count; c++) {
-            for (int a = 0; a < dim; a++) {
-                int64_t first = (int64_t)c * (dim + 1);
-                cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
-                cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
-            }
+    struct cloud cloud = make_cloud(dim, 500, 6);
+    const struct coarse_space *coarse = &cloud.coarse;
+    double *u = array_new(cloud.size, sizeof *u);
+    assert_non_null(u);
+    memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
+    for (int c = 0; c < coarse->centre_count; c++) {
+        for (int a = 0; a < dim; a++) {
+            int64_t first = (int64_t)c * (dim + 1);
+            cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
+            cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
         }
-        coarse_space_prolongate(coarse, cloud.amount, u);
-        for (int64_t i = 0; i < cloud.size; i++) {
-            NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
-        }
-        free(u);
-        release(&cloud);
     }
+    coarse_space_prolongate(coarse, cloud.amount, u);
+    for (int64_t i = 0; i < cloud.size; i++) {
+        NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
+    }
+    free(u);
+    release(&cloud);
 }
 
 /* A ring of nodes with a slit, each with its neighbours, and `alone` nodes behind it without any. */

@@ -225,36 +225,34 @@ static void momenta(const struct lattice *l, const double *u, const double *v, d
 }
 
 /* A free body, thrown and spinning, keeps its momenta to round-off however it swings. */
-TEST(free_spin)
+TEST_IN_EACH_DIM(free_spin)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
-        FREED_BY(lattice_free) struct lattice l = {0};
-        options.jitter = 0.1;
-        lattice_build(&l, &options);
-        double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
-        static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
-        const double *w = dim == 2 ? spin : tumble;
-        for (int64_t n = 0; n < l.system.node_count; n++) {
-            double X[3] = {0};
-            memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
-            for (int a = 0; a < dim; a++) {
-                v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
-            }
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
+    FREED_BY(lattice_free) struct lattice l = {0};
+    options.jitter = 0.1;
+    lattice_build(&l, &options);
+    double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
+    static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
+    const double *w = dim == 2 ? spin : tumble;
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        double X[3] = {0};
+        memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
+        for (int a = 0; a < dim; a++) {
+            v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
         }
-        momenta(&l, u, v, p[0], L[0]);
-        struct dynamics_options dynamics = over(0.5); /* about one turn */
-        struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
-        assert_int_equal(report.outcome, DYNAMICS_DONE);
-        momenta(&l, u, v, p[1], L[1]);
-        double scale = fabs(L[0][2]);
-        for (int a = 0; a < 3; a++) {
-            NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
-            /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
-            NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
-        }
-        AT_MOST(report.largest_drift, 1e-3);
     }
+    momenta(&l, u, v, p[0], L[0]);
+    struct dynamics_options dynamics = over(0.5); /* about one turn */
+    struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    momenta(&l, u, v, p[1], L[1]);
+    double scale = fabs(L[0][2]);
+    for (int a = 0; a < 3; a++) {
+        NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
+        /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
+        NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
+    }
+    AT_MOST(report.largest_drift, 1e-3);
 }
 
 /* A side pushed in and held: the work of the condition is what the energies hold, with and without damping,

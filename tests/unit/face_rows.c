@@ -130,35 +130,33 @@ static void check_rows(const struct faces *faces, const int32_t *side)
     assert_int_equal(next, faces->row_count);
 }
 
-TEST(rows_of_faces)
+TEST_IN_EACH_DIM(rows_of_faces)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(cloud_free) struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
-        struct cells cells = cells_of(&cloud);
-        int32_t *side = zeros(cells.count, sizeof *side);
-        struct faces faces;
-        int64_t own[2];
-        for (int64_t c = 0; c < cells.count; c++) {
-            double middle[3];
-            cell_centroid(&cells, c, middle);
-            side[c] = middle[0] > 0.045;
-        }
-        GOOD(faces_build(&cells, false, &faces, &error));
-        for (int sides = 0; sides < 2; sides++) {
-            free(faces.row);
-            GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
-            check_rows(&faces, sides ? side : NULL);
-            check_points(&cells, &faces);
-            check_cells(&cells, &faces);
-            own[sides] = faces.own_count;
-        }
-        assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
-        faces_free(&faces);
-        GOOD(faces_build(&cells, true, &faces, &error));
-        assert_null(faces.row);
-        assert_int_equal(faces.row_count, faces.boundary_count);
-        faces_free(&faces);
+    FREED_BY(cloud_free) struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
+    struct cells cells = cells_of(&cloud);
+    int32_t *side = zeros(cells.count, sizeof *side);
+    struct faces faces;
+    int64_t own[2];
+    for (int64_t c = 0; c < cells.count; c++) {
+        double middle[3];
+        cell_centroid(&cells, c, middle);
+        side[c] = middle[0] > 0.045;
     }
+    GOOD(faces_build(&cells, false, &faces, &error));
+    for (int sides = 0; sides < 2; sides++) {
+        free(faces.row);
+        GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
+        check_rows(&faces, sides ? side : NULL);
+        check_points(&cells, &faces);
+        check_cells(&cells, &faces);
+        own[sides] = faces.own_count;
+    }
+    assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
+    faces_free(&faces);
+    GOOD(faces_build(&cells, true, &faces, &error));
+    assert_null(faces.row);
+    assert_int_equal(faces.row_count, faces.boundary_count);
+    faces_free(&faces);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -26,26 +26,24 @@ static struct nodal_field view(const struct scattered *cloud, const double *valu
         .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
 }
 
-TEST(linear_fields_are_exact)
+TEST_IN_EACH_DIM(linear_fields_are_exact)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int p = 0; p < PLACE_COUNT; p++) {
-            FREED_BY(scattered_free)
-            struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
-            struct support_options options = support_defaults(dim);
-            struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-            FREED_BY(field_table_free) struct field_table table = {0};
-            double *spacing = zeros(cloud.count, sizeof *spacing);
-            double *values = linear_field(dim, cloud.count, cloud.x);
-            double *expected = linear_field(dim, 80, cloud.points), got[160];
-            GOOD(field_spacing(&cells, spacing, &error));
-            GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
-            GOOD(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
-                                   &error));
-            field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
-            for (int i = 0; i < 160; i++) {
-                at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
-            }
+    for (int p = 0; p < PLACE_COUNT; p++) {
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
+        struct support_options options = support_defaults(dim);
+        struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
+        FREED_BY(field_table_free) struct field_table table = {0};
+        double *spacing = zeros(cloud.count, sizeof *spacing);
+        double *values = linear_field(dim, cloud.count, cloud.x);
+        double *expected = linear_field(dim, 80, cloud.points), got[160];
+        GOOD(field_spacing(&cells, spacing, &error));
+        GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
+        GOOD(
+            field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table, &error));
+        field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
+        for (int i = 0; i < 160; i++) {
+            at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
         }
     }
 }
@@ -171,47 +169,45 @@ TEST(statistics_of_differences)
 }
 
 /* A field against itself, against itself on another cloud, and against one that differs at one node. */
-TEST(comparisons)
+TEST_IN_EACH_DIM(comparisons)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(scattered_free) struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
-        FREED_BY(scattered_free)
-        struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
-        double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
-        struct nodal_field first = view(&coarse, a), second = view(&fine, b);
-        struct field_comparison comparison;
-        bool *chosen = zeros(coarse.count, sizeof *chosen);
-        GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
-        assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
-        for (int64_t n = 0; n < coarse.count; n++) {
-            assert_true(comparison.difference[n] == 0.0);
-        }
-        field_comparison_free(&comparison);
-
-        a[2 * 7] += 3.0;
-        a[2 * 7 + 1] += 4.0;
-        GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
-        assert_false(comparison.coincide);
-        for (int64_t n = 0; n < coarse.count; n++) {
-            at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
-        }
-        field_comparison_free(&comparison);
-
-        coarse.x[9 * dim] += 10.0; /* outside, unless left out */
-        FAILS(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT, "row 9");
-        assert_int_equal(comparison.outside, 1);
-        field_comparison_free(&comparison);
-        GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
-        assert_int_equal(comparison.count, coarse.count - 1);
-        assert_true(isnan(comparison.difference[9]));
-        field_comparison_free(&comparison);
-        chosen[7] = chosen[8] = true;
-        GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
-        assert_int_equal(comparison.count, 2);
-        assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
-        assert_true(isnan(comparison.difference[0]));
-        field_comparison_free(&comparison);
+    FREED_BY(scattered_free) struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
+    FREED_BY(scattered_free)
+    struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
+    double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
+    struct nodal_field first = view(&coarse, a), second = view(&fine, b);
+    struct field_comparison comparison;
+    bool *chosen = zeros(coarse.count, sizeof *chosen);
+    GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
+    assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
+    for (int64_t n = 0; n < coarse.count; n++) {
+        assert_true(comparison.difference[n] == 0.0);
     }
+    field_comparison_free(&comparison);
+
+    a[2 * 7] += 3.0;
+    a[2 * 7 + 1] += 4.0;
+    GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
+    assert_false(comparison.coincide);
+    for (int64_t n = 0; n < coarse.count; n++) {
+        at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
+    }
+    field_comparison_free(&comparison);
+
+    coarse.x[9 * dim] += 10.0; /* outside, unless left out */
+    FAILS(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT, "row 9");
+    assert_int_equal(comparison.outside, 1);
+    field_comparison_free(&comparison);
+    GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
+    assert_int_equal(comparison.count, coarse.count - 1);
+    assert_true(isnan(comparison.difference[9]));
+    field_comparison_free(&comparison);
+    chosen[7] = chosen[8] = true;
+    GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
+    assert_int_equal(comparison.count, 2);
+    assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
+    assert_true(isnan(comparison.difference[0]));
+    field_comparison_free(&comparison);
 }
 
 /* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */

@@ -117,13 +117,11 @@ static void check_polynomial(int dim, bool linear, field_function field, double 
     drop_body(&body);
 }
 
-TEST(polynomials_are_exact)
+TEST_IN_EACH_DIM(polynomials_are_exact)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        check_polynomial(dim, false, linear_field, 1e-11);
-        check_polynomial(dim, true, linear_field, 1e-11);
-        check_polynomial(dim, false, quadratic_field, 1e-7); /* to the regularisation of the modified basis */
-    }
+    check_polynomial(dim, false, linear_field, 1e-11);
+    check_polynomial(dim, true, linear_field, 1e-11);
+    check_polynomial(dim, false, quadratic_field, 1e-7); /* to the regularisation of the modified basis */
 }
 
 /* Half the spacing: an eighth of the error, a quarter without gradients. */
@@ -203,43 +201,41 @@ static bool holds(const struct cells *cells, int64_t cell, const double *y)
     return true;
 }
 
-TEST(owners)
+TEST_IN_EACH_DIM(owners)
 {
     static const int64_t sizes[2][3] = {{37, 29, 1}, {13, 11, 17}};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct body body;
-        make_body(dim, 5, linear_field, &body);
-        const int64_t *size = sizes[dim - 2];
-        int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
-        int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
-        for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
-            /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
-            body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
-        }
-        omp_set_num_threads(1);
-        raster_cells(&body.cells, 1, size, owner, &doubly);
-        assert_int_equal(doubly, 0);
-        omp_set_num_threads(3);
-        raster_cells(&body.cells, 1, size, again, &doubly);
-        assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
-        for (int64_t v = 0; v < count; v++) {
-            const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
-                                 (double)(v / size[0] / size[1])};
-            int64_t lowest = 0;
-            while (lowest < body.cells.count && !holds(&body.cells, lowest, y)) {
-                lowest++;
-            }
-            assert_int_equal(owner[v], lowest < body.cells.count ? lowest : -1);
-            found += owner[v] >= 0;
-        }
-        assert_true(found > (dim == 2 ? 100 : 1000));
-        /* Seen in a mirror all cells are turned over. */
-        raster_cells(&body.cells, -1, size, owner, &doubly);
-        for (int64_t v = 0; v < count; v++) {
-            assert_int_equal(owner[v], -1);
-        }
-        drop_body(&body);
+    struct body body;
+    make_body(dim, 5, linear_field, &body);
+    const int64_t *size = sizes[dim - 2];
+    int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
+    int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
+    for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
+        /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
+        body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
     }
+    omp_set_num_threads(1);
+    raster_cells(&body.cells, 1, size, owner, &doubly);
+    assert_int_equal(doubly, 0);
+    omp_set_num_threads(3);
+    raster_cells(&body.cells, 1, size, again, &doubly);
+    assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
+    for (int64_t v = 0; v < count; v++) {
+        const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
+                             (double)(v / size[0] / size[1])};
+        int64_t lowest = 0;
+        while (lowest < body.cells.count && !holds(&body.cells, lowest, y)) {
+            lowest++;
+        }
+        assert_int_equal(owner[v], lowest < body.cells.count ? lowest : -1);
+        found += owner[v] >= 0;
+    }
+    assert_true(found > (dim == 2 ? 100 : 1000));
+    /* Seen in a mirror all cells are turned over. */
+    raster_cells(&body.cells, -1, size, owner, &doubly);
+    for (int64_t v = 0; v < count; v++) {
+        assert_int_equal(owner[v], -1);
+    }
+    drop_body(&body);
 }
 
 TEST(two_parts_at_one_place)

@@ -132,31 +132,29 @@ TEST(grid_odd_clouds)
     }
 }
 
-TEST(spacing_against_brute_force)
+TEST_IN_EACH_DIM(spacing_against_brute_force)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(scattered_free)
-        struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
-        double *spacing = zeros(cloud.count, sizeof *spacing);
-        double *distance = zeros(cloud.count, sizeof *distance);
-        cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
-        GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
-        for (int64_t n = 0; n < cloud.count; n++) {
-            double mean = 0.0;
-            for (int64_t i = 0; i < cloud.count; i++) {
-                double sum = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    double d = cloud.x[n * dim + a] - cloud.x[i * dim + a];
-                    sum += d * d;
-                }
-                distance[i] = sqrt(sum);
+    FREED_BY(scattered_free)
+    struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
+    double *spacing = zeros(cloud.count, sizeof *spacing);
+    double *distance = zeros(cloud.count, sizeof *distance);
+    cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
+    GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
+    for (int64_t n = 0; n < cloud.count; n++) {
+        double mean = 0.0;
+        for (int64_t i = 0; i < cloud.count; i++) {
+            double sum = 0.0;
+            for (int a = 0; a < dim; a++) {
+                double d = cloud.x[n * dim + a] - cloud.x[i * dim + a];
+                sum += d * d;
             }
-            qsort(distance, (size_t)cloud.count, sizeof *distance, compare_double);
-            for (int k = 1; k <= 2 * dim; k++) {
-                mean += distance[k] / (2 * dim);
-            }
-            at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
+            distance[i] = sqrt(sum);
         }
+        qsort(distance, (size_t)cloud.count, sizeof *distance, compare_double);
+        for (int k = 1; k <= 2 * dim; k++) {
+            mean += distance[k] / (2 * dim);
+        }
+        at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
     }
 }
 
@@ -424,61 +422,55 @@ TEST(trap_coincident)
 
 /* One node six spacings from the others: it and the points beside it either see enough of the others or are
  * named. */
-TEST(trap_isolated)
+TEST_IN_EACH_DIM(trap_isolated)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        static struct trap trap = {.name = "one isolated node"};
-        regular_trap(&trap, dim, dim == 2 ? 8 : 5);
-        for (int a = 0; a < dim; a++) {
-            trap.x[trap.count * dim + a] = 13.0 - 4.0 * a;
-        }
-        trap.count++;
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            spring(&trap, (enum basis)b, true);
-            spring(&trap, (enum basis)b, false);
-        }
-        trap.x[(trap.count - 1) * dim] = 1e4;
-        assert_int_not_equal(spring(&trap, BASIS_LINEAR, false), STATUS_OK);
-        spring(&trap, BASIS_MODIFIED, true); /* names the stray node by its radius */
+    static struct trap trap = {.name = "one isolated node"};
+    regular_trap(&trap, dim, dim == 2 ? 8 : 5);
+    for (int a = 0; a < dim; a++) {
+        trap.x[trap.count * dim + a] = 13.0 - 4.0 * a;
     }
+    trap.count++;
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        spring(&trap, (enum basis)b, true);
+        spring(&trap, (enum basis)b, false);
+    }
+    trap.x[(trap.count - 1) * dim] = 1e4;
+    assert_int_not_equal(spring(&trap, BASIS_LINEAR, false), STATUS_OK);
+    spring(&trap, BASIS_MODIFIED, true); /* names the stray node by its radius */
 }
 
-TEST(trap_graded)
+TEST_IN_EACH_DIM(trap_graded)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        static struct trap trap = {.name = "cloud graded 20:1"};
-        struct cloud_options graded = {
-            .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
-        struct cloud cloud;
-        GOOD(cloud_make(&graded, &cloud, &error));
-        trap.dim = dim;
-        trap.count = cloud.node_count;
-        assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
-        memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
-        cloud_free(&cloud);
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
-        }
+    static struct trap trap = {.name = "cloud graded 20:1"};
+    struct cloud_options graded = {
+        .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
+    struct cloud cloud;
+    GOOD(cloud_make(&graded, &cloud, &error));
+    trap.dim = dim;
+    trap.count = cloud.node_count;
+    assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
+    memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
+    cloud_free(&cloud);
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
     }
 }
 
 /* Fewer nodes than any basis needs, down to one. */
-TEST(trap_few)
+TEST_IN_EACH_DIM(trap_few)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int64_t count = 1; count <= dim + 1; count++) {
-            double x[4 * 3] = {0.0};
-            struct support_options options = support_defaults(dim);
-            FREED_BY(table_free) struct table table = {0};
-            struct error error;
-            for (int64_t n = 1; n < count; n++) {
-                x[n * dim + n - 1] = 1.0;
-            }
-            enum status status = tabulate(&options, count, x, 1, x, &table, &error);
-            assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
-            if (status == STATUS_OK) {
-                at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
-            }
+    for (int64_t count = 1; count <= dim + 1; count++) {
+        double x[4 * 3] = {0.0};
+        struct support_options options = support_defaults(dim);
+        FREED_BY(table_free) struct table table = {0};
+        struct error error;
+        for (int64_t n = 1; n < count; n++) {
+            x[n * dim + n - 1] = 1.0;
+        }
+        enum status status = tabulate(&options, count, x, 1, x, &table, &error);
+        assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
+        if (status == STATUS_OK) {
+            at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
         }
     }
 }

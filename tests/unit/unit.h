@@ -56,6 +56,19 @@ static inline void unit_list(struct CMUnitTest test)
     }                                                                                                        \
     static void name(__attribute__((unused)) void **state)
 
+/* The same in two dimensions, and in three: TEST_IN_EACH_DIM(name) { ... dim ... }. */
+#define TEST_IN_EACH_DIM(name)                                                                               \
+    static void name(int dim);                                                                               \
+    TEST(name##_2d)                                                                                          \
+    {                                                                                                        \
+        name(2);                                                                                             \
+    }                                                                                                        \
+    TEST(name##_3d)                                                                                          \
+    {                                                                                                        \
+        name(3);                                                                                             \
+    }                                                                                                        \
+    static void name(int dim)
+
 /* A setup: small bodies gain nothing by threads, and the machine may be busy. */
 static inline int one_thread(__attribute__((unused)) void **state)
 {
