@@ -86,17 +86,17 @@ TEST_IN_EACH_DIM(fill_and_exactness)
             add_scaled(dim, points.weight[at], x, first);
         }
         double exact = cell_volume(&body.cells, c);
-        at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");
+        AT_MOST(fabs(volume / exact - 1.0), 1e-13);
         cell_centroid(&body.cells, c, centroid);
         for (int a = 0; a < dim; a++) {
-            at_most(fabs(first[a] / exact - centroid[a]), 1e-13, "first moment of a cell");
+            AT_MOST(fabs(first[a] / exact - centroid[a]), 1e-13);
         }
     }
     assert_int_equal(at, points.count);
-    at_most(fabs(total / pow(0.1, dim) - 1.0), 1e-12, "volume");
+    AT_MOST(fabs(total / pow(0.1, dim) - 1.0), 1e-12);
     /* integrals of x y and z^2 over the box [0, .1]^dim */
     double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
-    at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
+    AT_MOST(fabs(quadratic / exact - 1.0), 1e-12);
 }
 
 /* K_ij = sum_q w_q grad phi_i . grad phi_j of all nodes, dense, times the size to the power 2 - dim. */
@@ -170,7 +170,7 @@ TEST_IN_EACH_DIM(convergence)
         double error = apart(n, K, reference);
         print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance, (int)points.count,
                       (int)finest.count, error);
-        at_most(error, tolerance, "K against brute subdivision");
+        AT_MOST(error, tolerance);
         assert_true(error <= error_before);
         assert_true(points.count >= before && points.count < finest.count / 2);
         assert_int_equal(points.unresolved, 0);

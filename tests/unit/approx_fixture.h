@@ -9,20 +9,6 @@
 
 #include <gsl/gsl_rng.h>
 
-static inline void at_most(double value, double bound, const char *what)
-{
-    if (!(value <= bound)) {
-        fail_msg("%s: %g is not at most %g", what, value, bound);
-    }
-}
-
-static inline void good(enum status status, const struct error *error)
-{
-    if (status != STATUS_OK) {
-        fail_msg("status %d: %s", (int)status, error->text);
-    }
-}
-
 /* The same body in metres, in millimetres, and a metre away from the origin. */
 struct place {
     const char *name;

@@ -51,13 +51,13 @@ static void check_points(const struct cells *cells, const struct faces *faces)
                     const int32_t *node = faces->node + f * dim;
                     double middle = cells->x[(int64_t)node[k] * dim + a];
                     middle = 0.5 * (middle + cells->x[(int64_t)node[(k + 1) % dim] * dim + a]);
-                    at_most(fabs(x[first * dim + a] - middle), 1e-16, "middle of an edge");
+                    AT_MOST(fabs(x[first * dim + a] - middle), 1e-16);
                 }
             }
             for (int k = 0; k < dim; k++) {
                 centre += cells->x[(int64_t)faces->node[f * dim + k] * dim + a] / dim;
             }
-            at_most(fabs(mean - centre), 1e-15, "centre of a face");
+            AT_MOST(fabs(mean - centre), 1e-15);
         }
     }
 }

@@ -40,10 +40,10 @@ TEST(extrapolation)
 {
     for (double p = 1.0; p <= 2.0; p += 0.25) {
         double fine = pow(2.0, p) - 1.0, coarse = pow(4.0, p) - pow(2.0, p); /* differences, c h^p = 1 */
-        at_most(fabs(fine * field_error_share(2.0, p) - 1.0), 1e-14, "error");
-        at_most(fabs(field_error_order(fine, coarse, 2.0) - p), 1e-14, "order");
+        AT_MOST(fabs(fine * field_error_share(2.0, p) - 1.0), 1e-14);
+        AT_MOST(fabs(field_error_order(fine, coarse, 2.0) - p), 1e-14);
     }
-    at_most(fabs(field_error_share(3.0, 2.0) - 0.125), 1e-15, "share");
+    AT_MOST(fabs(field_error_share(3.0, 2.0) - 0.125), 1e-15);
     assert_true(field_error_order(1.0, 8.0, 2.0) == FIELD_ERROR_MOST_ORDER);
     assert_true(field_error_order(1.0, 1.5, 2.0) == FIELD_ERROR_LEAST_ORDER);
     assert_true(field_error_order(0.0, 1.0, 2.0) == FIELD_ERROR_MOST_ORDER);
@@ -54,9 +54,9 @@ TEST_IN_EACH_DIM(ratio_of_cells)
 {
     FREED_BY(cloud_free) struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
     struct cells f = cells_of(&fine), c = cells_of(&coarse), nodes = c;
-    at_most(fabs(field_error_ratio(&f, &c) - 2.0), 1e-14, "ratio of cells");
+    AT_MOST(fabs(field_error_ratio(&f, &c) - 2.0), 1e-14);
     nodes.count = 0;
-    at_most(fabs(field_error_ratio(&f, &nodes) - 1.8), 1e-14, "ratio of nodes");
+    AT_MOST(fabs(field_error_ratio(&f, &nodes) - 1.8), 1e-14);
 }
 
 /* A mean over the body is no mean over its nodes, which a graded cloud has in one corner. */
@@ -71,11 +71,11 @@ TEST_IN_EACH_DIM(mean_over_body)
     for (int64_t n = 0; n < cells.node_count; n++) {
         value[n] = 3.0 + cells.x[n * dim]; /* 3.5 in the mean over the body */
     }
-    at_most(fabs(field_error_mean(&cells, value) - 3.5), 1e-13, "mean");
+    AT_MOST(fabs(field_error_mean(&cells, value) - 3.5), 1e-13);
     for (int64_t n = 0; n < cells.node_count; n++) {
         value[n] = cells.x[n * dim] > 0.9 ? NAN : 2.0;
     }
-    at_most(fabs(field_error_mean(&cells, value) - 2.0), 1e-13, "mean of what is known");
+    AT_MOST(fabs(field_error_mean(&cells, value) - 2.0), 1e-13);
     for (int64_t n = 0; n < cells.node_count; n++) {
         value[n] = NAN;
     }
@@ -105,7 +105,7 @@ TEST_IN_EACH_DIM(linear_fields_have_no_error)
         assert_true(squared[q] >= 0.0);
         largest = fmax(largest, squared[q]);
     }
-    at_most(largest, 1e-26, "error of linear fields");
+    AT_MOST(largest, 1e-26);
     GOOD(field_error_recovered(&cells, NULL, 0, 2, values, squared, &error));
     for (int64_t q = 0; q < cells.count; q++) {
         double middle[3];
@@ -137,9 +137,9 @@ TEST_IN_EACH_DIM(quadratic_fields_converge)
         }
         /* The gradient 2 x is off by up to h in a cell: h^2 / 3 in the mean square. */
         double h = i == 0 ? 1.0 / 8 : 1.0 / 16, exact = h * h / 3.0;
-        at_most(fabs(log(total[i] / exact)), log(1.5), "recovered by exact error");
+        AT_MOST(fabs(log(total[i] / exact)), log(1.5));
     }
-    at_most(fabs(total[0] / total[1] - 4.0), 0.6, "squares of errors with cells of half the size");
+    AT_MOST(fabs(total[0] / total[1] - 4.0), 0.6);
 }
 
 /* Equal errors: all cells become smaller alike, by the root of the share, and so many more. */
@@ -153,17 +153,17 @@ TEST_IN_EACH_DIM(equal_errors_keep_a_mesh_even)
     GOOD(cells_node_spacing(&cells, spacing, &error));
     GOOD(size_field_build(&cells, squared, &request, &field, &error));
     for (int64_t n = 0; n < cells.node_count; n++) {
-        at_most(fabs(field.size[n] / spacing[n] - 0.5), 0.2, "size");
+        AT_MOST(fabs(field.size[n] / spacing[n] - 0.5), 0.2);
     }
     double more = field.nodes / (double)cells.node_count;
-    at_most(fabs(more / pow(2.0, dim) - 1.0), 0.1, "nodes of half the size");
+    AT_MOST(fabs(more / pow(2.0, dim) - 1.0), 0.1);
     assert_true(field.nodes == field.unbound);
     size_field_free(&field);
 
     /* No more nodes than there may be: all sizes larger by one factor. */
     request.most_nodes = (double)cells.node_count;
     GOOD(size_field_build(&cells, squared, &request, &field, &error));
-    at_most(fabs(field.nodes - request.most_nodes), 0.0, "nodes");
+    AT_MOST(fabs(field.nodes - request.most_nodes), 0.0);
     assert_true(field.unbound > field.nodes);
     size_field_free(&field);
 
@@ -206,7 +206,7 @@ TEST_IN_EACH_DIM(bad_cells)
                 assert_true(x < 1e-9 ? way <= 0.0 : x > 1.0 - 1e-9 ? way >= 0.0 : fabs(way) < 1e-9);
             }
         }
-        at_most(field.size[bad], least * (1.0 + 1e-12), "size at the bad cells");
+        AT_MOST(field.size[bad], least * (1.0 + 1e-12));
         for (int64_t q = 0; q < cells.count; q++) {
             const int32_t *node = cells.node + q * (dim + 1);
             for (int k = 1; k <= dim; k++) {
@@ -214,8 +214,8 @@ TEST_IN_EACH_DIM(bad_cells)
                 for (int a = 0; a < dim; a++) {
                     length = hypot(length, cells.x[node[k] * dim + a] - cells.x[node[0] * dim + a]);
                 }
-                at_most(fabs(field.size[node[k]] - field.size[node[0]]),
-                        SIZE_FIELD_GRADATION * length * (1.0 + 1e-6), "change of size along an edge");
+                AT_MOST(fabs(field.size[node[k]] - field.size[node[0]]),
+                        SIZE_FIELD_GRADATION * length * (1.0 + 1e-6));
             }
         }
         size_field_free(&field);
@@ -223,7 +223,7 @@ TEST_IN_EACH_DIM(bad_cells)
             assert_true(least < 0.9 / 8);
             request.least = 1.2 * least;
         } else {
-            at_most(fabs(least / request.least - 1.0), 1e-12, "least size");
+            AT_MOST(fabs(least / request.least - 1.0), 1e-12);
         }
     }
 }
@@ -255,7 +255,7 @@ TEST(facets_near_their_curve)
         bool on_circle = fabs(r - 1.0) < 1e-9 || fabs(r - 2.0) < 1e-9;
         if (on_circle && angle > 0.1 && angle < 1.9) {
             double exact = sqrt(8.0 * 1e-4 * r);
-            at_most(fabs(bent.size[n] / exact - 1.0), 0.05, "size for the sag of a circle");
+            AT_MOST(fabs(bent.size[n] / exact - 1.0), 0.05);
         }
     }
     GOOD(size_field_build(&flat, squared, &request, &straight, &error));

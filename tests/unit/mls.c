@@ -10,7 +10,7 @@ TEST(weights)
     for (int w = 0; w < WEIGHT_COUNT; w++) {
         double value, slope, before = 1.0;
         weight_evaluate((enum weight_function)w, 0.0, &value, &slope);
-        at_most(fabs(value - 1.0), 1e-14, "w(0) - 1");
+        AT_MOST(fabs(value - 1.0), 1e-14);
         assert_true(isfinite(slope) && slope <= 0.0);
         for (double r = 0.01; r < 1.0; r += 0.0137) {
             double h = 1e-6, plus, minus, unused;
@@ -19,10 +19,10 @@ TEST(weights)
             weight_evaluate((enum weight_function)w, (r - h) * (r - h), &minus, &unused);
             assert_true(value > 0.0 && value <= before);
             before = value;
-            at_most(fabs(slope * r - (plus - minus) / (2.0 * h)), 1e-6, "slope against differences");
+            AT_MOST(fabs(slope * r - (plus - minus) / (2.0 * h)), 1e-6);
         }
         weight_evaluate((enum weight_function)w, 1.0 - 1e-9, &value, &slope);
-        at_most(fabs(value), 1e-9, "w(1)");
+        AT_MOST(fabs(value), 1e-9);
     }
 }
 
@@ -43,10 +43,10 @@ TEST_IN_EACH_DIM(reproduction)
                                   basis_names[b], weight_names[w], worst.unity, worst.position,
                                   worst.gradient_sum, worst.gradient_position, (int)table.lists.widened);
                 }
-                at_most(worst.unity, 1e-12, "sum phi - 1");
-                at_most(worst.position, 1e-12, "sum phi x - x");
-                at_most(worst.gradient_sum, 1e-12, "sum grad phi");
-                at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
+                AT_MOST(worst.unity, 1e-12);
+                AT_MOST(worst.position, 1e-12);
+                AT_MOST(worst.gradient_sum, 1e-12);
+                AT_MOST(worst.gradient_position, 1e-12);
             }
         }
     }
@@ -91,9 +91,9 @@ TEST_IN_EACH_DIM(quadratic_reproduction)
                 }
             }
             value -= quadratic(dim, cloud.points + q * dim, places[p].offset, cloud.size, expected);
-            at_most(fabs(value), 1e-11, "value of a quadratic");
+            AT_MOST(fabs(value), 1e-11);
             for (int a = 0; a < dim; a++) {
-                at_most(fabs(slope[a] - expected[a]) * cloud.size, 1e-9, "gradient of a quadratic");
+                AT_MOST(fabs(slope[a] - expected[a]) * cloud.size, 1e-9);
             }
         }
     }
@@ -145,8 +145,7 @@ TEST_IN_EACH_DIM(gradients)
                     evaluate(&options.mls, &cloud, &table, p, x, minus, NULL);
                     for (int64_t i = 0; i < count; i++) {
                         double difference = (plus[i] - minus[i]) / (up - down);
-                        at_most(fabs(table.dphi[(first + i) * dim + a] - difference) / largest, 3e-5,
-                                "gradient against differences");
+                        AT_MOST(fabs(table.dphi[(first + i) * dim + a] - difference) / largest, 3e-5);
                     }
                 }
             }
@@ -195,8 +194,8 @@ TEST_IN_EACH_DIM(limits_of_modified)
     struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
     struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
     struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
-    at_most(apart(&huge, &linear, &cloud, &table), 1e-9, "mu = 1e12 from linear MLS");
-    at_most(apart(&nothing, &options.mls, &cloud, &table), 1e-8, "mu = 1e-14 from quadratic MLS");
+    AT_MOST(apart(&huge, &linear, &cloud, &table), 1e-9);
+    AT_MOST(apart(&nothing, &options.mls, &cloud, &table), 1e-8);
     struct mls middle = with_mu(modified, 1e-2);
     assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
     assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
@@ -215,7 +214,7 @@ TEST_IN_EACH_DIM(units_of_mu)
     double s4 = pow(options.radius, 4.0);
     struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
     absolute.mu_absolute = true;
-    at_most(apart(&relative, &absolute, &cloud, &table), 1e-10, "absolute mu from mu / s^4");
+    AT_MOST(apart(&relative, &absolute, &cloud, &table), 1e-10);
     for (int k = 0; k < mls_second_order_count(dim); k++) {
         struct mls one = relative;
         one.mu[k] = 1.0;
@@ -253,11 +252,11 @@ TEST_IN_EACH_DIM(invariance)
         assert_memory_equal(one.lists.idx, three.lists.idx, (size_t)pairs * sizeof(int32_t));
         assert_memory_equal(one.phi, two.phi, (size_t)pairs * sizeof(double));
         for (int64_t i = 0; i < pairs; i++) {
-            at_most(fabs(one.phi[i] - three.phi[i]), 1e-9, "phi after a translation");
+            AT_MOST(fabs(one.phi[i] - three.phi[i]), 1e-9);
         }
         for (int64_t i = 0; i < pairs * dim; i++) {
             assert_true(one.dphi[i] == two.dphi[i] * factor);
-            at_most(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8, "grad phi after a translation");
+            AT_MOST(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8);
         }
     }
 }
@@ -296,11 +295,10 @@ TEST(normal_equations)
                         most = fmax(most, fabs(dphi[1][i]));
                     }
                     for (int64_t i = 0; served && i < support.count; i++) {
-                        at_most(fabs(phi[0][i] - phi[1][i]), 1e-11, "phi against the careful way");
+                        AT_MOST(fabs(phi[0][i] - phi[1][i]), 1e-11);
                         for (int a = 0; a < dim; a++) {
                             double gradient = dphi[1][i * dim + a];
-                            at_most(fabs(dphi[0][i * dim + a] - gradient) / most, 1e-10,
-                                    "grad phi against the careful way");
+                            AT_MOST(fabs(dphi[0][i * dim + a] - gradient) / most, 1e-10);
                         }
                     }
                 }
@@ -349,7 +347,7 @@ TEST_IN_EACH_DIM(convergence)
         double order = log2(before / after);
         print_message("# %dD %s: %d, %d nodes per axis: %.3g, %.3g, order %.2f\n", dim, basis_names[b],
                       coarse, fine, before, after, order);
-        at_most((b == BASIS_LINEAR ? 1.8 : 2.7), order, "order of convergence");
+        AT_MOST((b == BASIS_LINEAR ? 1.8 : 2.7), order);
     }
 }
 
@@ -407,7 +405,7 @@ TEST(paper_table)
             if (isinf(rows[r].rmse[c])) {
                 assert_true(isinf(rmse));
             } else {
-                at_most(fabs(rmse - rows[r].rmse[c]), 1.5e-4, "difference from the paper");
+                AT_MOST(fabs(rmse - rows[r].rmse[c]), 1.5e-4);
             }
         }
     }

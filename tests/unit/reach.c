@@ -324,10 +324,10 @@ TEST_IN_EACH_DIM(around_corner)
                     length2 += pow(found.lists.around_offset[next * dim + a], 2);
                 }
                 assert_true(sqrt(length2) > way * (1.0 - 1e-12));
-                at_most(sqrt(length2), way * (dim == 2 ? 1.0 + 1e-12 : 1.02), "length of a path");
+                AT_MOST(sqrt(length2), way * (dim == 2 ? 1.0 + 1e-12 : 1.02));
                 hidden++;
             } else {
-                at_most(radius, way * (dim == 2 ? 1.0 + 1e-12 : 1.02), "radius short of a path");
+                AT_MOST(radius, way * (dim == 2 ? 1.0 + 1e-12 : 1.02));
             }
             next += around;
             at += listed;
@@ -371,7 +371,7 @@ TEST_IN_EACH_DIM(fissure)
                 }
                 double legs = hypot(from[0] - 5.0, height - 5.0) + hypot(to[0] - 5.0, to[dim - 1] - 5.0);
                 double way = dim == 2 ? legs : hypot(legs, from[1] - to[1]);
-                at_most(way, 2.0 * lists->widen[p], "a path around the end of the fissure");
+                AT_MOST(way, 2.0 * lists->widen[p]);
                 crossing++;
             }
             away += height > 7.0;
@@ -438,7 +438,7 @@ TEST_IN_EACH_DIM(gradients)
         }
     }
     assert_true(compared > 300);
-    at_most(worst, 1e-8, "a gradient around a corner");
+    AT_MOST(worst, 1e-8);
     lose();
 }
 

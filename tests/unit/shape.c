@@ -52,10 +52,10 @@ static void check_rule(const struct quadrature_rule *rule, int degree)
             assert_true(rule->barycentric[q * rule->vertices + k] > 0.0);
             sum += rule->barycentric[q * rule->vertices + k];
         }
-        at_most(fabs(sum - 1.0), 1e-14, "barycentric coordinates");
+        AT_MOST(fabs(sum - 1.0), 1e-14);
     }
     for (int d = 0; d <= degree; d++) {
-        at_most(degree_error(rule, d), 1e-14, "degree of a rule");
+        AT_MOST(degree_error(rule, d), 1e-14);
     }
     assert_true(degree_error(rule, degree + 1) > 1e-6);
 }
@@ -92,7 +92,7 @@ TEST_IN_EACH_DIM(cells_and_faces)
     for (int64_t c = 0; c < cells.count; c++) {
         volume += cell_volume(&cells, c);
     }
-    at_most(fabs(volume / pow(0.1, dim) - 1.0), 1e-12, "volume of the box");
+    AT_MOST(fabs(volume / pow(0.1, dim) - 1.0), 1e-12);
     GOOD(faces_build(&cells, false, &faces, &error));
     GOOD(faces_build(&cells, true, &boundary, &error));
     double *closed = zeros(cells.count * dim, sizeof *closed);
@@ -132,7 +132,7 @@ TEST_IN_EACH_DIM(cells_and_faces)
         assert_int_equal(sides[c], dim + 1);
     }
     for (int64_t i = 0; i < cells.count * dim; i++) {
-        at_most(fabs(closed[i]) / area_unit, 1e-14, "sum of the normals of a cell");
+        AT_MOST(fabs(closed[i]) / area_unit, 1e-14);
     }
 }
 
@@ -228,10 +228,10 @@ TEST_IN_EACH_DIM(smoothing_is_consistent)
                 table_defects(&view, dim, s.cells.x, centroids, 0.2 / (double)(per_axis - 1));
             print_message("# %dD %s, offset %g m: %.1e %.1e %.1e %.1e\n", dim, basis_names[b], offset,
                           worst.unity, worst.position, worst.gradient_sum, worst.gradient_position);
-            at_most(worst.unity, 1e-12, "sum phi - 1");
-            at_most(worst.position, 1e-12, "sum phi x - centroid");
-            at_most(worst.gradient_sum, 1e-12, "sum grad phi");
-            at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
+            AT_MOST(worst.unity, 1e-12);
+            AT_MOST(worst.position, 1e-12);
+            AT_MOST(worst.gradient_sum, 1e-12);
+            AT_MOST(worst.gradient_position, 1e-12);
         }
     }
 }
@@ -264,7 +264,7 @@ TEST_IN_EACH_DIM(smoothing_telescopes)
         }
     }
     for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
-        at_most(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14, "cells against the boundary");
+        AT_MOST(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14);
     }
 }
 
@@ -311,7 +311,7 @@ TEST_IN_EACH_DIM(averages_of_values)
         }
         for (int64_t i = s.averages.ptr[r]; i < s.averages.ptr[r + 1]; i++) {
             assert_true(i == s.averages.ptr[r] || s.averages.idx[i] > s.averages.idx[i - 1]);
-            at_most(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15, "average");
+            AT_MOST(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15);
             row[s.averages.idx[i]] = 0.0;
         }
         for (int64_t p = first; p < end; p++) {
@@ -333,8 +333,8 @@ TEST(spacing_of_cells)
     struct cells cells = {2, 5, x, 2, node};
     double spacing[5];
     GOOD(cells_node_spacing(&cells, spacing, &error));
-    at_most(fabs(spacing[0] - (2.0 + 2.0 * sqrt(2.0)) / 4.0), 1e-15, "spacing at a node of two cells");
-    at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing at a node of one cell");
+    AT_MOST(fabs(spacing[0] - (2.0 + 2.0 * sqrt(2.0)) / 4.0), 1e-15);
+    AT_MOST(fabs(spacing[1] - 1.0), 1e-15);
     assert_true(spacing[4] == 0.0);
 }
 

@@ -154,7 +154,7 @@ TEST_IN_EACH_DIM(spacing_against_brute_force)
         for (int k = 1; k <= 2 * dim; k++) {
             mean += distance[k] / (2 * dim);
         }
-        at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
+        AT_MOST(fabs(spacing[n] / mean - 1.0), 1e-12);
     }
 }
 
@@ -294,10 +294,10 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
     if (status == STATUS_OK) {
         double length = 1.0;
         struct defects worst = table_defects(&table, trap->dim, trap->x, points, length);
-        at_most(worst.unity, 1e-10, trap->name);
-        at_most(worst.position, 1e-10, trap->name);
-        at_most(worst.gradient_sum, 1e-10, trap->name);
-        at_most(worst.gradient_position, 1e-10, trap->name);
+        AT_MOST(worst.unity, 1e-10);
+        AT_MOST(worst.position, 1e-10);
+        AT_MOST(worst.gradient_sum, 1e-10);
+        AT_MOST(worst.gradient_position, 1e-10);
     } else {
         assert_true(status == STATUS_VERDICT || status == STATUS_INPUT);
         if (strstr(error.text, "row ") == NULL || strchr(error.text, '(') == NULL) {
@@ -335,8 +335,8 @@ TEST(trap_sphere)
             assert_int_equal(status, b == BASIS_QUADRATIC ? STATUS_VERDICT : STATUS_OK);
             if (status == STATUS_OK) {
                 struct defects worst = table_defects(&table, 3, trap.x, point, 1.0);
-                at_most(worst.position, 1e-10, "sphere");
-                at_most(worst.gradient_position, 1e-10, "sphere");
+                AT_MOST(worst.position, 1e-10);
+                AT_MOST(worst.gradient_position, 1e-10);
             }
         }
     }
@@ -470,7 +470,7 @@ TEST_IN_EACH_DIM(trap_few)
         enum status status = tabulate(&options, count, x, 1, x, &table, &error);
         assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
         if (status == STATUS_OK) {
-            at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
+            AT_MOST(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10);
         }
     }
 }
