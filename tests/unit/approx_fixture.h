@@ -83,13 +83,12 @@ static inline enum status tabulate(const struct support_options *options, int64_
                                    struct error *error)
 {
     int dim = options->mls.dim;
-    double *spacing = calloc((size_t)count, sizeof *spacing);
+    SCRATCH double *spacing = calloc((size_t)count, sizeof *spacing);
     *table = (struct table){.radius = calloc((size_t)count, sizeof(double))};
     enum status status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
     if (status == STATUS_OK) {
         status = support_radii(options, count, spacing, table->radius, error);
     }
-    free(spacing);
     if (status == STATUS_OK) {
         status = point_grid_build(&table->grid, dim, count, x, table->radius, error);
     }

@@ -126,7 +126,7 @@ TEST_IN_EACH_DIM(linear_fields)
 {
     struct cloud cloud = make_cloud(dim, 500, 6);
     const struct coarse_space *coarse = &cloud.coarse;
-    double *u = array_new(cloud.size, sizeof *u);
+    SCRATCH double *u = array_new(cloud.size, sizeof *u);
     assert_non_null(u);
     memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
     for (int c = 0; c < coarse->centre_count; c++) {
@@ -140,7 +140,6 @@ TEST_IN_EACH_DIM(linear_fields)
     for (int64_t i = 0; i < cloud.size; i++) {
         NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
     }
-    free(u);
     release(&cloud);
 }
 

@@ -61,10 +61,9 @@ static void meets_all(struct line *line, struct constraint *constraint)
 static void spread(const struct line *line, const double *force, double *total)
 {
     double both[2 * NODES] = {0.0};
-    struct constraint_nodes nodes;
+    FREED_BY(constraint_nodes_free) struct constraint_nodes nodes = {0};
     GOOD(constraint_nodes_build(&line->system.rows, NODES, NULL, NULL, &nodes, &error));
     constraint_nodes_spread(&nodes, force, both);
-    constraint_nodes_free(&nodes);
     for (int n = 0; n < NODES; n++) {
         total[n] = both[2 * n];
     }
@@ -75,7 +74,7 @@ static void spread(const struct line *line, const double *force, double *total)
 TEST(dependent_rows_share)
 {
     struct line line;
-    struct constraint constraint;
+    FREED_BY(constraint_free) struct constraint constraint = {0};
     line_begin(&line);
     hold(&line, 0, 2, 0.1, 0);
     hold(&line, 2, 4, 0.3, 0);
@@ -107,7 +106,6 @@ TEST(dependent_rows_share)
     }
     NEAR_TO(across, 0.0, 1e-12);
     assert_true(fabs(shared[2]) > 1e-3);
-    constraint_free(&constraint);
     system_free(&line.system);
 }
 
@@ -143,7 +141,7 @@ TEST(rows_of_some_nodes)
 TEST(disagreement_is_named)
 {
     struct line line;
-    struct constraint constraint;
+    FREED_BY(constraint_free) struct constraint constraint = {0};
     struct error said;
     static const struct condition conditions[] = {{.name = "plate"}, {.name = "rim"}};
     line_begin(&line);
@@ -156,7 +154,6 @@ TEST(disagreement_is_named)
     assert_non_null(strstr(said.text, "node 3 at (0.3, 0)"));
     assert_non_null(strstr(said.text, "by 0.25 m")); /* at full load */
     assert_non_null(strstr(said.text, "components = free"));
-    constraint_free(&constraint);
     system_free(&line.system);
 }
 
@@ -165,7 +162,7 @@ TEST(long_rows)
 {
     for (int32_t all = 0; all < 2; all++) {
         struct line line;
-        struct constraint constraint;
+        FREED_BY(constraint_free) struct constraint constraint = {0};
         line_begin(&line);
         hold(&line, 0, NODES, 1.0, 1);
         for (int32_t n = all == 0; n < NODES; n++) {
@@ -174,7 +171,6 @@ TEST(long_rows)
         GOOD(system_constrain(&line.system, line.mass, &constraint, &error));
         assert_int_equal(constraint.factor.dropped, all);
         meets_all(&line, &constraint);
-        constraint_free(&constraint);
         system_free(&line.system);
     }
 }
@@ -184,7 +180,7 @@ TEST(nearly_dependent_rows)
 {
     for (double off = 1e-2; off > 1e-16; off *= 0.1) {
         struct line line;
-        struct constraint constraint;
+        FREED_BY(constraint_free) struct constraint constraint = {0};
         static const double along_x[2] = {1.0, 0.0};
         struct random random = {11};
         line_begin(&line);
@@ -208,7 +204,6 @@ TEST(nearly_dependent_rows)
             AT_MOST(fabs(line.u[2 * n]), 10.0);
         }
         GOOD(constraint_share_out(&constraint, constraint.multiplier, &error));
-        constraint_free(&constraint);
         system_free(&line.system);
     }
 }

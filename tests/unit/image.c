@@ -471,12 +471,11 @@ TEST(large)
 
 TEST(full_device)
 {
-    struct image written;
+    FREED_BY(image_free) struct image written = {0};
     const size_t size[3] = {10, 10, 10};
     int full = open("/dev/full", O_WRONLY);
     GOOD(image_new(&written, size, 1, &error));
     FAILS_WITH(image_write(&written, full, true, &error), STATUS_SYSTEM, "No space left on device");
-    image_free(&written);
     close(full);
 }
 

@@ -17,7 +17,7 @@ static struct nifti_file file;
 /* A vector image is read and written, compressed. */
 static enum status read_and_write(struct error *error)
 {
-    struct image image;
+    FREED_BY(image_free) struct image image = {0};
     int in = memfd_create("in", 0), out = memfd_create("out", 0);
     assert_int_equal(write(in, file.bytes, file.size), file.size);
     assert_int_equal(lseek(in, 0, SEEK_SET), 0);
@@ -25,7 +25,6 @@ static enum status read_and_write(struct error *error)
     if (status == STATUS_OK) {
         status = image_write(&image, out, true, error);
     }
-    image_free(&image);
     close(in);
     close(out);
     return status;

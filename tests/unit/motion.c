@@ -107,13 +107,12 @@ static double largest_error(const struct motion *motion, field_function field, d
 static void check_polynomial(int dim, bool linear, field_function field, double tolerance)
 {
     struct body body;
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
     GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
-    motion_free(&motion);
     drop_body(&body);
 }
 
@@ -131,11 +130,10 @@ TEST(orders)
         double errors[2], ignored;
         for (int fine = 0; fine < 2; fine++) {
             struct body body;
-            struct motion motion;
+            FREED_BY(motion_free) struct motion motion = {0};
             make_body(2, fine ? 41 : 21, smooth_field, &body);
             GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
-            motion_free(&motion);
             drop_body(&body);
         }
         double order = log2(errors[0] / errors[1]);
@@ -150,7 +148,7 @@ TEST(orders)
 TEST(walks)
 {
     struct body body;
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     make_body(3, 6, smooth_field, &body);
     GOOD(motion_build(&body.cells, body.u, false, NULL, &motion, &error));
     for (int64_t c = 0; c < body.cells.count; c++) {
@@ -165,7 +163,6 @@ TEST(walks)
             }
         }
     }
-    motion_free(&motion);
     drop_body(&body);
 }
 

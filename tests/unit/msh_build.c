@@ -359,19 +359,17 @@ TEST(regions_can_be_picked)
     ADD(s, QUADRANGLE, left, 0, 1, 4, 3);
     ADD(s, QUADRANGLE, right, 1, 2, 5, 4);
     ADD(s, LINE, between, 4, 1);
-    struct mesh both = build(s, "right,left");
+    FREED_BY(mesh_free) struct mesh both = build(s, "right,left");
     assert_int_equal(both.node_count, 6);
     assert_int_equal(both.regions.count, 2);
     assert_int_equal(both.facet_count, 0);
-    mesh_free(&both);
-    struct mesh mesh = build(s, "right");
+    FREED_BY(mesh_free) struct mesh mesh = build(s, "right");
     assert_int_equal(mesh.node_count, 4);
     assert_true(mesh.x[0] == 1 && mesh.x[1] == 0 && mesh.x[2] == 2);
     assert_int_equal(mesh.regions.count, 1);
     assert_string_equal(mesh.regions.name[0], "right");
     assert_int_equal(mesh.facet_count, 1); /* on the boundary now, outward of the right square */
     assert_memory_equal(mesh.facets, ((int32_t[]){2, 0}), 2 * sizeof(int32_t));
-    mesh_free(&mesh);
     expect_failure(s, "right,midle", "no cells in a region 'midle': there are left, right");
 }
 
@@ -414,11 +412,10 @@ TEST(nodes_at_the_same_place)
     int32_t b = add_node(s, 1, 0, 0);
     int32_t c = add_node(s, 0.5, -1, 0);
     ADD(s, TRIANGLE, 0, a, b, c);
-    struct mesh two = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh two = build(s, NULL);
     assert_int_equal(two.cell_count, 3);
     assert_int_equal(two.notes.count, 1);
     assert_non_null(strstr(two.notes.name[0], "of different bodies: 2 pairs"));
-    mesh_free(&two);
     s = square();
     add_node(s, 1, 1, 0); /* a twin of no cell is no harm */
     FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
@@ -457,13 +454,12 @@ TEST(cells_in_two_groups)
     int32_t other = add_group(s, 2, 2, "other");
     s->member_idx[s->member_ptr[2]++] = other;
     s->groups[other].element_count++;
-    struct mesh mesh = build(s, NULL);
+    FREED_BY(mesh_free) struct mesh mesh = build(s, NULL);
     assert_int_equal(mesh.regions.count, 1);
     assert_int_equal(mesh.cell_count, 2);
     assert_int_equal(mesh.notes.count, 1);
     assert_non_null(
         strstr(mesh.notes.name[0], "cells in two physical groups, taken for the one of the lower"));
-    mesh_free(&mesh);
     expect_failure(s, "other", "no cells in a region 'other': there are body");
 }
 

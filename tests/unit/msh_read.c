@@ -332,13 +332,12 @@ TEST(pipes_are_read_whole)
 {
     struct fixture f = fixture_make(BINARY_41);
     int ends[2];
-    struct msh msh;
+    FREED_BY(msh_free) struct msh msh = {0};
     assert_int_equal(pipe(ends), 0);
     assert_int_equal(write(ends[1], f.bytes, f.size), f.size);
     close(ends[1]);
     GOOD(msh_read(&msh, ends[0], "pipe", &error));
     assert_int_equal(msh.element_count, FIXTURE_ELEMENTS);
-    msh_free(&msh);
     close(ends[0]);
 }
 

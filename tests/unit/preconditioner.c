@@ -177,8 +177,8 @@ TEST(contacts_are_followed)
     strain_bar(&s, 2, -0.05, false, true);
     assert_true(s.preconditioner.has_rigid_mode);
     preconditioner_free(&s.preconditioner);
-    struct boundary_averages averages = lattice_averages(&s.l, 1u << 3);
-    struct contact contact;
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = lattice_averages(&s.l, 1u << 3);
+    FREED_BY(contact_free) struct contact contact = {0};
     GOOD(rigid_build(2, 1, corners, false, &plate, &error));
     GOOD(contact_build(&averages, NULL, s.l.system.X, 2, &plate, 1e6, &contact, &error));
     s.l.system.contacts = &contact;
@@ -200,8 +200,6 @@ TEST(contacts_are_followed)
     AT_MOST(alone[1], 2.0);
     s.l.system.contacts = NULL;
     s.l.system.contact_count = 0;
-    contact_free(&contact);
-    boundary_averages_free(&averages);
     release(&s);
 }
 

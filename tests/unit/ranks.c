@@ -393,7 +393,7 @@ static void *solve_member(void *context)
 TEST(solving)
 {
     double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
-    struct envelope factor;
+    FREED_BY(envelope_free) struct envelope factor = {0};
     make_chains(&factor);
     for (int i = 0; i < SOLVED; i++) {
         alone[i] = right[i] = 1.0 / (1.0 + i);
@@ -404,7 +404,6 @@ TEST(solving)
         double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
         AT_MOST(fabs(sum - right[i]), 1e-14);
     }
-    envelope_free(&factor);
     for (int count = 2; count <= MOST; count += count == 3 ? MOST - 3 : 1) {
         struct member members[MOST];
         for (int r = 0; r < count; r++) {

@@ -186,14 +186,13 @@ static bool of_l(const int *cube)
 
 TEST_IN_EACH_DIM(located)
 {
-    struct support_lists other;
+    FREED_BY(support_free) struct support_lists other = {0};
     build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
     find(2.0, true);
     GOOD(support_build_within(&found.options, &found.grid, &found.reach, NULL, found.count, found.x, "points",
                               &other, &error));
     assert_true(found.lists.around_count > 0);
     assert_true(same_lists(&other, &found.lists, dim));
-    support_free(&other);
     lose();
 }
 

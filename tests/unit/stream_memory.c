@@ -13,9 +13,8 @@ static off_t begin;    /* where it begins: what does not begin its file is read,
 
 static enum status try_read(struct error *error)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     enum status status = stream_read(&stream, descriptor, "input", error);
-    stream_free(&stream);
     lseek(descriptor, begin, SEEK_SET);
     return status;
 }

@@ -71,10 +71,10 @@ TEST(smooth_shapes)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
         struct labels labels;
+        FREED_BY(stuffing_free)
         struct stuffing stuffing = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
         check_volumes(&labels, &shape, &stuffing, 0.01);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
-        stuffing_free(&stuffing);
         free(shape.label);
     }
 }
@@ -86,11 +86,11 @@ TEST(random_blobs)
         for (int h = 3; h <= 5; h += 2) {
             struct label_shape shape;
             struct labels labels;
+            FREED_BY(stuffing_free)
             struct stuffing stuffing = make_of_shape("blobs", seed, h, &shape, &labels);
             check_volumes(&labels, &shape, &stuffing, 0.01);
             assert_int_equal(count_astray(&labels, &stuffing), 0);
             assert_int_equal(stuffing.astray, 0);
-            stuffing_free(&stuffing);
             free(shape.label);
         }
     }
@@ -111,16 +111,14 @@ TEST(five_labels_at_a_node)
         }
         struct labels labels = labels_of(&shape);
         struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         check_cells(&stuffing);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
-        struct stuffing_star star;
+        FREED_BY(star_free) struct stuffing_star star = {0};
         GOOD(star_make(&stuffing, NULL, NULL, &star, &error));
         for (int64_t n = 0; n < stuffing.node_count; n++) {
             most = star.labels[n] > most ? star.labels[n] : most;
         }
-        star_free(&star);
-        stuffing_free(&stuffing);
         free(shape.label);
     }
     assert_int_equal(most, 5);
@@ -273,10 +271,9 @@ TEST(by_sizes)
     }
     stuffing = make(&labels, &options);
     struct stuffing_options half = {.spacing = 4e-3, .keep = all_kept};
-    struct stuffing halved = make(&labels, &half);
+    FREED_BY(stuffing_free) struct stuffing halved = make(&labels, &half);
     assert_int_equal(stuffing.node_count, halved.node_count);
     assert_int_equal(stuffing.cell_count, halved.cell_count);
-    stuffing_free(&halved);
     stuffing_free(&stuffing);
 
     /* Finer to one side: mean edges about the sizes there. */

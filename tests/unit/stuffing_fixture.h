@@ -45,7 +45,7 @@ static inline struct cells cells_of(const struct stuffing *stuffing)
 static inline void check_cells(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct faces faces;
+    FREED_BY(faces_free) struct faces faces = {0};
     int dim = stuffing->dim;
     double volume = 0, flux = 0;
     assert_true(stuffing->cell_count > 0);
@@ -63,7 +63,6 @@ static inline void check_cells(const struct stuffing *stuffing)
     }
     GOOD(faces_build(&cells, true, &faces, &error));
     assert_int_equal(faces.count, stuffing->facet_count);
-    faces_free(&faces);
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         const int32_t *node = stuffing->facet + f * dim;
         double normal[3];

@@ -444,13 +444,12 @@ TEST_IN_EACH_DIM(trap_graded)
     static struct trap trap = {.name = "cloud graded 20:1"};
     struct cloud_options graded = {
         .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
-    struct cloud cloud;
+    FREED_BY(cloud_free) struct cloud cloud = {0};
     GOOD(cloud_make(&graded, &cloud, &error));
     trap.dim = dim;
     trap.count = cloud.node_count;
     assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
     memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
-    cloud_free(&cloud);
     for (int b = 0; b < BASIS_COUNT; b++) {
         assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
     }

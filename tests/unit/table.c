@@ -160,11 +160,10 @@ TEST(truncation)
 TEST(curves)
 {
     static const char good[] = "0 0\n1 0\n\n5 5\n6 6\n7 6\n";
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     write_to(path, good, strlen(good));
     GOOD(surface_read(path, 2, &table, &error));
     assert_int_equal(table.block_count, 2);
-    table_free(&table);
     fails_in(path, 2, "0 0\n1 0\n\n2 2\n", 13, 4, "curve of one point");
     fails_in(path, 2, "0 0\n1 0\n1 0\n", 12, 3, "repeats the point before");
     fails_in(path, 2, "0 0 0\n1 0 0\n", 12, 1, "has 3 columns, not 2");

@@ -35,7 +35,7 @@ TEST(blocks)
     int before = omp_get_max_threads();
     int64_t column[3];
     for (int threads = 1; threads <= MOST_THREADS; threads++) {
-        struct envelope factor;
+        FREED_BY(envelope_free) struct envelope factor = {0};
         omp_set_num_threads(threads);
         make_chains(&factor);
         assert_int_equal(factor.block_count, BLOCKS);
@@ -43,7 +43,6 @@ TEST(blocks)
             x[i] = 1.0 / (1.0 + (double)i);
         }
         envelope_solve(&factor, x);
-        envelope_free(&factor);
         if (threads == 1) {
             memcpy(alone, x, ROWS * sizeof *x);
         }
