@@ -227,7 +227,7 @@ int main(int argc, char *argv[])
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
                   request.sizes.most_nodes);
     }
-    struct layered layered;
+    FREED_BY(layered_free) struct layered layered = {0};
     struct target target;
     TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
@@ -240,6 +240,5 @@ int main(int argc, char *argv[])
     if (request.verbose) {
         report(&request, &cells, &field);
     }
-    layered_free(&layered);
     return tool_end(&tool);
 }

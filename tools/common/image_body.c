@@ -163,7 +163,7 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
                   "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
                   box_text(&box, grid_text), box_text(&body, body_text));
     }
-    double *place = nodes_in_voxels(tool, grid, cells, x);
+    SCRATCH double *place = nodes_in_voxels(tool, grid, cells, x);
     int64_t outside = 0;
     for (int64_t n = 0; n < cells->node_count; n++) {
         bool within = true;
@@ -173,7 +173,6 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
         }
         outside += within ? 0 : 1;
     }
-    free(place);
     if (outside > 0) {
         tool_note(tool,
                   "%lld of %lld nodes of the body lie more than half a voxel outside of the image: is an "

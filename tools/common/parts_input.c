@@ -75,11 +75,10 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
     const struct ranks *ranks = process_ranks();
     int64_t count = 0;
     if (ranks_rank(ranks) == 0) {
-        char *file = tool_numbered(tool, "", operand, 0);
+        SCRATCH char *file = tool_numbered(tool, "", operand, 0);
         status = read_file(file, 0, 0, stream, &error);
         status = status == STATUS_OK ? count_parts(file, stream, &count, &error) : status;
         status = status == STATUS_OK ? look_for_last(tool, operand, count, &error) : status;
-        free(file);
     }
     tool_check(tool, ranks_agree(ranks, status, &error), &error);
     count = ranks_most(ranks, count);
