@@ -158,7 +158,6 @@ int main(int argc, char *argv[])
     tool_note_thin(&tool, &cells);
     SCRATCH int32_t *region = NULL;
     TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
-    stream_init(&stream);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
         TOOL_TRY(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error));

@@ -265,7 +265,6 @@ int main(int argc, char *argv[])
                   request.points == NULL ? " and a stream, if not on standard input, are expected"
                                          : " expected");
     }
-    stream_init(&stream);
     if (request.points != NULL) {
         sample_points_table(&tool, request.points, request.unit, &rows);
     } else {

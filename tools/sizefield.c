@@ -186,7 +186,6 @@ static void write_sizes(const struct tool *tool, struct layered *layered, bool t
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
-    stream_init(&stream);
     TOOL_TRY(tool, stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
                               vector_attributes(cells->dim, "m", attributes), layered->x, false, &error));
     TOOL_TRY(tool, stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node,

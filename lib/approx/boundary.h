@@ -54,7 +54,8 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 
 /* The same, and after the boundary averages an average over each whole side of the set: a part of it within
  * which facets that share an edge (2D: a node) turn by less than 45 degrees. Boundary averages are split
- * between sides, or not: a boundary average round an edge then holds both sides together. */
+ * between sides, or not: a boundary average round an edge then holds both sides together. To be freed, as
+ * the averages, also on failure. */
 struct boundary_sides {
     int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
     int64_t group_count;        /* of groups */

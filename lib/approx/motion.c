@@ -95,12 +95,11 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
                          const struct motion_source *source, struct motion *motion, struct error *error)
 {
     int dim = cells->dim;
-    enum status status = STATUS_OK;
     *motion = (struct motion){.cells = *cells, .u = u};
-    TRY(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
-    TRY(NEW_ARRAY(&motion->across, cells->count * (dim + 1), error));
-    TRY(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
-    TRY(cells_across(cells, motion->across, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->across, cells->count * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
+    RETURN_IF_ERROR(cells_across(cells, motion->across, error));
     for (int64_t c = 0; c < cells->count; c++) {
         double m[3][3], inverse[3][3];
         edges(cells, cells->x, c, m);
@@ -113,14 +112,10 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
         motion->moved[i] = cells->x[i] + u[i];
     }
     if (!linear) {
-        TRY(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
-        TRY(find_gradients(cells, u, source, motion->gradient, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
+        RETURN_IF_ERROR(find_gradients(cells, u, source, motion->gradient, error));
     }
-done:
-    if (status != STATUS_OK) {
-        motion_free(motion);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void motion_free(struct motion *motion)

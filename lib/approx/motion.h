@@ -32,7 +32,7 @@ struct motion {
 
 /* The cells and u must outlive it. source: NULL for the gradients of a fit of u. linear: no gradients, the
  * displacement is piecewise linear. STATUS_VERDICT where the cloud is too poor for a fit at some node, which
- * `linear` does without; STATUS_INPUT as cells_across. */
+ * `linear` does without; STATUS_INPUT as cells_across. To be freed also on failure. */
 MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
                                     const struct motion_source *source, struct motion *motion,
                                     struct error *error);

@@ -13,7 +13,7 @@
 #include "approx/cells.h"
 #include "approx/point_grid.h"
 
-/* The cells at each node (CSR), ascending. */
+/* The cells at each node (CSR), ascending; to be freed also on failure. */
 struct cell_stars {
     int64_t *ptr; /* node_count + 1 */
     int32_t *cell;
@@ -67,7 +67,8 @@ struct partition {
     double widen;         /* the most that supports will be widened, at least 1 */
 };
 
-/* own_ptr[parts + 1], own_cell[cells->count]: the cells of each part (CSR), ascending. */
+/* own_ptr[parts + 1], own_cell[cells->count]: the cells of each part (CSR), ascending; to be freed, also on
+ * failure. */
 MUST_CHECK enum status partition_own_cells(const struct partition *partition, int64_t **own_ptr,
                                            int32_t **own_cell, struct error *error);
 

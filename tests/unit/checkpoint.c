@@ -48,11 +48,10 @@ struct interruption {
 static bool interrupt(void *context, const struct progress *progress)
 {
     struct interruption *interruption = context;
-    struct stream stream;
+    struct stream stream = {0};
     if (progress->step != interruption->at) {
         return true;
     }
-    stream_init(&stream);
     GOOD(checkpoint_fill(&stream, &identity, progress->step, progress->state, progress->run, &error));
     GOOD(checkpoint_write(file, false, &stream, &error));
     stream_free(&stream);
@@ -186,7 +185,6 @@ static enum status write_pair(int64_t step, struct error *error)
 {
     FREED_BY(stream_free) struct stream stream = {0};
     struct pair pair = {.count = step, .number = (double)step / 3};
-    stream_init(&stream);
     enum status status = checkpoint_fill(&stream, &identity, step, visit_pair, &pair, error);
     if (status == STATUS_OK) {
         status = checkpoint_write(file, true, &stream, error);
@@ -293,7 +291,6 @@ TEST(states_that_do_not_fit)
 {
     FREED_BY(stream_free) struct stream stream = {0};
     struct pair pair = {.count = -1};
-    stream_init(&stream);
     struct state empty = checkpoint_state(&stream);
     FAILS(visit_pair(&pair, &empty, &error), STATUS_INPUT, "");
     GOOD(stream_put(&stream, "state.count", TYPE_I8, 1, 1, "", &pair.count, false, &error));

@@ -43,7 +43,6 @@ static enum status try_build(struct error *error)
                       node_ptr, node_idx, member_ptr, member_idx, 4,           groups};
     FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
-    stream_init(&stream);
     enum status status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, error);
     if (status == STATUS_OK) {
         status = mesh_put(&mesh, &stream, error);

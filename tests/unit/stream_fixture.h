@@ -25,9 +25,8 @@ static inline void put_sample(struct stream *stream, const char *name, enum elem
 
 static inline struct stream sample_stream(void)
 {
-    struct stream stream;
+    struct stream stream = {0};
     char *command[] = {"/usr/bin/nodes", "-u", "mm", "it's a file", "", "line\nend"};
-    stream_init(&stream);
     GOOD(stream_add_provenance(&stream, 6, command, &error));
     put_sample(&stream, "a.i4", TYPE_I4, 3, 2, "unit=m cols=x,y", sample_i4);
     put_sample(&stream, "empty", TYPE_F8, 0, 3, "", sample_f8);

@@ -33,8 +33,7 @@ static enum status try_write(struct error *error)
 static enum status try_change(struct error *error)
 {
     static char *command[] = {"tool", "a b"};
-    FREED_BY(stream_free) struct stream stream;
-    stream_init(&stream);
+    FREED_BY(stream_free) struct stream stream = {0};
     RETURN_IF_ERROR(stream_add_provenance(&stream, 2, command, error));
     RETURN_IF_ERROR(stream_add_provenance(&stream, 1, command, error));
     RETURN_IF_ERROR(stream_put(&stream, "x", TYPE_F8, 1, 1, "a=b", sample_f8, false, error));

@@ -144,13 +144,12 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
 {
     const struct ranks *ranks = process_ranks();
     FREED_BY(rejoin_free) struct rejoin rejoin = {.tool = tool};
-    struct stream start;
+    struct stream start = {0};
     SCRATCH int64_t *first = NULL;
     SCRATCH void *packed = NULL;
     *parts = (struct parts_input){.given = true};
     tool_names_input(operand);
     stream_init(stream);
-    stream_init(&start);
     rejoin.part_count = begin(tool, operand, &start);
     TOOL_TRY(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error));
     TOOL_TRY(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error));
