@@ -88,38 +88,36 @@ TEST(compressible)
 }
 
 /* Nodal volumes share out the body, and its change of volume, among nodes and materials. */
-TEST(nodal_volumes)
+TEST_IN_EACH_DIM(nodal_volumes)
 {
     struct random random = {3};
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(sample_free) struct sample sample = make_sample(dim, false, 5);
-        struct setup setup = three_materials(true);
-        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
-        const struct nodal_volumes *volumes = &body.volumes;
-        double *u = random_field(&sample, 1e-3, &random), volume = 0.0, content = 0.0, carried = 0.0,
-               expected = 0.0;
-        (void)body_energy(&body, u);
-        for (int64_t a = 0; a < volumes->count; a++) {
-            int32_t material = body.material[volumes->slot[volumes->ptr[a]] / (dim + 1)];
-            for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-                int32_t slot = volumes->slot[i];
-                volume += volumes->share[slot];
-                assert_int_equal(volumes->of_point[slot], a);
-                assert_int_equal(body.material[slot / (dim + 1)], material);
-            }
-            content += volumes->content[a];
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, false, 5);
+    struct setup setup = three_materials(true);
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
+    const struct nodal_volumes *volumes = &body.volumes;
+    double *u = random_field(&sample, 1e-3, &random), volume = 0.0, content = 0.0, carried = 0.0,
+           expected = 0.0;
+    (void)body_energy(&body, u);
+    for (int64_t a = 0; a < volumes->count; a++) {
+        int32_t material = body.material[volumes->slot[volumes->ptr[a]] / (dim + 1)];
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int32_t slot = volumes->slot[i];
+            volume += volumes->share[slot];
+            assert_int_equal(volumes->of_point[slot], a);
+            assert_int_equal(body.material[slot / (dim + 1)], material);
         }
-        for (int64_t q = 0; q < body.point_count; q++) {
-            const struct material *material = &body.materials[body.material[q]];
-            if (material_bulk(material) > nodal_volume_modulus(material)) {
-                carried += body.weight[q];
-                expected += body.weight[q] * material_volume_strain(material, body.J[q]);
-            }
-        }
-        NEAR_TO(volume, carried, 1e-15);
-        NEAR_TO(content, expected, 1e-15);
-        assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
+        content += volumes->content[a];
     }
+    for (int64_t q = 0; q < body.point_count; q++) {
+        const struct material *material = &body.materials[body.material[q]];
+        if (material_bulk(material) > nodal_volume_modulus(material)) {
+            carried += body.weight[q];
+            expected += body.weight[q] * material_volume_strain(material, body.J[q]);
+        }
+    }
+    NEAR_TO(volume, carried, 1e-15);
+    NEAR_TO(content, expected, 1e-15);
+    assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
 }
 
 /* at_edge[nodes]: nodes on two sides of the first axis' lower side. */
@@ -179,27 +177,25 @@ static void check_shares(const struct sample *sample, const struct body *body, c
 
 /* Of bodies with edges forces are the gradient of the energy, also where materials share nodal volumes; a
  * uniform change of volume meets the bulk modulus. */
-TEST(edges)
+TEST_IN_EACH_DIM(edges)
 {
     struct random random = {5};
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
-        SCRATCH bool *at_edge = edge_nodes(&sample);
-        struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
-        one.faces = three.faces = true;
-        one.at_edge = three.at_edge = at_edge;
-        three.group = (int32_t[]){0, 0, 1};
-        FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
-        double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
-        double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
-        (void)body_energy(&body, u);
-        for (int64_t q = 0; q < body.point_count; q++) {
-            NEAR_TO(nodal_volume_pressure(&body, q), pressure, 1e-9 * pressure);
-        }
-        check_shares(&sample, &body, at_edge);
-        check_work(&sample, &body, &random);
-        check_work(&sample, &mixed, &random);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+    SCRATCH bool *at_edge = edge_nodes(&sample);
+    struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
+    one.faces = three.faces = true;
+    one.at_edge = three.at_edge = at_edge;
+    three.group = (int32_t[]){0, 0, 1};
+    FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
+    double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
+    double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
+    (void)body_energy(&body, u);
+    for (int64_t q = 0; q < body.point_count; q++) {
+        NEAR_TO(nodal_volume_pressure(&body, q), pressure, 1e-9 * pressure);
     }
+    check_shares(&sample, &body, at_edge);
+    check_work(&sample, &body, &random);
+    check_work(&sample, &mixed, &random);
 }
 
 /* A body of one material, of that Poisson's ratio. */

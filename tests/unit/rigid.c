@@ -257,69 +257,65 @@ TEST(normals_on_the_surface)
     }
 }
 
-TEST(flipped)
+TEST_IN_EACH_DIM(flipped)
 {
     struct random random = {4};
     static struct shape shape;
-    for (int dim = 2; dim <= 3; dim++) {
-        if (dim == 2) {
-            make_star(&shape, 30, &random);
-        } else {
-            make_boulder(&shape, 3, 0.2, &random);
+    if (dim == 2) {
+        make_star(&shape, 30, &random);
+    } else {
+        make_boulder(&shape, 3, 0.2, &random);
+    }
+    FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false), other = built(&shape, true);
+    for (int i = 0; i < 500; i++) {
+        double x[3];
+        for (int a = 0; a < 3; a++) {
+            x[a] = uniform(&random, -1.5, 1.5);
         }
-        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false), other = built(&shape, true);
-        for (int i = 0; i < 500; i++) {
-            double x[3];
-            for (int a = 0; a < 3; a++) {
-                x[a] = uniform(&random, -1.5, 1.5);
-            }
-            struct rigid_contact one = rigid_closest(&surface, x, INFINITY);
-            struct rigid_contact two = rigid_closest(&other, x, INFINITY);
-            NEAR_TO(one.gap, -two.gap, 0.0);
-            for (int a = 0; a < dim; a++) {
-                NEAR_TO(one.normal[a], -two.normal[a], 0.0);
-            }
+        struct rigid_contact one = rigid_closest(&surface, x, INFINITY);
+        struct rigid_contact two = rigid_closest(&other, x, INFINITY);
+        NEAR_TO(one.gap, -two.gap, 0.0);
+        for (int a = 0; a < dim; a++) {
+            NEAR_TO(one.normal[a], -two.normal[a], 0.0);
         }
     }
 }
 
 /* Facets that touch nothing: every corner and edge is a rim. What is found is the closest; what is not lies
  * beyond the rim of the closest. */
-TEST(loose_facets)
+TEST_IN_EACH_DIM(loose_facets)
 {
     struct random random = {5};
     static struct shape shape;
-    for (int dim = 2; dim <= 3; dim++) {
-        shape = (struct shape){.dim = dim};
-        for (int f = 0; f < 300; f++) {
-            double corner[9], centre[3], size = f == 0 ? 2.0 : f % 7 == 0 ? 0.3 : 0.03;
-            for (int a = 0; a < dim; a++) {
-                centre[a] = uniform(&random, -1.0, 1.0);
-            }
-            for (int i = 0; i < dim * dim; i++) {
-                corner[i] = centre[i % dim] + uniform(&random, -size, size);
-            }
-            add_facet(&shape, corner, corner + dim, corner + 2 * dim);
+    shape = (struct shape){.dim = dim};
+    for (int f = 0; f < 300; f++) {
+        double corner[9], centre[3], size = f == 0 ? 2.0 : f % 7 == 0 ? 0.3 : 0.03;
+        for (int a = 0; a < dim; a++) {
+            centre[a] = uniform(&random, -1.0, 1.0);
         }
-        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
-        assert_int_equal(surface.vertex_count, 300 * dim);
-        int found = 0;
-        for (int i = 0; i < 2000; i++) {
-            double x[3], expected;
-            for (int a = 0; a < dim; a++) {
-                x[a] = uniform(&random, -1.5, 1.5);
-            }
-            struct rigid_contact contact = rigid_closest(&surface, x, INFINITY);
-            expected = brute_distance(&shape, x);
-            if (contact.found) {
-                NEAR_TO(contact.distance, expected, 1e-13);
-                found++;
-            } else {
-                assert_true(contact.distance >= 0.0 && contact.distance <= expected);
-            }
+        for (int i = 0; i < dim * dim; i++) {
+            corner[i] = centre[i % dim] + uniform(&random, -size, size);
         }
-        assert_in_range(found, 10, 1990);
+        add_facet(&shape, corner, corner + dim, corner + 2 * dim);
     }
+    FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
+    assert_int_equal(surface.vertex_count, 300 * dim);
+    int found = 0;
+    for (int i = 0; i < 2000; i++) {
+        double x[3], expected;
+        for (int a = 0; a < dim; a++) {
+            x[a] = uniform(&random, -1.5, 1.5);
+        }
+        struct rigid_contact contact = rigid_closest(&surface, x, INFINITY);
+        expected = brute_distance(&shape, x);
+        if (contact.found) {
+            NEAR_TO(contact.distance, expected, 1e-13);
+            found++;
+        } else {
+            assert_true(contact.distance >= 0.0 && contact.distance <= expected);
+        }
+    }
+    assert_in_range(found, 10, 1990);
 }
 
 /* An open curve ends at the normals through its ends; a sheet at the planes through its edges. */

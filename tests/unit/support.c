@@ -6,108 +6,100 @@
 #include "base/lists.h"
 
 /* Radii over three decades, two nodes at one place. */
-TEST(grid_against_brute_force)
+TEST_IN_EACH_DIM(grid_against_brute_force)
 {
     static const double factors[] = {1.0, 1.1, 2.5, 8.0};
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    assert_non_null(random);
-    for (int dim = 2; dim <= 3; dim++) {
-        enum { NODES = 400, POINTS = 150 };
-        double x[NODES * 3], radius[NODES], point[3];
-        for (int kind = 0; kind < 4;
-             kind++) { /* constant radii, graded radii; both with lists of what touches bins */
-            for (int i = 0; i < NODES * dim; i++) {
-                x[i] = 5.0 + gsl_rng_uniform(random);
-            }
-            memcpy(x + dim, x, (size_t)dim * sizeof *x);
-            for (int n = 0; n < NODES; n++) {
-                radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
-            }
-            FREED_BY(point_grid_free) struct point_grid grid = {0};
-            struct index_list list = {0};
-            GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
-            if (kind >= 2) {
-                GOOD(point_grid_list_touching(&grid, &error));
-            }
-            for (int p = 0; p < POINTS; p++) {
-                for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
-                    point[a] = p < 20 ? x[p * dim + a] : 4.0 + 3.0 * gsl_rng_uniform(random);
-                }
-                double factor = factors[p % 4];
-                list.count = 0;
-                GOOD(point_grid_query(&grid, point, factor, &list, &error));
-                int64_t at = 0;
-                for (int n = 0; n < NODES; n++) {
-                    double sum = 0.0;
-                    for (int a = 0; a < dim; a++) {
-                        sum += (x[n * dim + a] - point[a]) * (x[n * dim + a] - point[a]);
-                    }
-                    if (sum < radius[n] * factor * radius[n] * factor) {
-                        assert_true(at < list.count);
-                        assert_int_equal(list.index[at], n);
-                        at++;
-                    }
-                }
-                assert_int_equal(at, list.count);
-            }
-            free(list.index);
+    struct random random = {1};
+    enum { NODES = 400, POINTS = 150 };
+    double x[NODES * 3], radius[NODES], point[3];
+    for (int kind = 0; kind < 4;
+         kind++) { /* constant radii, graded radii; both with lists of what touches bins */
+        for (int i = 0; i < NODES * dim; i++) {
+            x[i] = uniform(&random, 5.0, 6.0);
         }
+        memcpy(x + dim, x, (size_t)dim * sizeof *x);
+        for (int n = 0; n < NODES; n++) {
+            radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, uniform(&random, 0.0, 1.0));
+        }
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        struct index_list list = {0};
+        GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
+        if (kind >= 2) {
+            GOOD(point_grid_list_touching(&grid, &error));
+        }
+        for (int p = 0; p < POINTS; p++) {
+            for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
+                point[a] = p < 20 ? x[p * dim + a] : uniform(&random, 4.0, 7.0);
+            }
+            double factor = factors[p % 4];
+            list.count = 0;
+            GOOD(point_grid_query(&grid, point, factor, &list, &error));
+            int64_t at = 0;
+            for (int n = 0; n < NODES; n++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    sum += (x[n * dim + a] - point[a]) * (x[n * dim + a] - point[a]);
+                }
+                if (sum < radius[n] * factor * radius[n] * factor) {
+                    assert_true(at < list.count);
+                    assert_int_equal(list.index[at], n);
+                    at++;
+                }
+            }
+            assert_int_equal(at, list.count);
+        }
+        free(list.index);
     }
-    gsl_rng_free(random);
 }
 
 /* Lists of points in rows, which share their search in groups, and of points all over the place, where radii
  * are constant or graded. */
-TEST(lists_against_brute_force)
+TEST_IN_EACH_DIM(lists_against_brute_force)
 {
     enum { POINTS = 700 };
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    assert_non_null(random);
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
-            FREED_BY(scattered_free)
-            struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
-            struct support_options options = support_defaults(dim);
-            FREED_BY(point_grid_free) struct point_grid grid = {0};
-            FREED_BY(support_free) struct support_lists lists = {0};
-            double *radius = zeros(cloud.count, sizeof *radius);
-            options.widen = false;
-            for (int64_t n = 0; n < cloud.count; n++) {
-                radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, gsl_rng_uniform(random)) : 2.1);
-            }
-            for (int64_t p = 0; p < POINTS && (kind & 2) == 0; p++) {
-                for (int a = 0; a < dim; a++) {
-                    int64_t step = a == 0 ? p % 70 : p / 70;
-                    cloud.points[p * dim + a] =
-                        1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * gsl_rng_uniform(random));
-                }
-            }
-            GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
-            GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
-            int64_t fewest = cloud.count, most = 0;
-            for (int64_t p = 0; p < POINTS; p++) {
-                int64_t at = lists.ptr[p];
-                for (int64_t n = 0; n < cloud.count; n++) {
-                    double sum = 0.0;
-                    for (int a = 0; a < dim; a++) {
-                        double d = cloud.x[n * dim + a] - cloud.points[p * dim + a];
-                        sum += d * d;
-                    }
-                    if (sum < radius[n] * radius[n]) {
-                        assert_true(at < lists.ptr[p + 1]);
-                        assert_int_equal(lists.idx[at], n);
-                        at++;
-                    }
-                }
-                assert_int_equal(at, lists.ptr[p + 1]);
-                fewest = at - lists.ptr[p] < fewest ? at - lists.ptr[p] : fewest;
-                most = at - lists.ptr[p] > most ? at - lists.ptr[p] : most;
-            }
-            assert_int_equal(lists.fewest, fewest);
-            assert_int_equal(lists.most, most);
+    struct random random = {1};
+    for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
+        struct support_options options = support_defaults(dim);
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
+        double *radius = zeros(cloud.count, sizeof *radius);
+        options.widen = false;
+        for (int64_t n = 0; n < cloud.count; n++) {
+            radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, uniform(&random, 0.0, 1.0)) : 2.1);
         }
+        for (int64_t p = 0; p < POINTS && (kind & 2) == 0; p++) {
+            for (int a = 0; a < dim; a++) {
+                int64_t step = a == 0 ? p % 70 : p / 70;
+                cloud.points[p * dim + a] =
+                    1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * uniform(&random, 0.0, 1.0));
+            }
+        }
+        GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
+        GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
+        int64_t fewest = cloud.count, most = 0;
+        for (int64_t p = 0; p < POINTS; p++) {
+            int64_t at = lists.ptr[p];
+            for (int64_t n = 0; n < cloud.count; n++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    double d = cloud.x[n * dim + a] - cloud.points[p * dim + a];
+                    sum += d * d;
+                }
+                if (sum < radius[n] * radius[n]) {
+                    assert_true(at < lists.ptr[p + 1]);
+                    assert_int_equal(lists.idx[at], n);
+                    at++;
+                }
+            }
+            assert_int_equal(at, lists.ptr[p + 1]);
+            fewest = at - lists.ptr[p] < fewest ? at - lists.ptr[p] : fewest;
+            most = at - lists.ptr[p] > most ? at - lists.ptr[p] : most;
+        }
+        assert_int_equal(lists.fewest, fewest);
+        assert_int_equal(lists.most, most);
     }
-    gsl_rng_free(random);
 }
 
 /* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
