@@ -46,12 +46,11 @@ static void halves_free(struct halves *halves)
 static double *scatter_points(int dim, int64_t count)
 {
     double *x = calloc((size_t)(count * dim), sizeof *x);
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    struct random random = {.state = 1};
     assert_non_null(x);
     for (int64_t i = 0; i < count * dim; i++) {
-        x[i] = i % (3 * dim) == 0 ? 0.5 : gsl_rng_uniform(random);
+        x[i] = i % (3 * dim) == 0 ? 0.5 : uniform(&random, 0.0, 1.0);
     }
-    gsl_rng_free(random);
     return x;
 }
 
