@@ -46,8 +46,6 @@ static const char usage[] =
 #include "cell_report.h"
 #include "tool.h"
 
-#include <stdlib.h>
-
 /* Exits where an option that goes with another kind was given. */
 static void check_kind(const struct tool *tool, const char *option, bool applies)
 {
@@ -160,7 +158,6 @@ int main(int argc, char *argv[])
     tool_note_thin(&tool, &cells);
     SCRATCH int32_t *region = NULL;
     TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
-    stream_init(&stream);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
         TOOL_TRY(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error));

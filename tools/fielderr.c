@@ -63,7 +63,6 @@ static const char usage[] =
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Cells per direction by the ratio that is used: outside of this it is noted. */
@@ -165,8 +164,7 @@ static double average_difference(const struct tool *tool, const struct request *
     struct comparison_request everywhere = request->comparison;
     everywhere.region = NULL;
     findings_make(tool, &everywhere, first, second, &findings);
-    double average = findings.statistics.average;
-    return average;
+    return findings.statistics.average;
 }
 
 /* The order assumed, or that of the averages of differences of three results: of the whole body, also where a

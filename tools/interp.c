@@ -86,14 +86,13 @@ static struct support_options parse(const struct tool *tool, int dim)
 static void read_table(const struct tool *tool, const char *file, const char *unit_name, int dim,
                        struct points *points)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     double unit;
     TOOL_TRY(tool, parse_length_unit(unit_name, "-u", &unit, &error));
     TOOL_TRY(tool, table_read(file, dim, dim, &table, &error));
     points->count = table.rows;
     points->x = table.values;
     table.values = NULL;
-    table_free(&table);
     for (int64_t i = 0; i < points->count * dim; i++) {
         points->x[i] *= unit;
     }

@@ -122,7 +122,7 @@ static void check_checkpoint(const struct tool *tool)
     static const char *const suffixes[] = {"", ".old"};
     const char *file = tool_value(tool, "checkpoint");
     for (int i = 0; i < 2 && file != NULL; i++) {
-        char *name = NULL;
+        SCRATCH char *name = NULL;
         overwrite_refuse(tool, "checkpoint", suffixes[i]);
         if (asprintf(&name, "%s%s", file, suffixes[i]) < 0) {
             tool_fail(tool, STATUS_SYSTEM, "out of memory");
@@ -132,7 +132,6 @@ static void check_checkpoint(const struct tool *tool)
                       "-o %s: is the checkpoint of -c %s, which is removed at the end: name another file",
                       tool->output, file);
         }
-        free(name);
     }
 }
 
@@ -236,7 +235,7 @@ int main(int argc, char *argv[])
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     FREED_BY(scene_free) struct scene scene = {0};
-    struct model model;
+    FREED_BY(model_free) struct model model = {0};
     FREED_BY(parts_free) struct parts_input parts = {.given = false};
     process_begin(&argc, &argv);
     become_mpi(argv);
@@ -262,7 +261,6 @@ int main(int argc, char *argv[])
     write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
-    model_free(&model);
     free(run.u);
     return tool_end(&tool);
 }

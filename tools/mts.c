@@ -45,7 +45,6 @@ static const char usage[] =
 
 #include <fnmatch.h>
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -133,12 +132,11 @@ static int tell_cells(const struct tool *tool, const struct stream *stream)
 
 static int check(struct tool *tool)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     tool_read(tool, tool->operands[1], &stream);
     int64_t count;
     TOOL_TRY(tool, stream_check(&stream, print_violation, NULL, &count, &error));
     count += tell_cells(tool, &stream);
-    stream_free(&stream);
     int status = tool_end(tool);
     return count > 0 ? (int)STATUS_VERDICT : status;
 }

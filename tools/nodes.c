@@ -161,7 +161,6 @@ int main(int argc, char *argv[])
         tool_note(&tool, "no part of the boundary has a name: the program groups makes names");
     }
     report(&tool, &mesh, tool_given(&tool, "verbose"));
-    stream_init(&stream);
     TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     return tool_end(&tool);

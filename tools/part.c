@@ -40,7 +40,6 @@ static const char usage[] =
 #include "stage_options.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 /* What -v tells. */
@@ -76,7 +75,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
     FREED_BY(body_part_work_free) struct body_part_work work = {0};
     const char *name = whole->tool->output;
     for (int32_t k = 0; k < whole->partition.parts; k++) {
-        struct body_part body;
+        FREED_BY(body_part_free) struct body_part body = {0};
         TOOL_TRY(whole->tool,
                  body_part_build(&whole->partition, k, whole->own_cell + whole->own_ptr[k],
                                  whole->own_ptr[k + 1] - whole->own_ptr[k], wanted, &work, &body, &error));
@@ -87,7 +86,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
         add(body.work, &report->work, &report->most_work);
         if (wanted) {
             cut_body_make_part(whole, k, &body);
-            char *file = tool_numbered(whole->tool, "-o ", name, k);
+            SCRATCH char *file = tool_numbered(whole->tool, "-o ", name, k);
             whole->tool->output = file;
             if (k == 0) {
                 tool_write(whole->tool, whole->stream, text); /* and how it was made, for all */
@@ -95,9 +94,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
                 tool_copy(whole->tool, whole->stream, text);
             }
             whole->tool->output = name;
-            free(file);
         }
-        body_part_free(&body);
     }
 }
 

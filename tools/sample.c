@@ -185,7 +185,7 @@ static void check_probabilities(const struct tool *tool, const struct image *ima
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
     for (int i = 0; i < request->image_count; i++) {
-        struct image image;
+        FREED_BY(image_free) struct image image = {0};
         struct image_axes axes;
         tool_read_image(tool, tool->operands[i], &image);
         image_to_body(tool, &image, rows->dim, &axes);
@@ -201,7 +201,6 @@ static void sample_images(const struct tool *tool, const struct request *request
             TOOL_TRY(tool, NEW_ARRAY(&rows->value, rows->count * rows->cols, &error));
         }
         sample_image(tool, request, &image, tool->operands[i], rows, i);
-        image_free(&image);
     }
 }
 
@@ -266,7 +265,6 @@ int main(int argc, char *argv[])
                   request.points == NULL ? " and a stream, if not on standard input, are expected"
                                          : " expected");
     }
-    stream_init(&stream);
     if (request.points != NULL) {
         sample_points_table(&tool, request.points, request.unit, &rows);
     } else {

@@ -46,7 +46,6 @@ static const char usage[] =
 #include "approx/field_error.h"
 #include "approx/size_field.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* What the command line asks for. */
@@ -187,7 +186,6 @@ static void write_sizes(const struct tool *tool, struct layered *layered, bool t
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
-    stream_init(&stream);
     TOOL_TRY(tool, stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
                               vector_attributes(cells->dim, "m", attributes), layered->x, false, &error));
     TOOL_TRY(tool, stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node,
@@ -228,7 +226,7 @@ int main(int argc, char *argv[])
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
                   request.sizes.most_nodes);
     }
-    struct layered layered;
+    FREED_BY(layered_free) struct layered layered = {0};
     struct target target;
     TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
@@ -241,6 +239,5 @@ int main(int argc, char *argv[])
     if (request.verbose) {
         report(&request, &cells, &field);
     }
-    layered_free(&layered);
     return tool_end(&tool);
 }

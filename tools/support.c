@@ -54,8 +54,6 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-#include <stdlib.h>
-
 static struct support_options parse(const struct tool *tool, int dim)
 {
     struct support_options support = support_defaults(dim);

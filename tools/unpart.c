@@ -31,7 +31,6 @@ int main(int argc, char *argv[])
     FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 1, INT_MAX, argc, argv);
     rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
-    stream_init(&stream);
     rejoin_sections(&rejoin, &stream);
     stream_inherit(&stream, &rejoin.part[0].stream); /* as they were made alike */
     tool_write(&tool, &stream, tool_given(&tool, "text"));

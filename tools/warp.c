@@ -210,6 +210,7 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
     enum status status = motion_build(cells, u, false, parameters != field ? &source : NULL, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
+        motion_free(motion);
         status = motion_build(cells, u, true, NULL, motion, &error);
     }
     tool_check(tool, status, &error);

@@ -1,7 +1,6 @@
 /* Adaptive integration points: each background cell is subdivided until the integral of the products of
  * shape-function gradients, which is what a stiffness is made of, settles. */
-#ifndef APPROX_ADAPTIVE_H
-#define APPROX_ADAPTIVE_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/support.h"
@@ -40,5 +39,3 @@ MUST_CHECK enum status adaptive_points_build(const struct adaptive_options *opti
                                              const struct cells *cells, const double *radius,
                                              struct adaptive_points *points, struct error *error);
 void adaptive_points_free(struct adaptive_points *points);
-
-#endif

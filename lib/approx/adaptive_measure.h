@@ -1,7 +1,6 @@
 /* Subcells of background cells, and by how much they change the integral of the products of shape-function
  * gradients; private to lib/approx. */
-#ifndef APPROX_ADAPTIVE_MEASURE_H
-#define APPROX_ADAPTIVE_MEASURE_H
+#pragma once
 
 #include "approx/adaptive.h"
 #include "approx/quadrature.h"
@@ -44,5 +43,3 @@ void adaptive_positions(const struct quadrature_rule *rule, int dim, const doubl
 /* Measure the subcells that are not measured yet; those of level 0 also set their cell's norm. */
 MUST_CHECK enum status adaptive_measure(struct refinement *refinement, struct leaves *leaves,
                                         struct error *error);
-
-#endif

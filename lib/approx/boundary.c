@@ -219,11 +219,7 @@ enum status boundary_sides_build(const struct face_table *table, const struct fa
                                  struct error *error)
 {
     *sides = (struct boundary_sides){0};
-    enum status status = build(table, set, split, false, sides, NULL, NULL, averages, error);
-    if (status != STATUS_OK) {
-        boundary_sides_free(sides);
-    }
-    return status;
+    return build(table, set, split, false, sides, NULL, NULL, averages, error);
 }
 
 void boundary_sides_free(struct boundary_sides *sides)

@@ -6,8 +6,7 @@
  * supports stop meets it, there is one average for each side, so that the multipliers can carry a traction
  * that jumps there: with the quadrature that smooths the cells the linear patch test then holds to round-off.
  */
-#ifndef APPROX_BOUNDARY_H
-#define APPROX_BOUNDARY_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/shape.h"
@@ -55,7 +54,8 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 
 /* The same, and after the boundary averages an average over each whole side of the set: a part of it within
  * which facets that share an edge (2D: a node) turn by less than 45 degrees. Boundary averages are split
- * between sides, or not: a boundary average round an edge then holds both sides together. */
+ * between sides, or not: a boundary average round an edge then holds both sides together. To be freed, as
+ * the averages, also on failure. */
 struct boundary_sides {
     int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
     int64_t group_count;        /* of groups */
@@ -104,5 +104,3 @@ MUST_CHECK enum status boundary_find_ends(const struct face_table *table, enum b
                                           struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of boundary.c, in boundary_sides.c; private to lib/approx. */
-#ifndef APPROX_BOUNDARY_PRIVATE_H
-#define APPROX_BOUNDARY_PRIVATE_H
+#pragma once
 
 #include "approx/boundary.h"
 
@@ -34,5 +33,3 @@ void boundary_collect_corners(const struct face_table *table, const struct facet
 MUST_CHECK enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set,
                                           bool split, struct corner *corners, int64_t *part_count,
                                           int64_t *group, int64_t *group_count, struct error *error);
-
-#endif

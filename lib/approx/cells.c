@@ -1,12 +1,10 @@
 #include "approx/cells.h"
 
 #include "approx/face_rows.h"
-#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* The order of a cell's faces: the vertex that is not of each. */
 static int opposite(int dim, int64_t face)
@@ -45,12 +43,7 @@ void cell_centroid(const struct cells *cells, int64_t cell, double *centroid)
 
 void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *face)
 {
-    static const int of_triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};
-    static const int of_tetrahedron[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    const int *corner = cells->dim == 2 ? of_triangle[vertex] : of_tetrahedron[vertex];
-    for (int k = 0; k < cells->dim; k++) {
-        face[k] = cells->node[cell * (cells->dim + 1) + corner[k]];
-    }
+    simplex_face(cells->dim, cells->node + cell * (cells->dim + 1), vertex, face);
 }
 
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
@@ -147,63 +140,31 @@ enum status cells_check(const struct cells *cells, struct error *error)
     return STATUS_OK;
 }
 
-void face_key(int dim, const int32_t *node, int32_t key[3])
-{
-    key[2] = -1;
-    for (int i = 0; i < dim; i++) {
-        int at = i;
-        for (; at > 0 && key[at - 1] > node[i]; at--) {
-            key[at] = key[at - 1];
-        }
-        key[at] = node[i];
-    }
-}
-
-/* A face by its nodes in ascending order. */
-struct keyed_face {
-    int32_t key[3];
-    int64_t face; /* or cell * (dim + 1) + local face */
-};
-
-static int compare_keys(const void *left, const void *right)
-{
-    return compare_numbers(3, ((const struct keyed_face *)left)->key,
-                           ((const struct keyed_face *)right)->key);
-}
-
-static int compare_faces(const void *left, const void *right)
-{
-    const struct keyed_face *a = left, *b = right;
-    int keys = compare_keys(a, b);
-    return keys != 0 ? keys : (a->face > b->face) - (a->face < b->face);
-}
-
 /* partner[source]: the source of the same face in the other cell, or -1. */
 static enum status match_faces(const struct cells *cells, int64_t *partner, struct error *error)
 {
     int corners = cells->dim + 1;
     int64_t total = cells->count * corners;
-    SCRATCH struct keyed_face *keyed = NULL;
+    SCRATCH struct keyed *keyed = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&keyed, total, error));
     for (int64_t s = 0; s < total; s++) {
         int32_t node[3];
         cell_face(cells, s / corners, opposite(cells->dim, s % corners), node);
         face_key(cells->dim, node, keyed[s].key);
-        keyed[s].face = s;
+        keyed[s].item = s;
         partner[s] = -1;
     }
-    qsort(keyed, (size_t)total, sizeof *keyed, compare_faces);
-    for (int64_t i = 1; i < total; i++) {
-        int64_t one = keyed[i - 1].face, other = keyed[i].face;
-        if (compare_keys(&keyed[i - 1], &keyed[i]) != 0) {
-            continue;
-        }
-        if (partner[one] >= 0) {
+    keyed_sort(total, keyed);
+    for (int64_t i = 0, end; i < total; i = end) {
+        end = keyed_end(total, keyed, i);
+        if (end - i > 2) {
             return fail(error, STATUS_INPUT, "cells: row %lld: a face is shared by more than two cells",
-                        (long long)(other / corners));
+                        (long long)(keyed[i + 2].item / corners));
         }
-        partner[one] = other;
-        partner[other] = one;
+        if (end - i == 2) {
+            partner[keyed[i].item] = keyed[i + 1].item;
+            partner[keyed[i + 1].item] = keyed[i].item;
+        }
     }
     return STATUS_OK;
 }
@@ -250,23 +211,23 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,
                        struct error *error)
 {
-    struct keyed_face *keyed, wanted;
+    SCRATCH struct keyed *keyed = NULL;
     int dim = faces->dim;
     int64_t known = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&keyed, faces->count, error));
     for (int64_t f = 0; f < faces->count; f++) {
         if (faces->cell[2 * f + 1] < 0) {
             face_key(dim, faces->node + f * dim, keyed[known].key);
-            keyed[known++].face = f;
+            keyed[known++].item = f;
         }
     }
-    qsort(keyed, (size_t)known, sizeof *keyed, compare_keys);
+    keyed_sort(known, keyed);
     for (int64_t i = 0; i < count; i++) {
-        face_key(dim, facet + i * dim, wanted.key);
-        const struct keyed_face *same = bsearch(&wanted, keyed, (size_t)known, sizeof *keyed, compare_keys);
-        found[i] = same != NULL ? same->face : -1;
+        int32_t key[3];
+        face_key(dim, facet + i * dim, key);
+        int64_t same = keyed_find(known, keyed, key);
+        found[i] = same >= 0 ? keyed[same].item : -1;
     }
-    free(keyed);
     return STATUS_OK;
 }
 

@@ -1,7 +1,7 @@
 /* Background cells: simplices (triangles, tetrahedra) on the nodes, and their faces. */
-#ifndef APPROX_CELLS_H
-#define APPROX_CELLS_H
+#pragma once
 
+#include "base/keyed.h"
 #include "base/status.h"
 
 #include <stdbool.h>
@@ -50,10 +50,6 @@ void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *fac
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);
 
-/* Node indices node[dim] of a face in ascending order, in 2D -1 last: what tells it, whichever way it is
- * turned. */
-void face_key(int dim, const int32_t *node, int32_t key[3]);
-
 /* All faces of the cells, each once, those on the boundary before those between two cells, and else in the
  * order of their first cell; or only those on the boundary.
  * STATUS_INPUT when a face belongs to more than two cells. */
@@ -73,5 +69,3 @@ MUST_CHECK enum status cells_across(const struct cells *cells, int32_t *across, 
 
 /* spacing[node_count]: mean length of the cell edges at each node; 0 at nodes of no cell. */
 MUST_CHECK enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Analytic clouds of nodes in a box, with background cells where they come from a lattice. */
-#ifndef APPROX_CLOUD_H
-#define APPROX_CLOUD_H
+#pragma once
 
 #include "base/status.h"
 
@@ -50,5 +49,3 @@ enum cloud_function {
     FUNCTION_QUADRATIC /* 1 + 2 x + 3 y + 4 z + x^2 - 2 x y + 3 y^2 + x z - y z + 2 z^2 */
 };
 double cloud_function_value(enum cloud_function function, int dim, const double x[]);
-
-#endif

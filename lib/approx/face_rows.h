@@ -7,8 +7,7 @@
  *
  * Such own rows come first, those of the faces on the boundary before the others, in the order of the faces;
  * then those of edges, as they come. */
-#ifndef APPROX_FACE_ROWS_H
-#define APPROX_FACE_ROWS_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -54,5 +53,3 @@ MUST_CHECK enum status face_rows_cells(int64_t node_count, const struct faces *f
 
 /* The points, x[face_row_point(faces, row_count) * dim], by the places of the nodes. */
 void face_rows_points(const struct faces *faces, const double *nodes, double *x);
-
-#endif

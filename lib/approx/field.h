@@ -1,6 +1,5 @@
 /* Nodal fields and their values at points. */
-#ifndef APPROX_FIELD_H
-#define APPROX_FIELD_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/shape.h"
@@ -42,5 +41,3 @@ void field_table_free(struct field_table *table);
 /* values[count * cols] = sum over the row's neighbours of phi_j field[j * cols ...]. */
 void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
                     const double *field, double *values);
-
-#endif

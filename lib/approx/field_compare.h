@@ -1,6 +1,5 @@
 /* Comparing two nodal fields, on one cloud of nodes or on two. */
-#ifndef APPROX_FIELD_COMPARE_H
-#define APPROX_FIELD_COMPARE_H
+#pragma once
 
 #include "approx/field.h"
 
@@ -63,5 +62,3 @@ MUST_CHECK enum status field_compare(const struct nodal_field *a, const struct n
                                      const bool *chosen, bool skip_outside,
                                      struct field_comparison *comparison, struct error *error);
 void field_comparison_free(struct field_comparison *comparison);
-
-#endif

@@ -1,6 +1,7 @@
 #include "approx/field_error.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -82,9 +83,7 @@ static double cell_gradient(const struct cells *cells, int64_t cell, int64_t col
     for (int k = 0; k <= dim; k++) {
         const double *value = values + cells->node[cell * (dim + 1) + k] * cols;
         for (int64_t c = 0; c < cols; c++) {
-            for (int a = 0; a < dim; a++) {
-                gradient[c * dim + a] += value[c] * grad_N[k * dim + a];
-            }
+            add_scaled(dim, value[c], grad_N + k * dim, gradient + c * dim);
         }
     }
     return volume;

@@ -14,8 +14,7 @@
  * compared with that averaged at the nodes, with the volumes of the cells of one region as weights. It tells
  * from one solution where the cloud is too coarse, not how far the displacement is off: that depends on the
  * whole body. */
-#ifndef APPROX_FIELD_ERROR_H
-#define APPROX_FIELD_ERROR_H
+#pragma once
 
 #include "approx/field.h"
 
@@ -46,5 +45,3 @@ double field_error_mean(const struct cells *cells, const double *value);
 MUST_CHECK enum status field_error_recovered(const struct cells *cells, const int32_t *region,
                                              int32_t region_count, int64_t cols, const double *values,
                                              double *squared, struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * is the sum of cubic B-splines over its voxels, a smoothing with a standard deviation of .58 voxels. The
  * shares are twice continuously differentiable and sum to 1; the label at a point is the one of the largest
  * share, and the interface of two labels is where their shares are equal. */
-#ifndef APPROX_LABELS_H
-#define APPROX_LABELS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -55,5 +54,3 @@ void labels_box(const struct labels *labels, double low[], double high[]);
 
 /* Least extent of a voxel along an axis of the grid with more than one voxel, m. */
 double labels_voxel(const struct labels *labels);
-
-#endif

@@ -6,8 +6,7 @@
  * is done in local coordinates xi = (x_j - x) / s, centred on the point and scaled by the largest support
  * radius s, so that metres, millimetres and a distant origin give the same numbers. An absolute mu (in the
  * units of x) becomes the dimensionless mu / s^4. */
-#ifndef APPROX_MLS_H
-#define APPROX_MLS_H
+#pragma once
 
 #include "approx/weight.h"
 #include "base/status.h"
@@ -77,5 +76,3 @@ struct mls_support {
 MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_support *support,
                                     struct mls_work *work, double *phi, double *dphi,
                                     enum mls_verdict *verdict, struct error *error);
-
-#endif

@@ -4,8 +4,7 @@
  * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
  * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
  * left to the orthogonal factorisation of mls_orthogonal(). */
-#ifndef APPROX_MLS_KERNEL_H
-#define APPROX_MLS_KERNEL_H
+#pragma once
 
 #include "approx/mls.h"
 
@@ -25,5 +24,3 @@ enum mls_row {
  * left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
 bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
                 double *phi, double *dphi);
-
-#endif

@@ -1,6 +1,5 @@
 /* MLS at points whose moment matrix may be ill-conditioned; private to lib/approx. */
-#ifndef APPROX_MLS_ORTHOGONAL_H
-#define APPROX_MLS_ORTHOGONAL_H
+#pragma once
 
 #include "approx/mls.h"
 
@@ -14,5 +13,3 @@
  * there are none; scratch[MLS_ROWS * stride], stride at least count + MLS_PADDING. */
 enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support *support, double *scratch,
                                 int64_t stride, double *phi, double *dphi);
-
-#endif

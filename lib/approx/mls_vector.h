@@ -1,7 +1,6 @@
 /* Vectors of doubles along the neighbours of a point: monomials, moments, and the small symmetric systems of
  * the moments; private to lib/approx. */
-#ifndef APPROX_MLS_VECTOR_H
-#define APPROX_MLS_VECTOR_H
+#pragma once
 
 #include "approx/mls.h"
 #include "base/processor.h"
@@ -228,5 +227,3 @@ KERNEL_INLINE void substitute(int m, const struct mls_system *system, lanes *x)
         }
     }
 }
-
-#endif

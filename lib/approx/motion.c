@@ -6,8 +6,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const int newton_most = 30;
@@ -97,12 +95,11 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
                          const struct motion_source *source, struct motion *motion, struct error *error)
 {
     int dim = cells->dim;
-    enum status status = STATUS_OK;
     *motion = (struct motion){.cells = *cells, .u = u};
-    TRY(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
-    TRY(NEW_ARRAY(&motion->across, cells->count * (dim + 1), error));
-    TRY(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
-    TRY(cells_across(cells, motion->across, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->shape, cells->count * dim * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->across, cells->count * (dim + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&motion->moved, cells->node_count * dim, error));
+    RETURN_IF_ERROR(cells_across(cells, motion->across, error));
     for (int64_t c = 0; c < cells->count; c++) {
         double m[3][3], inverse[3][3];
         edges(cells, cells->x, c, m);
@@ -115,14 +112,10 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
         motion->moved[i] = cells->x[i] + u[i];
     }
     if (!linear) {
-        TRY(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
-        TRY(find_gradients(cells, u, source, motion->gradient, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&motion->gradient, cells->node_count * dim * dim, error));
+        RETURN_IF_ERROR(find_gradients(cells, u, source, motion->gradient, error));
     }
-done:
-    if (status != STATUS_OK) {
-        motion_free(motion);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 void motion_free(struct motion *motion)
@@ -184,9 +177,7 @@ static inline void place(const struct motion *motion, int dim, int64_t cell, con
                 }
             }
         }
-        for (int i = 0; i < dim; i++) {
-            moved[i] += N[a] * part[a][i];
-        }
+        add_scaled(dim, N[a], part[a], moved);
     }
     for (int i = 0; i < dim && F != NULL; i++) {
         for (int j = 0; j < dim; j++) {

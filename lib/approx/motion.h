@@ -7,8 +7,7 @@
  * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
  * N_a (X - X_a) H (X
  * - X_a) / 2. */
-#ifndef APPROX_MOTION_H
-#define APPROX_MOTION_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/support.h"
@@ -33,7 +32,7 @@ struct motion {
 
 /* The cells and u must outlive it. source: NULL for the gradients of a fit of u. linear: no gradients, the
  * displacement is piecewise linear. STATUS_VERDICT where the cloud is too poor for a fit at some node, which
- * `linear` does without; STATUS_INPUT as cells_across. */
+ * `linear` does without; STATUS_INPUT as cells_across. To be freed also on failure. */
 MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
                                     const struct motion_source *source, struct motion *motion,
                                     struct error *error);
@@ -52,5 +51,3 @@ void motion_place(const struct motion *motion, int64_t cell, const double *X, do
  * - x| at the end, m. */
 bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
                     double *residual);
-
-#endif

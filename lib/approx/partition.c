@@ -10,12 +10,8 @@
 enum status cell_stars_build(const struct cells *cells, struct cell_stars *stars, struct error *error)
 {
     *stars = (struct cell_stars){0};
-    enum status status = lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count,
-                                      &stars->ptr, &stars->cell, error);
-    if (status != STATUS_OK) {
-        cell_stars_free(stars);
-    }
-    return status;
+    return lists_by_row(cells->count, cells->dim + 1, cells->node, cells->node_count, &stars->ptr,
+                        &stars->cell, error);
 }
 
 void cell_stars_free(struct cell_stars *stars)
@@ -45,24 +41,15 @@ int32_t partition_cell_owner(const struct cells *cells, int64_t cell, const int3
 enum status partition_own_cells(const struct partition *partition, int64_t **own_ptr, int32_t **own_cell,
                                 struct error *error)
 {
-    enum status status;
     const struct cells *cells = partition->cells;
-    int32_t *part = NULL;
+    SCRATCH int32_t *part = NULL;
     *own_ptr = NULL;
     *own_cell = NULL;
-    TRY(NEW_ARRAY(&part, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         part[c] = partition_cell_owner(cells, c, partition->owner);
     }
-    TRY(lists_by_row(cells->count, 1, part, partition->parts, own_ptr, own_cell, error));
-done:
-    free(part);
-    if (status != STATUS_OK) {
-        FREE_ALL(*own_ptr, *own_cell);
-        *own_ptr = NULL;
-        *own_cell = NULL;
-    }
-    return status;
+    return lists_by_row(cells->count, 1, part, partition->parts, own_ptr, own_cell, error);
 }
 
 static struct box box_of_cell(const struct cells *cells, int64_t cell)

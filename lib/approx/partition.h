@@ -8,13 +8,12 @@
  * are its own cells with their faces; for that it needs the nodes whose supports reach them (the halo). To
  * compute supports and shape functions at its own cells as in the whole body, it needs as well all cells at
  * these nodes, and the cells around these. */
-#ifndef APPROX_PARTITION_H
-#define APPROX_PARTITION_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/point_grid.h"
 
-/* The cells at each node (CSR), ascending. */
+/* The cells at each node (CSR), ascending; to be freed also on failure. */
 struct cell_stars {
     int64_t *ptr; /* node_count + 1 */
     int32_t *cell;
@@ -68,7 +67,8 @@ struct partition {
     double widen;         /* the most that supports will be widened, at least 1 */
 };
 
-/* own_ptr[parts + 1], own_cell[cells->count]: the cells of each part (CSR), ascending. */
+/* own_ptr[parts + 1], own_cell[cells->count]: the cells of each part (CSR), ascending; to be freed, also on
+ * failure. */
 MUST_CHECK enum status partition_own_cells(const struct partition *partition, int64_t **own_ptr,
                                            int32_t **own_cell, struct error *error);
 
@@ -78,5 +78,3 @@ MUST_CHECK enum status body_part_build(const struct partition *partition, int32_
                                        struct body_part_work *work, struct body_part *body,
                                        struct error *error);
 void body_part_free(struct body_part *body);
-
-#endif

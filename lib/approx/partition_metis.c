@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <metis.h>
-#include <stdlib.h>
 
 /* The graph for METIS: nodes that share a cell; the work of each node is its share of its cells'. */
 struct graph {

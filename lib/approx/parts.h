@@ -1,6 +1,5 @@
 /* Connected parts of a body and of its boundary, and rings around a choice of facets, cells or nodes. */
-#ifndef APPROX_PARTS_H
-#define APPROX_PARTS_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -35,5 +34,3 @@ MUST_CHECK enum status boundary_sides(const double *x, const struct faces *bound
 MUST_CHECK enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
                                    int64_t edge_count, const int32_t *edge, int rings, bool of_items,
                                    bool *chosen, struct error *error);
-
-#endif

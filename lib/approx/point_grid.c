@@ -5,7 +5,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,7 +35,6 @@ static int64_t bin_of(const struct point_grid *grid, const struct point_grid_lev
  * bins per node. */
 static int64_t choose_bins(struct point_grid_level *level, int dim, const double *upper, int64_t nodes)
 {
-    int64_t total;
     level->bin = 0.5 * level->largest_radius;
     for (;;) {
         double product = 1.0;
@@ -49,7 +47,7 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
         level->bin *= 1.25;
     }
     level->per_length = 1.0 / level->bin;
-    total = 1;
+    int64_t total = 1;
     for (int a = 0; a < 3; a++) {
         level->bins[a] = a < dim ? (int64_t)floor((upper[a] - level->origin[a]) / level->bin) + 1 : 1;
         total *= level->bins[a];

@@ -1,7 +1,6 @@
 /* Cell lists for the question "which nodes' supports contain x?", with radii that may differ from node to
  * node. */
-#ifndef APPROX_POINT_GRID_H
-#define APPROX_POINT_GRID_H
+#pragma once
 
 #include "base/status.h"
 
@@ -66,5 +65,3 @@ MUST_CHECK enum status point_grid_list_places(const struct point_grid *grid,
 
 /* Room for `count` more indices. */
 MUST_CHECK enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Quadrature on background cells and on their faces. All weights are positive: a negative one makes negative
  * masses, which explicit dynamics does not bear. */
-#ifndef APPROX_QUADRATURE_H
-#define APPROX_QUADRATURE_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -26,5 +25,3 @@ struct quadrature_rule quadrature_face_rule(int dim);
 /* Position of each of a rule's points in a simplex of node indices `vertex`: x[points * dim]. */
 void quadrature_positions(const struct quadrature_rule *rule, int dim, const double *nodes,
                           const int32_t *vertex, double *x);
-
-#endif

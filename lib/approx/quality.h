@@ -1,6 +1,5 @@
 /* Quality of background cells. */
-#ifndef APPROX_QUALITY_H
-#define APPROX_QUALITY_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -21,5 +20,3 @@ struct poor_cell {
 /* The `most` poorest cells of quality below `bound`, the poorest first, into poorest[most]; returns how many
  * cells are below it. */
 int64_t cells_poorest(const struct cells *cells, double bound, int most, struct poor_cell poorest[]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which cell each point of a regular grid lies in. */
-#ifndef APPROX_RASTER_H
-#define APPROX_RASTER_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -12,5 +11,3 @@
  * number. */
 void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
                   int64_t *doubly);
-
-#endif

@@ -7,8 +7,7 @@
  * which every path is longer than its support radius is no neighbour. Paths bend at re-entrant nodes, in 3D
  * also within re-entrant edges. Cells that have only a node in common are not connected by it; the node
  * itself sees what each of these cells sees. */
-#ifndef APPROX_REACH_H
-#define APPROX_REACH_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/point_grid.h"
@@ -146,5 +145,3 @@ MUST_CHECK enum status reach_begin(const struct reach *reach, const struct reach
 MUST_CHECK enum status reach_filter(const struct reach *reach, const struct reach_shadows *shadows,
                                     double widen, int32_t *index, int64_t *count, struct reach_work *work,
                                     struct error *error);
-
-#endif

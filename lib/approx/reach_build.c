@@ -8,7 +8,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error)

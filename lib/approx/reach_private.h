@@ -1,6 +1,5 @@
 /* Parts of reach.c; private to lib/approx. */
-#ifndef APPROX_REACH_PRIVATE_H
-#define APPROX_REACH_PRIVATE_H
+#pragma once
 
 #include "approx/reach.h"
 #include "base/vector.h"
@@ -69,5 +68,3 @@ static inline bool reach_is_hidden(const struct reach_work *work, int32_t node)
 {
     return work->mark[node] == 2 * work->serial + 1;
 }
-
-#endif

@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Barycentric coordinates within this of 0 are on a face. */

@@ -1,7 +1,6 @@
 /* Locality: nodes and points in the order of a Morton (Z) curve, so that what a loop touches in succession
  * lies close together in memory. */
-#ifndef APPROX_RENUMBER_H
-#define APPROX_RENUMBER_H
+#pragma once
 
 #include "base/status.h"
 
@@ -11,5 +10,3 @@
  * the order given. With group[count] (else NULL) all of a lower group come before a higher one. */
 MUST_CHECK enum status renumber_morton(int dim, int64_t count, const double *x, const int32_t *group,
                                        int64_t *order, struct error *error);
-
-#endif

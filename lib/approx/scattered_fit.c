@@ -8,7 +8,6 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 /* Singular values below this share of the largest are noise: the points do not determine that combination. */
 static const double cut = 1e-5;
@@ -257,9 +256,7 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
         weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
         root[i] = sqrt(weight);
         total += weight;
-        for (int a = 0; a < dim; a++) {
-            mean[a] += weight * fit->row[nearest->row[i] * fit->row_size + a];
-        }
+        add_scaled(dim, weight, fit->row + nearest->row[i] * fit->row_size, mean);
     }
     for (int a = 0; a < dim; a++) {
         mean[a] /= total;

@@ -5,8 +5,7 @@
  * scaled coordinates, and the remainder by the quadratic monomials. Combinations of monomials that the points
  * do not determine (singular values below a cut) are left out, so that the fit is constant along directions
  * in which nothing was measured. Linear fields are reproduced, however few the points. */
-#ifndef APPROX_SCATTERED_FIT_H
-#define APPROX_SCATTERED_FIT_H
+#pragma once
 
 #include "approx/point_grid.h"
 #include "approx/ways.h"
@@ -38,5 +37,3 @@ void scattered_fit_free(struct scattered_fit *fit);
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
                                               double *values, double *distance, double *spacing,
                                               struct error *error);
-
-#endif

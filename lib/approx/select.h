@@ -1,6 +1,5 @@
 /* Choosing nodes, facets and cells by where they are. */
-#ifndef APPROX_SELECT_H
-#define APPROX_SELECT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -52,5 +51,3 @@ MUST_CHECK enum status items_near(const struct items *items, const struct pieces
 
 /* Distance of a point to a piece, m. */
 double piece_distance(const struct pieces *pieces, int64_t piece, const double *point);
-
-#endif

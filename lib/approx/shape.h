@@ -1,7 +1,6 @@
 /* Tables of shape functions: values and gradients at points (equations (3) and (4) of lib/README.md), and
  * averages over faces of cells (equation (6) of lib/README.md). */
-#ifndef APPROX_SHAPE_H
-#define APPROX_SHAPE_H
+#pragma once
 
 #include "approx/face_rows.h"
 #include "approx/mls.h"
@@ -53,5 +52,3 @@ MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *
                                            const char *what, const struct faces *faces,
                                            struct face_averages *averages, struct error *error);
 void face_averages_free(struct face_averages *averages);
-
-#endif

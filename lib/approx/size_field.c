@@ -4,7 +4,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* The order of the error of the gradient. */
 static const double gradient_order = 1.0;

@@ -11,8 +11,7 @@
  *
  * with e such that the second holds, also where bounds on h_new prevent the first; but for cells that already
  * are about as small as any may be. */
-#ifndef APPROX_SIZE_FIELD_H
-#define APPROX_SIZE_FIELD_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -48,5 +47,3 @@ MUST_CHECK enum status size_field_build(const struct cells *cells, const double 
                                         const struct size_field_request *request, struct size_field *field,
                                         struct error *error);
 void size_field_free(struct size_field *field);
-
-#endif

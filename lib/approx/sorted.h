@@ -1,6 +1,5 @@
 /* Sets of node indices as ascending lists without repeats: unions, and places within them. */
-#ifndef APPROX_SORTED_H
-#define APPROX_SORTED_H
+#pragma once
 
 #include <stdint.h>
 
@@ -10,5 +9,3 @@ int64_t sorted_union(const int32_t *a, int64_t count_a, const int32_t *b, int64_
 
 /* place[count]: where each of the indices stands in the list `within`, which holds them all. */
 void sorted_places(const int32_t *index, int64_t count, const int32_t *within, int32_t *place);
-
-#endif

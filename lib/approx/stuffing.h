@@ -7,8 +7,7 @@
  * with good dihedral angles, ACM Trans. Graph. 26 (2007), 57, whose angles lie between 10.7 and 164.8
  * degrees. Where three labels meet, nodes are moved onto their common line and cells are improved by moving
  * nodes; the bounds of struct stuffing tell what holds. */
-#ifndef APPROX_STUFFING_H
-#define APPROX_STUFFING_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/labels.h"
@@ -86,5 +85,3 @@ MUST_CHECK enum status stuffing_find_apart(const struct labels *labels, const bo
 /* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
  * one without volume or inverted. */
 void simplex_angles(int dim, const double *const x[], double angles[2]);
-
-#endif

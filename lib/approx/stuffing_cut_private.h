@@ -1,6 +1,5 @@
 /* Cutting the cells of a lattice, private to stuffing_cut.c and stuffing_second.c. */
-#ifndef APPROX_STUFFING_CUT_PRIVATE_H
-#define APPROX_STUFFING_CUT_PRIVATE_H
+#pragma once
 
 #include "approx/stuffing_private.h"
 
@@ -46,5 +45,3 @@ MUST_CHECK enum status cutting_again(struct cutting *cutting, struct cutting_pie
 
 /* Find where the second cuts that were collected lie, and number them behind the other nodes. */
 MUST_CHECK enum status cutting_seconds(struct cutting *cutting, struct error *error);
-
-#endif

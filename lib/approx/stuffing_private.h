@@ -1,6 +1,5 @@
 /* The steps of stuffing_make, private to lib/approx. */
-#ifndef APPROX_STUFFING_PRIVATE_H
-#define APPROX_STUFFING_PRIVATE_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/stuffing.h"
@@ -241,5 +240,3 @@ MUST_CHECK enum status stuffing_volumes(const struct shaping *shaping, const str
 
 /* Move a node towards `target` as far as its cells allow. */
 void star_move(const struct shaping *shaping, int64_t node, const double target[]);
-
-#endif

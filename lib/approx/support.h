@@ -1,7 +1,6 @@
 /* Support domains: the radius R_j of each node, and the neighbour lists of points, equation (1) of
  * lib/README.md. */
-#ifndef APPROX_SUPPORT_H
-#define APPROX_SUPPORT_H
+#pragma once
 
 #include "approx/mls.h"
 #include "approx/point_grid.h"
@@ -81,5 +80,3 @@ void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages. */
 void point_text(int dim, const double *x, char text[96]);
-
-#endif

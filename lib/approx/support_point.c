@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double widen_step = 1.05;

@@ -1,6 +1,5 @@
 /* What support.c and support_point.c share; private to lib/approx. */
-#ifndef APPROX_SUPPORT_PRIVATE_H
-#define APPROX_SUPPORT_PRIVATE_H
+#pragma once
 
 #include "approx/support.h"
 
@@ -41,5 +40,3 @@ static inline int32_t search_body(const struct search *search, int64_t p)
 {
     return search->body_of != NULL ? search->body_of[p] : 0;
 }
-
-#endif

@@ -5,8 +5,7 @@
  * kink at an interface, as a displacement has where the stiffness jumps. What lies on an interface, a point
  * of a face or a node, takes the lowest of the sides that meet there: the field there has the same value from
  * every side. */
-#ifndef APPROX_SUPPORT_SPACE_H
-#define APPROX_SUPPORT_SPACE_H
+#pragma once
 
 #include "approx/support.h"
 
@@ -47,5 +46,3 @@ MUST_CHECK enum status support_space_lists(const struct support_options *options
                                            const struct reach_places *places, int64_t count, const double *x,
                                            const char *what, struct support_lists *lists,
                                            struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of a body that are thin compared with its cells: they are too stiff in bending. */
-#ifndef APPROX_THIN_H
-#define APPROX_THIN_H
+#pragma once
 
 #include "approx/cells.h"
 
@@ -17,5 +16,3 @@ struct thin_report {
 /* Errors: as cells_across; STATUS_SYSTEM (memory). */
 MUST_CHECK enum status cells_find_thin(const struct cells *cells, double bound, struct thin_report *report,
                                        struct error *error);
-
-#endif

@@ -4,8 +4,7 @@
  * between the two nodes stays within the cells (see reach.h), or when a way along edges of the cells is at
  * most twice as long as that segment: around mild folds of the boundary, but not from one lip of a slit to
  * the other. */
-#ifndef APPROX_WAYS_H
-#define APPROX_WAYS_H
+#pragma once
 
 #include "approx/reach.h"
 #include "base/queue.h"
@@ -34,5 +33,3 @@ void ways_free(struct ways *ways);
 void ways_begin(struct ways *ways, int32_t from);
 
 MUST_CHECK enum status ways_reach(struct ways *ways, int64_t place, bool *reached, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Weight functions of moving least squares, on the relative distance r = |x - x_j| / R_j within [0, 1):
  * equation (1) of lib/README.md. */
-#ifndef APPROX_WEIGHT_H
-#define APPROX_WEIGHT_H
+#pragma once
 
 #include <math.h>
 
@@ -47,5 +46,3 @@ WEIGHT_FORMULA weight_evaluate(enum weight_function function, double r2, double 
         weight_quartic(r2, value, slope_over_r);
     }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The box around points, along the axes. */
-#ifndef BASE_BOX_H
-#define BASE_BOX_H
+#pragma once
 
 #include <stdint.h>
 
@@ -21,5 +20,3 @@ void box_add(struct box *box, int64_t count, const double *x);
 /* Its longest side, and its diagonal, in the units of x. */
 double box_side(const struct box *box);
 double box_diagonal(const struct box *box);
-
-#endif

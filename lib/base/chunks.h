@@ -1,8 +1,7 @@
 /* How threads share a long loop: in chunks. How many there are and where they begin depends on the length of
  * the loop alone, so that a sum of the chunks' sums, added in their order, has the same bits for any number
  * of threads. A loop that is not worth a second thread is one chunk: a plain sum. */
-#ifndef BASE_CHUNKS_H
-#define BASE_CHUNKS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -24,5 +23,3 @@ struct chunks chunks_for_threads(int64_t items, int64_t work, int64_t worthwhile
 
 /* First item of a chunk; that of chunk `count` is `items`. */
 int64_t chunks_begin(const struct chunks *chunks, int64_t chunk);
-
-#endif

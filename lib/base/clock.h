@@ -1,8 +1,5 @@
 /* A stopwatch for cost reports. It never enters a result. */
-#ifndef BASE_CLOCK_H
-#define BASE_CLOCK_H
+#pragma once
 
 /* Seconds of a clock that only goes forward. */
 double clock_seconds(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small dense symmetric systems by Cholesky factors (Golub and Van Loan, Matrix Computations, 4.2). */
-#ifndef BASE_DENSE_H
-#define BASE_DENSE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -14,5 +13,3 @@ void dense_solve(int64_t n, const double *factor, double *x);
 
 /* The factor becomes A^-1, both triangles. */
 void dense_invert(int64_t n, double *factor);
-
-#endif

@@ -1,6 +1,5 @@
 /* Eigenvalues of small symmetric matrices. */
-#ifndef BASE_EIGEN_H
-#define BASE_EIGEN_H
+#pragma once
 
 enum { EIGEN_MOST = 6 }; /* rows at most */
 
@@ -8,5 +7,3 @@ enum { EIGEN_MOST = 6 }; /* rows at most */
  * symmetric matrix A[n * n], row-major, by cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations,
  * 8.5). */
 void eigen_symmetric(int n, const double *A, double *values, double *V);
-
-#endif

@@ -1,8 +1,7 @@
 /* Cholesky factorization of a sparse symmetric positive definite matrix within its envelope (skyline), rows
  * reordered by reverse Cuthill-McKee; long rows and those that depend on others most come last. For
  * constraint systems: factored once, solved every step. */
-#ifndef BASE_ENVELOPE_H
-#define BASE_ENVELOPE_H
+#pragma once
 
 #include "base/ranks.h"
 
@@ -42,5 +41,3 @@ void envelope_solve_shared(const struct envelope *factor, const struct ranks *ra
 
 /* Solve in place, blocks by several threads: x[n] holds the right-hand side, then the solution. */
 void envelope_solve(const struct envelope *factor, double *x);
-
-#endif

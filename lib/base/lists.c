@@ -58,3 +58,15 @@ int compare_int32(const void *left, const void *right)
 {
     return compare_numbers(1, left, right);
 }
+
+int compare_int64(const void *left, const void *right)
+{
+    const int64_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+int compare_double(const void *left, const void *right)
+{
+    const double *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}

@@ -1,6 +1,5 @@
 /* Lists of lists (CSR): row r has idx[ptr[r]] to before idx[ptr[r + 1]]. */
-#ifndef BASE_LISTS_H
-#define BASE_LISTS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -30,7 +29,7 @@ struct placed {
 /* For qsort of struct placed: ascending places, items of one place by their numbers. */
 int compare_placed(const void *left, const void *right);
 
-/* For qsort and bsearch of int32_t, ascending. */
+/* For qsort and bsearch, ascending: of such numbers, and of structs that begin with one. */
 int compare_int32(const void *left, const void *right);
-
-#endif
+int compare_int64(const void *left, const void *right);
+int compare_double(const void *left, const void *right);

@@ -1,6 +1,5 @@
 /* Checked allocation: sizes are overflow-checked, failures become a status. */
-#ifndef BASE_MEMORY_H
-#define BASE_MEMORY_H
+#pragma once
 
 #include "base/status.h"
 
@@ -82,5 +81,3 @@ void owned_free(struct owned *owned);
             goto done;                                                                                       \
         }                                                                                                    \
     } while (0)
-
-#endif

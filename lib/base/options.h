@@ -1,6 +1,5 @@
 /* Strict command lines: an unknown or repeated option, a missing value or trailing junk is an error. */
-#ifndef BASE_OPTIONS_H
-#define BASE_OPTIONS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -74,5 +73,3 @@ MUST_CHECK enum status parse_length(const char *text, const char *what, double *
 /* Index of `text` among `count` choices; the error lists them. */
 MUST_CHECK enum status parse_choice(const char *text, const char *what, const char *const choices[],
                                     int count, int *index, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Kernels that are compiled for several instruction sets, and which of these the processor runs. */
-#ifndef BASE_PROCESSOR_H
-#define BASE_PROCESSOR_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ bool processor_has(const char *set);
 
 /* The last of "plain", "avx2", "avx512" that it runs. */
 const char *processor_best_set(void);
-
-#endif

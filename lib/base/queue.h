@@ -1,7 +1,6 @@
 /* Ends of ways by their lengths, the shortest first: a binary heap, for the shortest ways through a graph
  * (Dijkstra's algorithm). Zero-initialised it is empty. */
-#ifndef BASE_QUEUE_H
-#define BASE_QUEUE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -24,5 +23,3 @@ MUST_CHECK enum status queue_push(struct queue *queue, double length, int32_t no
 struct way_end queue_pop(struct queue *queue);
 
 void queue_free(struct queue *queue);
-
-#endif

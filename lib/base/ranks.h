@@ -5,8 +5,7 @@
  *
  * How they talk is the caller's (tools/mpi): the library knows no MPI. NULL in the place of a struct ranks is
  * one process: nothing is sent, nothing is copied. */
-#ifndef BASE_RANKS_H
-#define BASE_RANKS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -99,5 +98,3 @@ void halo_free(struct halo *halo);
 void halo_begin(const struct halo *halo, int width, const double *x);
 void halo_finish(const struct halo *halo, int width, double *x);
 void halo_exchange(const struct halo *halo, int width, double *x);
-
-#endif

@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Numbers of rows for each process. */
@@ -106,7 +105,6 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
     const struct ranks *ranks = rows->ranks;
     SCRATCH int64_t *send_first = NULL, *first = NULL;
     SCRATCH char *sent = NULL, *got = NULL;
-    char *at;
     RETURN_IF_ERROR(NEW_ARRAY(&send_first, ranks->count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&first, ranks->count + 1, error));
     for (int r = 0; r < ranks->count; r++) {
@@ -121,7 +119,7 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
     }
     RETURN_IF_ERROR(NEW_ARRAY(&sent, send_first[ranks->count] * (int64_t)size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&got, first[ranks->count] * (int64_t)size, error));
-    at = sent;
+    char *at = sent;
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
         size_t bytes = (size_t)length_of(rows, halo->send[i]) * size;
         memcpy(at, from + (size_t)rows->ptr[halo->send[i]] * size, bytes);

@@ -1,7 +1,6 @@
 /* Rows of a large table of which each process has read some, and needs others: from where they were read they
  * go to where they are needed, so that no process ever has all. */
-#ifndef BASE_READ_ROWS_H
-#define BASE_READ_ROWS_H
+#pragma once
 
 #include "base/ranks.h"
 #include "base/sparse.h"
@@ -25,5 +24,3 @@ MUST_CHECK enum status read_rows_with(const struct read_rows *rows,
 /* The rows that are wanted here, wanted[row_count]; others are empty. All processes call this together. */
 MUST_CHECK enum status read_rows_fetch(const struct read_rows *rows, const bool *wanted,
                                        struct sparse *fetched, struct error *error);
-
-#endif

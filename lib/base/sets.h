@@ -1,7 +1,6 @@
 /* Sets of numbers 0, 1, ... that are joined (union and find): first[i] is an earlier member of the set of i,
  * or i itself, which it is at first. */
-#ifndef BASE_SETS_H
-#define BASE_SETS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ static inline void set_join_cells(int64_t node_count, int64_t cells, int corners
         set_join(first, node[i / corners * corners], node[i]);
     }
 }
-
-#endif

@@ -4,7 +4,6 @@
 #include "base/lists.h"
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */

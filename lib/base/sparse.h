@@ -1,8 +1,7 @@
 /* Sparse matrices by rows (CSR), which act on fields: the rows of a vector are numbers, or the components of
  * a displacement or force. Each row is summed by one thread and in one order, so that any number of threads
  * gives the same bits. */
-#ifndef BASE_SPARSE_H
-#define BASE_SPARSE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -36,5 +35,3 @@ void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last,
 /* y += A x, likewise, in the order of the entries. */
 void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,
                      double *y);
-
-#endif

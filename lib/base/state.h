@@ -3,8 +3,7 @@
  * Each module that keeps something from step to step has a function MODULE_state that lists it. One list
  * serves both ways: the visitor either copies the values, or replaces them by those that were kept. What a
  * run computes afresh in each step, or from its input, is no state. */
-#ifndef BASE_STATE_H
-#define BASE_STATE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -35,5 +34,3 @@ typedef enum status state_function(void *owner, const struct state *state, struc
  * count that was kept. */
 MUST_CHECK enum status state_visit(const struct state *state, const char *prefix,
                                    const struct state_value values[], int64_t count, struct error *error);
-
-#endif

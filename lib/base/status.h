@@ -4,8 +4,7 @@
  * GSL by default ends the process when one of its functions fails. The library does not change that, as it
  * holds for the whole process: a program calls gsl_set_error_handler_off() first, and then memory that GSL
  * lacks (load curves, tables of displacements, random clouds) is a status as well. */
-#ifndef BASE_STATUS_H
-#define BASE_STATUS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -53,5 +52,3 @@ bool text_ends(const char *text, const char *ending);
 
 /* fail() with the out-of-memory message for `what`. */
 enum status fail_memory(struct error *error, const char *what);
-
-#endif

@@ -1,6 +1,5 @@
 /* Vectors of dim components, 2 or 3, and determinants. */
-#ifndef BASE_VECTOR_H
-#define BASE_VECTOR_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -89,5 +88,3 @@ static inline double determinant3(const double *a, const double *b, const double
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
-
-#endif

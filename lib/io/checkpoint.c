@@ -1,6 +1,7 @@
 #include "io/checkpoint.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -170,36 +171,30 @@ static enum status sync_folder(const char *file, struct error *error)
     if (folder == NULL) {
         return fail_memory(error, file);
     }
-    enum status status = STATUS_OK;
-    int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    FREED_BY(descriptor_close) int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0 || (fsync(descriptor) != 0 && errno != EINVAL)) { /* EINVAL: it has none to offer */
-        status = fail_file(folder, error);
+        return fail_file(folder, error);
     }
-    if (descriptor >= 0) {
-        close(descriptor);
-    }
-    return status;
+    return STATUS_OK;
 }
 
 enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
                              struct error *error)
 {
-    enum status status;
-    char *new = NULL, *old = NULL;
-    TRY(sibling_name(file, ".new", &new, error));
-    TRY(sibling_name(file, ".old", &old, error));
-    TRY(check_regular(file, error));
-    TRY(write_new(new, stream, error));
-    if ((keep_old && rename(file, old) != 0 && errno != ENOENT) || rename(new, file) != 0) {
-        TRY(fail_file(file, error));
+    SCRATCH char *new = NULL, *old = NULL;
+    RETURN_IF_ERROR(sibling_name(file, ".new", &new, error));
+    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
+    RETURN_IF_ERROR(check_regular(file, error));
+    enum status status = write_new(new, stream, error);
+    if (status == STATUS_OK &&
+        ((keep_old && rename(file, old) != 0 && errno != ENOENT) || rename(new, file) != 0)) {
+        status = fail_file(file, error);
     }
-    TRY(sync_folder(file, error));
-done:
-    if (status != STATUS_OK && new != NULL) {
+    if (status != STATUS_OK) {
         unlink(new);
+        return status;
     }
-    FREE_ALL(new, old);
-    return status;
+    return sync_folder(file, error);
 }
 
 enum status checkpoint_remove(const char *file, struct error *error)
@@ -219,46 +214,36 @@ enum status checkpoint_remove(const char *file, struct error *error)
 static enum status read_one(const char *name, struct stream *stream, bool *exists, struct error *error)
 {
     stream_init(stream);
-    int descriptor = open(name, O_RDONLY | O_CLOEXEC);
+    FREED_BY(descriptor_close) int descriptor = open(name, O_RDONLY | O_CLOEXEC);
     *exists = descriptor >= 0 || errno != ENOENT;
-    if (descriptor < 0) {
-        return fail_file(name, error);
-    }
-    enum status status = stream_read(stream, descriptor, name, error);
-    close(descriptor);
-    return status;
+    return descriptor < 0 ? fail_file(name, error) : stream_read(stream, descriptor, name, error);
 }
 
 enum status checkpoint_read(const char *file, const struct checkpoint_identity *identity,
                             struct stream *stream, enum checkpoint_source *source, int64_t *step,
                             struct error *error)
 {
-    enum status status;
     struct error later;
-    char *old = NULL;
+    SCRATCH char *old = NULL;
     bool exists, old_exists;
     *source = CHECKPOINT_NEWEST;
     stream_init(stream);
-    TRY(check_regular(file, error));
-    TRY(sibling_name(file, ".old", &old, error));
-    status = read_one(file, stream, &exists, error);
-    if (status != STATUS_OK) {
+    RETURN_IF_ERROR(check_regular(file, error));
+    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
+    if (read_one(file, stream, &exists, error) != STATUS_OK) {
         *source = CHECKPOINT_OLD;
         enum status older = read_one(old, stream, &old_exists, &later);
         if (older != STATUS_OK && !exists && !old_exists) {
             *source = CHECKPOINT_NONE;
-            status = STATUS_OK;
-            goto done;
+            return STATUS_OK;
         }
         if (older != STATUS_OK) {
             struct error why = exists ? *error : later;
-            status = fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew", why.text, old);
-            goto done;
+            return fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew", why.text, old);
         }
     }
-    TRY(check_identity(stream, *source == CHECKPOINT_OLD ? old : file, identity, step, error));
-done:
-    free(old);
+    enum status status =
+        check_identity(stream, *source == CHECKPOINT_OLD ? old : file, identity, step, error);
     if (status != STATUS_OK) {
         stream_free(stream);
     }

@@ -4,8 +4,7 @@
  * machine stops, one of them is whole. It is a binary stream like any other, for mts to look into: section
  * `checkpoint` tells what it belongs to, `state.*` hold the run's values, and whatever else the caller put.
  */
-#ifndef IO_CHECKPOINT_H
-#define IO_CHECKPOINT_H
+#pragma once
 
 #include "base/state.h"
 #include "io/scene.h"
@@ -51,5 +50,3 @@ MUST_CHECK enum status checkpoint_read(const char *file, const struct checkpoint
 /* The state in a stream, to be handed to a run; the stream must outlive it. A visit fails with STATUS_INPUT
  * where a value is missing or of another size. */
 struct state checkpoint_state(const struct stream *stream);
-
-#endif

@@ -2,6 +2,7 @@
 #include "io/checkpoint.h"
 
 #include "base/memory.h"
+#include "io/descriptor.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,23 +16,15 @@ enum { BLOCK = 1 << 16 };
 /* Go on with the bytes of a file. */
 static enum status add_file(const char *file, uLong *crc, struct error *error)
 {
-    enum status status = STATUS_OK;
-    unsigned char *block = NULL;
+    SCRATCH unsigned char *block = NULL;
     ssize_t count = 0;
-    int descriptor = open(file, O_RDONLY | O_CLOEXEC);
-    TRY(NEW_ARRAY(&block, BLOCK, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&block, BLOCK, error));
+    FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
     while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
         *crc = crc32_z(*crc, block, (size_t)count);
     }
-    if (descriptor < 0 || count < 0) {
-        status = fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
-    }
-done:
-    if (descriptor >= 0) {
-        close(descriptor);
-    }
-    free(block);
-    return status;
+    return descriptor < 0 || count < 0 ? fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno))
+                                       : STATUS_OK;
 }
 
 static uLong add_section(uLong crc, const struct section *section)

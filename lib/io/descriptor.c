@@ -27,3 +27,10 @@ enum status descriptor_write(int descriptor, const void *bytes, size_t size, str
     }
     return STATUS_OK;
 }
+
+void descriptor_close(const int *descriptor)
+{
+    if (*descriptor >= 0 && *descriptor != STDIN_FILENO) {
+        close(*descriptor);
+    }
+}

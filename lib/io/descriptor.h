@@ -1,6 +1,5 @@
 /* Reading and writing by descriptors, past signals and short writes. */
-#ifndef IO_DESCRIPTOR_H
-#define IO_DESCRIPTOR_H
+#pragma once
 
 #include "base/status.h"
 
@@ -12,4 +11,5 @@ MUST_CHECK enum status descriptor_read(int descriptor, void *bytes, size_t size,
 /* Write all `size` bytes. The message of a failure is the cause alone. */
 MUST_CHECK enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error);
 
-#endif
+/* Close it, unless it is -1 or standard input: for FREED_BY. */
+void descriptor_close(const int *descriptor);

@@ -1,7 +1,6 @@
 /* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii), plain or compressed by gzip, of either byte
  * order. */
-#ifndef IO_IMAGE_H
-#define IO_IMAGE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -60,17 +59,14 @@ struct image {
 MUST_CHECK enum status image_new(struct image *image, const size_t size[3], size_t components,
                                  struct error *error);
 
-/* Read a NIfTI file (path "-": standard input), compressed or not.
- * Space: sform where the file has one, else qform, else its voxel sizes along axes of unknown direction,
- * which is noted. Without a unit of length, mm are taken, which is noted. An image of one slice needs no size
- * across. Errors, as `PATH: ...`: STATUS_INPUT for a file that cannot be opened or is no NIfTI file of one
- * volume (other formats by name, with the remedy), for types other than enum image_datatype, for a truncated
- * or damaged file, and for a header that contradicts itself or the length of the data; STATUS_SYSTEM for read
+/* Read a NIfTI file, compressed or not, from an open descriptor, which stays open; `name` begins the
+ * messages. Space: sform where the file has one, else qform, else its voxel sizes along axes of unknown
+ * direction, which is noted. Without a unit of length, mm are taken, which is noted. An image of one slice
+ * needs no size across. Errors, as `NAME: ...`: STATUS_INPUT for a file that is no NIfTI file of one volume
+ * (other formats by name, with the remedy), for types other than enum image_datatype, for a truncated or
+ * damaged file, and for a header that contradicts itself or the length of the data; STATUS_SYSTEM for read
  * failures and memory. Time and memory are in proportion to the data that the file holds, whatever its header
  * says. On failure the image is empty. */
-MUST_CHECK enum status image_read(struct image *image, const char *path, struct error *error);
-
-/* The same from an open descriptor, which stays open; `name` begins the messages. */
 MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
                                        struct error *error);
 
@@ -99,5 +95,3 @@ void image_world(const struct image *image, const double voxel[3], double world[
 
 /* The length of a voxel along its axis, m. */
 double image_step(const struct image *image, int axis);
-
-#endif

@@ -1,6 +1,5 @@
 /* Inside of lib/io: the bytes of an image file, and the header of a NIfTI file, decoded. */
-#ifndef IO_IMAGE_PRIVATE_H
-#define IO_IMAGE_PRIVATE_H
+#pragma once
 
 #include "io/image.h"
 
@@ -71,5 +70,3 @@ void image_source_close(struct image_source *source);
 /* Take `size` bytes, or *got fewer at the end of a whole file. */
 MUST_CHECK enum status image_source_take(struct image_source *source, void *bytes, size_t size, size_t *got,
                                          struct error *error);
-
-#endif

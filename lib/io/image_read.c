@@ -5,12 +5,9 @@
 
 #include "base/memory.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const size_t block_values = 1 << 16;
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
@@ -313,19 +310,4 @@ enum status image_read_from(struct image *image, int descriptor, const char *nam
         image_free(image);
     }
     return fail_in(error, status, "%s", name);
-}
-
-enum status image_read(struct image *image, const char *path, struct error *error)
-{
-    *image = (struct image){0};
-    if (strcmp(path, "-") == 0) {
-        return image_read_from(image, STDIN_FILENO, "standard input", error);
-    }
-    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-    if (descriptor < 0) {
-        return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
-    }
-    enum status status = image_read_from(image, descriptor, path, error);
-    close(descriptor);
-    return status;
 }

@@ -1,6 +1,5 @@
 /* Values of an image between its voxels. */
-#ifndef IO_IMAGE_SAMPLE_H
-#define IO_IMAGE_SAMPLE_H
+#pragma once
 
 #include "io/image.h"
 
@@ -13,5 +12,3 @@ extern const char *const image_method_names[IMAGE_METHOD_COUNT];
  * beyond half a voxel of the outermost centres; within that half, the outermost values go on. Cubic: the
  * convolution of Keys 1981 with a = -1/2, which reproduces quadratic functions; along each axis. */
 bool image_sample(const struct image *image, enum image_method method, const double voxel[3], double *values);
-
-#endif

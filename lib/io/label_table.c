@@ -131,24 +131,16 @@ static enum status add_row(struct label_table *table, char *line, struct error *
 
 enum status label_table_read(const char *path, struct label_table *table, struct error *error)
 {
-    struct textfile file = {0};
-    enum status status;
+    FREED_BY(textfile_free) struct textfile file = {0};
     int64_t number = 1;
     *table = (struct label_table){0};
-    TRY(textfile_read(path, size_limit, &file, error));
+    RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
     for (char *rest = file.text; *rest != '\0'; number++) {
         char *line = strsep(&rest, "\n");
-        TRY(fail_in(error, add_row(table, line, error), "%s:%lld", path, (long long)number));
+        RETURN_IF_ERROR(fail_in(error, add_row(table, line, error), "%s:%lld", path, (long long)number));
     }
-    if (table->range_count == 0 && !table->others) {
-        status = fail(error, STATUS_INPUT, "%s: names no label", path);
-    }
-done:
-    textfile_free(&file);
-    if (status != STATUS_OK) {
-        label_table_free(table);
-    }
-    return status;
+    return table->range_count > 0 || table->others ? STATUS_OK
+                                                   : fail(error, STATUS_INPUT, "%s: names no label", path);
 }
 
 void label_table_free(struct label_table *table)

@@ -1,6 +1,5 @@
 /* What the labels of an image are called: a table in a text file. */
-#ifndef IO_LABEL_TABLE_H
-#define IO_LABEL_TABLE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -32,7 +31,7 @@ struct label_table {
  * others but 0; a NAME - makes these labels outside; rows of one name are one region. A third word - leaves
  * the cells out, and names their walls. '#' begins a comment. Errors, as `FILE:LINE: ...`: those of
  * textfile_read; STATUS_INPUT for other words, a number that stands twice, a name with a comma, quote or
- * colon, 'outside', and a name that is both kept and left out. On failure the table is empty. */
+ * colon, 'outside', and a name that is both kept and left out. To be freed also on failure. */
 MUST_CHECK enum status label_table_read(const char *path, struct label_table *table, struct error *error);
 void label_table_free(struct label_table *table);
 
@@ -46,5 +45,3 @@ MUST_CHECK enum status label_table_add(struct label_table *table, const struct l
 
 /* Look a label up: false where no row names it. 0 is outside, -1, without a row. */
 bool label_table_find(const struct label_table *table, int64_t label, int32_t *name);
-
-#endif

@@ -1,8 +1,7 @@
 /* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
  * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
  * of it. */
-#ifndef IO_MSH_H
-#define IO_MSH_H
+#pragma once
 
 #include "base/status.h"
 #include "io/stream.h"
@@ -113,5 +112,3 @@ void mesh_free(struct mesh *mesh);
  * facets.set if there are facets, sets.ptr and sets.idx if there are sets. The stream borrows the arrays of
  * *mesh. */
 MUST_CHECK enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error);
-
-#endif

@@ -104,8 +104,7 @@ static enum status put_named(struct stream *stream, const char *section, enum el
     if (attributes == NULL) {
         return fail_memory(error, "names");
     }
-    enum status status = stream_put(stream, section, type, rows, 1, attributes, data, false, error);
-    return status;
+    return stream_put(stream, section, type, rows, 1, attributes, data, false, error);
 }
 
 enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)

@@ -1,7 +1,7 @@
 /* The steps of mesh_build, private to lib/io. */
-#ifndef IO_MSH_BUILD_H
-#define IO_MSH_BUILD_H
+#pragma once
 
+#include "base/keyed.h"
 #include "base/status.h"
 #include "io/msh.h"
 
@@ -84,18 +84,11 @@ int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_
 
 /* ---- msh_faces.c: the faces (edges in 2D) of a mesh of simplices, to be found by their nodes ---- */
 
-struct msh_face {
-    int32_t node[3]; /* ascending; in 2D the third is -1 */
-    int32_t cell;
-    int8_t opposite; /* which node of the cell is not on it */
-    bool odd;        /* the outward order of the nodes is an odd permutation of the ascending one */
-};
-
 struct msh_faces {
     int dim;
     const int32_t *cells; /* the caller's, cell_count x (dim + 1), positively oriented */
     int64_t count;
-    struct msh_face *face; /* count, ascending */
+    struct keyed *face; /* count, sorted: cell * (dim + 1) + the node of the cell that is not on it */
 };
 
 /* Where a mesh is no mesh: two cells on the same side of a face, or three cells on one. */
@@ -114,5 +107,3 @@ int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int 
 /* The nodes of a face, oriented outward from its cell: in 2D the cell is on the left from first to second
  * node, in 3D the right-hand normal points out. */
 void msh_face_nodes(const struct msh_faces *faces, int64_t face, int32_t node[]);
-
-#endif

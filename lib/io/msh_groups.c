@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "io/msh_private.h"
 
 #include <stdio.h>
@@ -161,12 +162,6 @@ void msh_read_partitions(struct msh_reader *r)
 
 /* ---- joining them ---- */
 
-static int compare_keys(const void *left, const void *right) /* also of structs that begin with a key */
-{
-    const int64_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
 static int key_dim(int64_t key)
 {
     return (int)((key + MSH_LARGEST_TAG) >> 32) - 1;
@@ -185,7 +180,7 @@ static int64_t group_key(const struct msh_group *group)
 static int compare_group(const void *key, const void *group)
 {
     int64_t of_group = group_key(group);
-    return compare_keys(key, &of_group);
+    return compare_int64(key, &of_group);
 }
 
 /* By dimension and name, then tag. */
@@ -208,7 +203,7 @@ static struct msh_group *find_group(const struct msh *msh, int64_t key)
 static int64_t sort_keys(int64_t keys[], int64_t count)
 {
     int64_t kept = 0;
-    qsort(keys, (size_t)count, sizeof *keys, compare_keys);
+    qsort(keys, (size_t)count, sizeof *keys, compare_int64);
     for (int64_t i = 0; i < count; i++) {
         if (i == 0 || keys[i] != keys[i - 1]) {
             keys[kept++] = keys[i];
@@ -328,7 +323,7 @@ static void sort_entities(struct msh_reader *r)
     if (r->status != STATUS_OK || r->entity_count == 0) {
         return;
     }
-    qsort(r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_keys);
+    qsort(r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_int64);
     for (int64_t i = 0; i < r->entity_count; i++) {
         struct msh_entity *entity = &r->entities[i];
         int64_t *list = &r->physicals[entity->first];
@@ -354,7 +349,7 @@ static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const
     }
     const struct msh_entity *found =
         r->entity_count == 0 ? NULL
-                             : bsearch(key, r->entities, (size_t)r->entity_count, sizeof none, compare_keys);
+                             : bsearch(key, r->entities, (size_t)r->entity_count, sizeof none, compare_int64);
     if (found == NULL && r->version >= 40 && r->entity_count > 0) {
         r->status =
             fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",

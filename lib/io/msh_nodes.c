@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/memory.h"
 #include "io/msh_private.h"
 
@@ -8,13 +9,6 @@
 
 /* Tags that are spread over at most this multiple of their number get a table. */
 enum { LARGEST_SPREAD = 4 };
-
-static int compare_tags(const void *left, const void *right)
-{
-    const struct msh_place *a = left;
-    const struct msh_place *b = right;
-    return (a->tag > b->tag) - (a->tag < b->tag);
-}
 
 static void fail_repeated(struct msh_reader *r, int64_t tag)
 {
@@ -51,7 +45,7 @@ void msh_index_make(struct msh_reader *r, struct msh_index *index, int64_t count
     for (int64_t i = 0; i < count; i++) {
         index->sorted[i] = (struct msh_place){tags[i], i};
     }
-    qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_tags);
+    qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
     for (int64_t i = 1; i < count; i++) {
         if (index->sorted[i].tag == index->sorted[i - 1].tag) {
             fail_repeated(r, index->sorted[i].tag);
@@ -69,7 +63,7 @@ int64_t msh_index_find(const struct msh_index *index, int64_t tag)
     }
     struct msh_place key = {.tag = tag};
     const struct msh_place *found =
-        bsearch(&key, index->sorted, (size_t)index->count, sizeof key, compare_tags);
+        bsearch(&key, index->sorted, (size_t)index->count, sizeof key, compare_int64);
     return found != NULL ? found->place : -1;
 }
 

@@ -9,8 +9,7 @@
  * returns without effect, numbers are the least that was allowed, and loops stop at `reader->status`. No
  * count is believed before as many records can be in the rest of the file. (Format: Geuzaine and Remacle,
  * Gmsh reference manual, "File formats".) */
-#ifndef IO_MSH_PRIVATE_H
-#define IO_MSH_PRIVATE_H
+#pragma once
 
 #include "base/memory.h"
 #include "base/status.h"
@@ -151,5 +150,3 @@ void msh_index_free(struct msh_index *index);
 
 /* Place of `tag`, or -1. */
 int64_t msh_index_find(const struct msh_index *index, int64_t tag);
-
-#endif

@@ -115,20 +115,13 @@ static enum status read_file(struct ini_file *file, struct scene *scene, struct 
 
 enum status scene_read(const char *path, struct scene *scene, struct error *error)
 {
-    struct ini_file file = {0};
-    enum status status;
+    FREED_BY(ini_free) struct ini_file file = {0};
     *scene = (struct scene){.path = path, .title = ""};
     scene->solver = (struct scene_solver){.tolerance = 1e-5, .time_step_margin = .9};
-    TRY(read_file(&file, scene, error));
+    RETURN_IF_ERROR(read_file(&file, scene, error));
     scene->checksum = file.checksum;
-    TRY(read_sections(&file, scene, error));
-    TRY(check_whole(scene, error));
-done:
-    ini_free(&file);
-    if (status != STATUS_OK) {
-        scene_free(scene);
-    }
-    return status;
+    RETURN_IF_ERROR(read_sections(&file, scene, error));
+    return check_whole(scene, error);
 }
 
 void scene_free(struct scene *scene)

@@ -27,8 +27,7 @@
  *   time_step_margin (0..1)
  *
  * unit = m|cm|mm|um is the unit of the lengths in a table; curve = smooth (default)|linear|step|FILE. */
-#ifndef IO_SCENE_H
-#define IO_SCENE_H
+#pragma once
 
 #include "base/memory.h"
 
@@ -194,10 +193,8 @@ struct scene {
 
 /* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as
  * `FILE:LINE: [kind NAME]: key: what: remedy`: STATUS_INPUT for anything malformed, STATUS_SYSTEM for read
- * failures and memory. On failure the scene is empty. */
+ * failures and memory. The scene is to be freed also on failure. */
 MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct error *error);
 
 /* Release everything the scene owns; it becomes empty. */
 void scene_free(struct scene *scene);
-
-#endif

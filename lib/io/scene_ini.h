@@ -1,6 +1,5 @@
 /* An INI file as sections and entries with their lines, before any meaning. Inside of lib/io only. */
-#ifndef IO_SCENE_INI_H
-#define IO_SCENE_INI_H
+#pragma once
 
 #include "base/memory.h"
 
@@ -41,5 +40,3 @@ const struct ini_entry *ini_find(const struct ini_section *section, const char *
 
 /* The length of a text without the blanks at its end. */
 size_t ini_trimmed(const char *text, size_t length);
-
-#endif

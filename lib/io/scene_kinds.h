@@ -1,6 +1,5 @@
 /* The kinds of section of a scene: their keys, and how they fill the struct. Inside of lib/io only. */
-#ifndef IO_SCENE_KINDS_H
-#define IO_SCENE_KINDS_H
+#pragma once
 
 #include "base/status.h"
 #include "io/scene.h"
@@ -19,5 +18,3 @@ struct scene_kind {
 
 /* The kind of the section; an error for another name, or a key that the kind has not. */
 MUST_CHECK enum status scene_kind_find(const struct place *place, const struct scene_kind **kind);
-
-#endif

@@ -1,7 +1,6 @@
 /* One section of a scene: its values, read as its keys are declared, and what has to be said of them.
  * Inside of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
-#ifndef IO_SCENE_VALUE_H
-#define IO_SCENE_VALUE_H
+#pragma once
 
 #include "base/status.h"
 #include "io/scene.h"
@@ -81,5 +80,3 @@ MUST_CHECK enum status place_only_keys(const struct place *place, const char *co
 /* A text as of printf, which the scene owns. */
 MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-#endif

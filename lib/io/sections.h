@@ -1,7 +1,6 @@
 /* The sections that the programs know: the one table from which come what `mts check` expects of each, which
  * sections are void when an earlier stage is run again, and how a body is cut into parts and put together. */
-#ifndef IO_SECTIONS_H
-#define IO_SECTIONS_H
+#pragma once
 
 #include "io/stream.h"
 
@@ -62,5 +61,3 @@ void sections_remove(struct stream *stream, enum section_stage first, enum secti
 
 /* K of a section X.frame.K; FRAME_NONE for another section. *length receives that of X. */
 int64_t frame_of(const char *name, size_t *length);
-
-#endif

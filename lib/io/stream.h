@@ -1,7 +1,6 @@
 /* The stream "mts 1" (see mts(5)): named, typed tables that travel through a pipe, as text or binary.
  * Rows count from 0, in messages too. */
-#ifndef IO_STREAM_H
-#define IO_STREAM_H
+#pragma once
 
 #include "base/status.h"
 
@@ -99,5 +98,3 @@ size_t element_size(enum element_type type);
 
 /* "f8" etc. */
 const char *element_type_name(enum element_type type);
-
-#endif

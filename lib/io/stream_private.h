@@ -1,6 +1,5 @@
 /* What the files of the stream share: limits, buffered input, header lines, numbers as text. */
-#ifndef IO_STREAM_PRIVATE_H
-#define IO_STREAM_PRIVATE_H
+#pragma once
 
 #include "io/stream.h"
 
@@ -111,5 +110,3 @@ enum { NUMBER_TEXT_LIMIT = 32 };
 size_t number_format_integer(char *text, int64_t value);
 size_t number_format_double(char *text, double value);
 size_t number_format_float(char *text, float value);
-
-#endif

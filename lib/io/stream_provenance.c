@@ -108,8 +108,6 @@ enum status stream_add_provenance(struct stream *stream, int argc, char *const a
         append_text(line, " ");
         append_quoted(line, argv[i]);
     }
-    enum status status =
-        line->full ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
-                   : stream_append_provenance(stream, line->text, line->length, error);
-    return status;
+    return line->full ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
+                      : stream_append_provenance(stream, line->text, line->length, error);
 }

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <locale.h>
-#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 

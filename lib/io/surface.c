@@ -146,31 +146,24 @@ static enum status read_ascii_stl(const char *path, const struct textfile *file,
 
 static enum status read_stl(const char *path, struct table *table, struct error *error)
 {
-    struct textfile file = {0};
-    enum status status = STATUS_OK;
+    FREED_BY(textfile_free) struct textfile file = {0};
     *table = (struct table){.cols = 9};
-    TRY(bytefile_read(path, size_limit, &file, error));
+    RETURN_IF_ERROR(bytefile_read(path, size_limit, &file, error));
     if (binary_stl_size(&file) == file.size) {
-        TRY(read_binary_stl(path, &file, table, error));
+        RETURN_IF_ERROR(read_binary_stl(path, &file, table, error));
     } else if (strncmp(file.text, "solid", 5) == 0) {
-        TRY(textfile_check(path, &file, error));
-        TRY(read_ascii_stl(path, &file, table, error));
+        RETURN_IF_ERROR(textfile_check(path, &file, error));
+        RETURN_IF_ERROR(read_ascii_stl(path, &file, table, error));
     } else {
-        TRY(fail(
+        return fail(
             error, STATUS_INPUT,
             "%s: neither ASCII STL (first word 'solid') nor binary STL of the size in its header: truncated?",
-            path));
+            path);
     }
     if (table->rows == 0) {
-        TRY(fail(error, STATUS_INPUT, "%s: holds no triangle", path));
+        return fail(error, STATUS_INPUT, "%s: holds no triangle", path);
     }
-    TRY(table_end_block(table, error));
-done:
-    textfile_free(&file);
-    if (status != STATUS_OK) {
-        table_free(table);
-    }
-    return status;
+    return table_end_block(table, error);
 }
 
 static enum status check_curves(const char *path, const struct table *table, struct error *error)
@@ -213,18 +206,11 @@ static enum status check_triangles(const char *path, const struct table *table, 
 enum status surface_read(const char *path, int dim, struct table *table, struct error *error)
 {
     size_t length = strlen(path);
-    enum status status = STATUS_OK;
     if (dim == 2) {
-        TRY(table_read(path, 2, 2, table, error));
-        TRY(check_curves(path, table, error));
-    } else {
-        bool stl = length > 4 && strcasecmp(path + length - 4, ".stl") == 0;
-        TRY(stl ? read_stl(path, table, error) : table_read(path, 9, 9, table, error));
-        TRY(check_triangles(path, table, error));
+        RETURN_IF_ERROR(table_read(path, 2, 2, table, error));
+        return check_curves(path, table, error);
     }
-done:
-    if (status != STATUS_OK) {
-        table_free(table);
-    }
-    return status;
+    bool stl = length > 4 && strcasecmp(path + length - 4, ".stl") == 0;
+    RETURN_IF_ERROR(stl ? read_stl(path, table, error) : table_read(path, 9, 9, table, error));
+    return check_triangles(path, table, error);
 }

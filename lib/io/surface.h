@@ -1,6 +1,5 @@
 /* The surface of a rigid body, read from a file. */
-#ifndef IO_SURFACE_H
-#define IO_SURFACE_H
+#pragma once
 
 #include "base/status.h"
 #include "io/table.h"
@@ -11,5 +10,3 @@
  * right-hand normal of the corners counts, the normals stated in an STL file do not. Errors as table_read;
  * curves of one point, triangles without area and segments without length are errors. */
 MUST_CHECK enum status surface_read(const char *path, int dim, struct table *table, struct error *error);
-
-#endif

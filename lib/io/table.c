@@ -111,35 +111,28 @@ static enum status check_columns(const char *path, int64_t line, const struct ta
 static enum status read_form(const char *path, const struct form *form, struct table *table,
                              struct error *error)
 {
-    struct textfile file = {0};
+    FREED_BY(textfile_free) struct textfile file = {0};
     int64_t room = 0;
     int64_t line = 1;
-    enum status status = STATUS_OK;
     *table = (struct table){0};
-    TRY(textfile_read(path, size_limit, &file, error));
+    RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
     for (const char *at = file.text; *at != '\0'; at = strchr(at, '\n') + 1, line++) {
         double row[COLUMN_LIMIT];
         int count;
         if (is_blank_line(at)) {
-            TRY(table_end_block(table, error));
+            RETURN_IF_ERROR(table_end_block(table, error));
         }
-        TRY(read_row(path, line, at, form, row, &count, error));
+        RETURN_IF_ERROR(read_row(path, line, at, form, row, &count, error));
         if (count > 0) {
-            TRY(check_columns(path, line, table, count, form, error));
+            RETURN_IF_ERROR(check_columns(path, line, table, count, form, error));
             table->cols = count;
-            TRY(table_append(table, row, line, &room, error));
+            RETURN_IF_ERROR(table_append(table, row, line, &room, error));
         }
     }
     if (table->rows == 0) {
-        TRY(fail(error, STATUS_INPUT, "%s: holds no row of numbers", path));
+        return fail(error, STATUS_INPUT, "%s: holds no row of numbers", path);
     }
-    TRY(table_end_block(table, error));
-done:
-    textfile_free(&file);
-    if (status != STATUS_OK) {
-        table_free(table);
-    }
-    return status;
+    return table_end_block(table, error);
 }
 
 enum status table_read(const char *path, int least, int most, struct table *table, struct error *error)

@@ -2,8 +2,7 @@
  *
  * One row per line, its numbers separated by blanks or tabs, all rows of one length; '#' at the start of a
  * line or after a blank begins a comment; blank lines separate blocks, as in gnuplot. */
-#ifndef IO_TABLE_H
-#define IO_TABLE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -20,7 +19,9 @@ struct table {
 
 /* Read a table of least..most columns. Errors, as `FILE:LINE: ...`: those of textfile_read; STATUS_INPUT for
  * a word that is not a finite decimal number (a decimal comma among them), rows of different lengths, a
- * number of columns outside of least..most, and a file without rows. On failure the table is empty. */
+ * number of columns outside of least..most, and a file without rows. The table is to be freed also on
+ * failure.
+ */
 MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,
                                   struct error *error);
 
@@ -37,5 +38,3 @@ MUST_CHECK enum status table_append(struct table *table, const double *row, int6
 
 /* End a block after the last row, unless it ends there already. */
 MUST_CHECK enum status table_end_block(struct table *table, struct error *error);
-
-#endif

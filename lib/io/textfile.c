@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* Looking before opening keeps devices untouched; a name changed in between can only make the read fail. */
 static enum status check_kind(const char *path, struct error *error)
@@ -79,38 +78,20 @@ enum status textfile_check(const char *path, const struct textfile *file, struct
 
 enum status bytefile_read(const char *path, size_t most, struct textfile *file, struct error *error)
 {
-    int descriptor = -1;
-    enum status status = STATUS_OK;
     *file = (struct textfile){0};
-    TRY(check_kind(path, error));
-    descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    RETURN_IF_ERROR(check_kind(path, error));
+    FREED_BY(descriptor_close) int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (descriptor < 0) {
-        TRY(fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno)));
+        return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
     }
-    TRY(read_all(path, descriptor, most, file, error));
-    if (file->size == 0) {
-        TRY(fail(error, STATUS_INPUT, "%s: is empty", path));
-    }
-done:
-    if (descriptor >= 0) {
-        close(descriptor);
-    }
-    if (status != STATUS_OK) {
-        textfile_free(file);
-    }
-    return status;
+    RETURN_IF_ERROR(read_all(path, descriptor, most, file, error));
+    return file->size > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "%s: is empty", path);
 }
 
 enum status textfile_read(const char *path, size_t most, struct textfile *file, struct error *error)
 {
-    enum status status = bytefile_read(path, most, file, error);
-    if (status == STATUS_OK) {
-        status = textfile_check(path, file, error);
-    }
-    if (status != STATUS_OK) {
-        textfile_free(file);
-    }
-    return status;
+    RETURN_IF_ERROR(bytefile_read(path, most, file, error));
+    return textfile_check(path, file, error);
 }
 
 void textfile_free(struct textfile *file)

@@ -1,6 +1,5 @@
 /* Files written by people and untrusted, read whole: scenes, tables, surfaces. */
-#ifndef IO_TEXTFILE_H
-#define IO_TEXTFILE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -16,7 +15,7 @@ struct textfile {
  * untrusted scene cannot touch a device. Errors, as `PATH:LINE: ...`: STATUS_SYSTEM for a read
  * failure; STATUS_INPUT for a file that cannot be opened, a folder or device, more than `most` bytes, an
  * empty file, a byte order mark, CRLF line ends, NUL and other control characters, and a last line without
- * newline (the mark of a truncated file). */
+ * newline (the mark of a truncated file). To be freed also on failure. */
 MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
 
@@ -29,5 +28,3 @@ MUST_CHECK enum status textfile_check(const char *path, const struct textfile *f
 
 /* Release the text; the struct becomes empty. */
 void textfile_free(struct textfile *file);
-
-#endif

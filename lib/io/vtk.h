@@ -1,6 +1,5 @@
 /* Writing node clouds with cells and fields for ParaView (VTK XML). */
-#ifndef IO_VTK_H
-#define IO_VTK_H
+#pragma once
 
 #include "base/status.h"
 #include "io/stream.h"
@@ -42,5 +41,3 @@ MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const 
 /* Write a ParaView collection: `count` files (relative to it) with their times. */
 MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
                                  struct error *error);
-
-#endif

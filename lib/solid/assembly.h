@@ -1,7 +1,6 @@
 /* Assembly: a system ready for time stepping from a cloud of nodes with its tables of shape functions,
  * materials, and conditions. All arrays are the caller's, who keeps them as long as the system. */
-#ifndef SOLID_ASSEMBLY_H
-#define SOLID_ASSEMBLY_H
+#pragma once
 
 #include "solid/condition.h"
 #include "solid/system.h"
@@ -146,5 +145,3 @@ double assembly_penalty_modulus(const struct solid_system *system, double factor
 
 /* field[node_count * dim] = u_h at the nodes. */
 void assembly_nodal_field(const struct assembly *input, const double *u, double *field);
-
-#endif

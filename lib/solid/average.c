@@ -1,4 +1,5 @@
 #include "solid/average.h"
+#include "base/vector.h"
 
 struct average average_of_boundary(const struct boundary_averages *averages, int64_t a)
 {
@@ -12,9 +13,7 @@ static inline void take(const struct average *average, int dim, const double *u,
     double sum[3] = {0.0, 0.0, 0.0};
     for (int64_t i = 0; i < average->length; i++) {
         const double *at = u + (int64_t)average->idx[i] * dim;
-        for (int a = 0; a < dim; a++) {
-            sum[a] += average->phi[i] * at[a];
-        }
+        add_scaled(dim, average->phi[i], at, sum);
     }
     for (int a = 0; a < dim; a++) {
         mean[a] = sum[a];
@@ -42,9 +41,7 @@ static inline void spread(const struct average *average, int dim, const double *
 {
     for (int64_t i = 0; i < average->length; i++) {
         int64_t node = average->idx[i];
-        for (int a = 0; a < dim; a++) {
-            u[node * dim + a] += average->phi[i] * amount[a];
-        }
+        add_scaled(dim, average->phi[i], amount, u + node * dim);
     }
 }
 

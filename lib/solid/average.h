@@ -1,7 +1,6 @@
 /* One average of a nodal field, sum_j phi_j u_j over a list of nodes (equation (17) of lib/README.md), and
  * its transpose: conditions, springs, contacts and following pressures act through such averages. */
-#ifndef SOLID_AVERAGE_H
-#define SOLID_AVERAGE_H
+#pragma once
 
 #include "approx/boundary.h"
 
@@ -25,5 +24,3 @@ void average_place(const struct average *average, int dim, const double *rest, c
 
 /* The transpose: u_j += phi_j amount[dim]. */
 void average_spread(const struct average *average, int dim, const double *amount, double *u);
-
-#endif

@@ -7,7 +7,6 @@
 #include "solid/nodal_volume.h"
 
 #include <omp.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Points of a block: its part of the operator should take a part of the second cache only. */

@@ -3,8 +3,7 @@
  * parameters: gradients of the shape functions at the points or, for smoothed cells, averages over their
  * faces (smoothed_cells.h). Total Lagrangian: all of it in the reference configuration (MTLED: Horton et al.
  * 2010). Any number of threads gives the same bits (base/sparse.h). */
-#ifndef SOLID_BODY_H
-#define SOLID_BODY_H
+#pragma once
 
 #include "base/chunks.h"
 #include "base/status.h"
@@ -188,5 +187,3 @@ void body_diagonal(struct body *body, double *stiffness);
 /* The same of smoothed cells, with the linear shape functions of the cells in place of phi, which is faster.
  * `rest`: with F = I. */
 void body_nodal_diagonal(struct body *body, bool rest, double *stiffness);
-
-#endif

@@ -7,8 +7,7 @@
  * In between, processes exchange rows at their borders: those with own nodes in them that others have
  * computed. With smoothed cells a row has forces from all cells around it; the process of the first of these
  * cells sums them. What others need is computed first, and sent while the rest is computed. */
-#ifndef SOLID_BODY_SHARE_H
-#define SOLID_BODY_SHARE_H
+#pragma once
 
 #include "base/ranks.h"
 
@@ -69,5 +68,3 @@ void body_share_exchange(const struct body_share *share, struct halo *halo, int 
 /* The nodal pressures of all at the last evaluation, here; and the state of all points. */
 void body_share_collect_pressures(struct body *body);
 void body_share_collect(struct body *body);
-
-#endif

@@ -1,5 +1,6 @@
 /* The shape functions on a cell and their mean gradients there; see smoothed_cells.h. */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/body.h"
 
 #include <string.h>
@@ -69,9 +70,7 @@ static inline void add_function(int32_t node, int dim, double factor, const doub
         functions->node[at] = node;
         memset(functions->gradient + at * dim, 0, (size_t)dim * sizeof *functions->gradient);
     }
-    for (int a = 0; a < dim; a++) {
-        functions->gradient[at * dim + a] += factor * gradient[a];
-    }
+    add_scaled(dim, factor, gradient, functions->gradient + at * dim);
 }
 
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions)

@@ -5,8 +5,7 @@
  *
  * The distance is the straight one, or half of the shortest way from neighbour to neighbour where that is
  * more: the two lips of a slit are far from each other. */
-#ifndef SOLID_COARSE_SPACE_H
-#define SOLID_COARSE_SPACE_H
+#pragma once
 
 #include "approx/shape.h"
 #include "base/status.h"
@@ -50,5 +49,3 @@ void coarse_space_restrict(const struct coarse_space *coarse, const double *weig
 
 /* u[node_count * dim] += Z amount. */
 void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u);
-
-#endif

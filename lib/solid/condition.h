@@ -1,6 +1,5 @@
 /* Prescribed displacements, as assembly takes them and messages name them. The arrays are the caller's. */
-#ifndef SOLID_CONDITION_H
-#define SOLID_CONDITION_H
+#pragma once
 
 #include "approx/boundary.h"
 #include "solid/measured.h"
@@ -30,5 +29,3 @@ struct condition {
     const double *field_phi;  /* and their shares */
     double model_error;       /* see measured.h; 0: root mean square of what was measured */
 };
-
-#endif

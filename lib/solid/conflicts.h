@@ -1,7 +1,6 @@
 /* Where facets of two conditions meet, they share nodes: each prescribes a value there. The one that comes
  * first holds the node (held_directions.h), so that another value would be left out silently. */
-#ifndef SOLID_CONFLICTS_H
-#define SOLID_CONFLICTS_H
+#pragma once
 
 #include "solid/assembly.h"
 
@@ -29,5 +28,3 @@ void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);
-
-#endif

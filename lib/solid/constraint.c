@@ -6,7 +6,6 @@
 #include "solid/inverse_factor.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row

@@ -2,8 +2,7 @@
  * Chowdhury, Wittek and Miller 2017): after the free explicit update u, the correction M^-1 G^T (G M^-1
  * G^T)^-1 (t - G u) makes the constrained averages G u meet their targets t exactly. Each row of G is one
  * average along one direction. Equations (17) and (18) of lib/README.md. */
-#ifndef SOLID_CONSTRAINT_H
-#define SOLID_CONSTRAINT_H
+#pragma once
 
 #include "base/envelope.h"
 #include "base/sparse.h"
@@ -127,5 +126,3 @@ MUST_CHECK enum status constraint_share_out(const struct constraint *constraint,
 /* Largest |target * factor - G u|, m; *row, unless NULL, receives where. */
 double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,
                             int64_t *row);
-
-#endif

@@ -1,6 +1,7 @@
 /* What rows of conditions put on nodes, node by node. */
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/constraint.h"
 
 /* Drop the nodes that are not wanted, and divide by the mass. */
@@ -58,9 +59,7 @@ void constraint_nodes_spread(const struct constraint_nodes *nodes, const double 
                 total[a] = 0.0;
             }
             for (int64_t r = rows->first[l]; r < rows->first[l + 1] && nodes->used[l]; r++) {
-                for (int a = 0; a < dim; a++) {
-                    total[a] += amount[r] * rows->direction[r * dim + a];
-                }
+                add_scaled(dim, amount[r], rows->direction + r * dim, total);
             }
         }
     }

@@ -29,8 +29,7 @@
  * An evaluation changes no state: the same parameters give the same forces, whatever was evaluated between.
  * Two functions change it, contact_accept at a step that is taken and contact_augment. The surface may move:
  * positions and multipliers are kept in the frame in which it rests. */
-#ifndef SOLID_CONTACT_H
-#define SOLID_CONTACT_H
+#pragma once
 
 #include "approx/boundary.h"
 #include "base/state.h"
@@ -182,5 +181,3 @@ struct contact_work {
 };
 struct contact_work contact_work(const struct contact *contact, const double *factor_from,
                                  const double *factor_to);
-
-#endif

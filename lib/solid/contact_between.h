@@ -14,8 +14,7 @@
  *
  * Of a boundary against itself, one of two places that face each other has the points that press
  * (opposite_leads), so that nothing is held twice. The augmentation leaves out points that are led. */
-#ifndef SOLID_CONTACT_BETWEEN_H
-#define SOLID_CONTACT_BETWEEN_H
+#pragma once
 
 #include "solid/contact.h"
 #include "solid/opposite.h"
@@ -95,5 +94,3 @@ struct average contact_bond(const struct contact *contact, int64_t b, double *st
 /* mass[node_count] += a bound of the diagonal of what the contact adds to the stiffness; between facets of
  * the body, of the points that are near some. */
 void contact_add_to_bound(const struct contact *contact, double *mass);
-
-#endif

@@ -1,6 +1,5 @@
 /* Whether the contact nodes resolve the contact area. */
-#ifndef SOLID_CONTACT_PATCH_H
-#define SOLID_CONTACT_PATCH_H
+#pragma once
 
 #include "approx/cells.h"
 #include "solid/contact.h"
@@ -24,5 +23,3 @@ struct contact_patch {
 MUST_CHECK enum status contact_patch_find(const struct contact *contact, const struct facet_set *set,
                                           const struct cells *cells, struct contact_patch *patch,
                                           struct error *error);
-
-#endif

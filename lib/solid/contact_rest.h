@@ -3,8 +3,7 @@
  * A curved boundary is known by its nodes and by the normals there, which the facets around a node give with
  * the weights of Max (1999): exact on circles and spheres, however the facets differ in size. The quadratic
  * boundary with the normals n_a lies above point p of a facet by sum_a N_a(p) (x_a - x_p) . n_a / 2. */
-#ifndef SOLID_CONTACT_REST_H
-#define SOLID_CONTACT_REST_H
+#pragma once
 
 #include "solid/contact.h"
 
@@ -18,5 +17,3 @@ MUST_CHECK enum status contact_rest_resolved(int dim, const struct boundary_aver
 /* Set contact->rest: quadrature points are raised from the chords to the boundary, boundary averages, which
  * lie below their nodes, to the nodes. Both offsets are zero on flat facets. */
 MUST_CHECK enum status contact_rest_place(struct contact *contact, const double *X, struct error *error);
-
-#endif

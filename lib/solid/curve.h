@@ -1,6 +1,5 @@
 /* Load curves: the factor of a load over the time s = t/T of the scene, 0 at its begin and 1 at its end. */
-#ifndef SOLID_CURVE_H
-#define SOLID_CURVE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -43,5 +42,3 @@ double curve_largest(const struct load_curve *curve);
 double curve_rate(const struct load_curve *curve, double s);
 
 void curve_free(struct load_curve *curve);
-
-#endif

@@ -5,8 +5,7 @@
  * The step is a share of the critical one, 2 / w, where w bounds the largest frequency of M^-1 K: a power
  * iteration at the begin, continued by one iteration every so many steps, and the contacts' stiffness on top,
  * so that a touch cannot make the step too long. The end time is hit exactly. */
-#ifndef SOLID_DYNAMICS_H
-#define SOLID_DYNAMICS_H
+#pragma once
 
 #include "solid/energy.h"
 #include "solid/progress.h"
@@ -70,5 +69,3 @@ struct dynamics_report {
 MUST_CHECK enum status dynamics_run(struct solid_system *system, const struct dynamics_options *options,
                                     double *u, double *v, double *row_force, struct energy_log *log,
                                     struct dynamics_report *report, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the parts of explicit dynamics share; see dynamics.h. */
-#ifndef SOLID_DYNAMICS_PRIVATE_H
-#define SOLID_DYNAMICS_PRIVATE_H
+#pragma once
 
 #include "solid/dynamics.h"
 
@@ -67,5 +66,3 @@ void dynamics_release(struct dynamics *d);
 
 /* What the next step needs of those before: see base/state.h. */
 MUST_CHECK enum status dynamics_visit(void *run, const struct state *state, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + energy at
  * the begin. */
-#ifndef SOLID_ENERGY_H
-#define SOLID_ENERGY_H
+#pragma once
 
 #include "solid/system.h"
 
@@ -50,5 +49,3 @@ double energy_internal(struct solid_system *system, const double *u);
 
 /* Sum over all contacts at their last evaluation. */
 double energy_contact(const struct solid_system *system);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * An evaluation computes the averages (apply), evaluates the cells, sums the forces of the corners on each
  * average, and adds these to the nodes (transposed apply), equation (12) of lib/README.md. */
-#ifndef SOLID_FIELD_AVERAGES_H
-#define SOLID_FIELD_AVERAGES_H
+#pragma once
 
 #include "approx/face_rows.h"
 #include "base/sparse.h"
@@ -64,5 +63,3 @@ MUST_CHECK enum status field_averages_copy(const struct field_averages_input *in
 MUST_CHECK enum status field_averages_drop_copied(const struct sparse *matrix,
                                                   struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);
-
-#endif

@@ -13,8 +13,7 @@
  *
  * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
  * support. The model admits it, a real plate would not. */
-#ifndef SOLID_FOLDS_H
-#define SOLID_FOLDS_H
+#pragma once
 
 #include "base/box.h"
 #include "base/lists.h"
@@ -149,5 +148,3 @@ struct fold folds_find_closed(struct folds *folds, const double *u);
  * it faced one at rest. Which of the two wraps round the other is left to rounding and to the mesh.
  * FOLD_NONE or FOLD_WRAPPED. */
 struct fold folds_find_wrapped(const struct folds *folds);
-
-#endif

@@ -1,6 +1,5 @@
 /* Geometry of cells and facets that looking for folds needs; private to lib/solid. */
-#ifndef SOLID_FOLDS_PRIVATE_H
-#define SOLID_FOLDS_PRIVATE_H
+#pragma once
 
 #include "base/vector.h"
 #include "solid/folds.h"
@@ -61,5 +60,3 @@ void folds_fill_planes(struct folds *folds, const double *y);
 /* How far the rim's node is beyond the plane of the support, m; *reach receives its distance from the rim. */
 double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y,
                         double *reach);
-
-#endif

@@ -1,8 +1,7 @@
 /* The extreme frequencies of a system at a state. The largest bounds the time step, equation (22) of
  * lib/README.md; the lowest is the rate at which a critically damped relaxation converges, and bounds its
  * error, equation (27) of lib/README.md. */
-#ifndef SOLID_FREQUENCY_H
-#define SOLID_FREQUENCY_H
+#pragma once
 
 #include "solid/preconditioner.h"
 #include "solid/system.h"
@@ -42,5 +41,3 @@ MUST_CHECK enum status system_unstable_mode(struct solid_system *system,
                                             const double *residual, const struct spectrum *spectrum,
                                             const double *start, double *scratch, struct stability *stability,
                                             struct error *error);
-
-#endif

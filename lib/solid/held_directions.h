@@ -1,8 +1,7 @@
 /* Directions that earlier displacement sections hold at each node. Where sections meet, a node's averages on
  * the two sides of the edge are nearly linearly dependent. So each section holds only the directions that are
  * not held yet, and the means over its sides carry the rest of the traction. */
-#ifndef SOLID_HELD_DIRECTIONS_H
-#define SOLID_HELD_DIRECTIONS_H
+#pragma once
 
 #include "base/status.h"
 #include "solid/constraint.h"
@@ -29,5 +28,3 @@ double held_rest(const struct held_directions *held, int32_t node, int count, co
 
 /* Note what the rows from number `first` up to `last` hold. */
 void held_note(struct held_directions *held, const struct constraint_rows *rows, int64_t first, int64_t last);
-
-#endif

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/lower_stiffness.h"
-#include "solid/scalar_stiffness.h"
 #include "solid/system.h"
 
 #include <math.h>

@@ -11,8 +11,7 @@
  * the shear modulus alone, and the penalties of conditions and contacts. Row i of
  * L has the nodes of lower number that are nearest to i, of those that S couples to it; with itself these are
  * the list p, and L_ip = y / sqrt(y_i), S_pp y = e_i. So the diagonal of L S L^T is 1. */
-#ifndef SOLID_INVERSE_FACTOR_H
-#define SOLID_INVERSE_FACTOR_H
+#pragma once
 
 #include "base/ranks.h"
 #include "base/sparse.h"
@@ -57,5 +56,3 @@ MUST_CHECK enum status inverse_factor_transform_rows(const struct inverse_factor
                                                      const struct constraint_rows *rows,
                                                      struct constraint_rows *transformed,
                                                      struct error *error);
-
-#endif

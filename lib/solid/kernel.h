@@ -1,6 +1,5 @@
 /* The kernels of the force loop, one set for each instruction set and dimension; private to lib/solid. */
-#ifndef SOLID_KERNEL_H
-#define SOLID_KERNEL_H
+#pragma once
 
 #include "solid/body.h"
 
@@ -37,5 +36,3 @@ const struct force_kernels *force_kernels_select(const char *name, int dim);
 /* What body_diagonal needs. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);
 void body_free_bounds(struct body *body);
-
-#endif

@@ -1,7 +1,6 @@
 /* Kernels over smoothed cells (equations (7) to (12) of lib/README.md): gradients from face averages and node
  * values, the neo-Hookean law, and the forces on these averages and values; private to lib/solid. */
-#ifndef SOLID_KERNEL_CELLS_H
-#define SOLID_KERNEL_CELLS_H
+#pragma once
 
 #include "solid/kernel_points.h"
 #include "solid/merged_cells.h"
@@ -239,5 +238,3 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
     write_corners(averages, 0, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_faces);
     write_corners(averages, averages->corner_count, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_nodes);
 }
-
-#endif

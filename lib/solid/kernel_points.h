@@ -1,6 +1,5 @@
 /* Kernels over integration points: volume ratios and the neo-Hookean law; private to lib/solid. */
-#ifndef SOLID_KERNEL_POINTS_H
-#define SOLID_KERNEL_POINTS_H
+#pragma once
 
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
@@ -187,5 +186,3 @@ KERNEL_INLINE void kernel_bounds(const double *restrict g, int64_t count, int di
         sum[i] = (bound > 0.0 ? bound : 0.0) + smoothing * square;
     }
 }
-
-#endif

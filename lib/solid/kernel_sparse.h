@@ -1,6 +1,5 @@
 /* Kernels over the rows of sparse operators, and what goes in and out of them; private to lib/solid. */
-#ifndef SOLID_KERNEL_SPARSE_H
-#define SOLID_KERNEL_SPARSE_H
+#pragma once
 
 #include "solid/kernel.h"
 #include "solid/kernel_vector.h"
@@ -93,5 +92,3 @@ KERNEL_INLINE void kernel_point_forces(struct body *body, const struct block *bl
         }
     }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Vectors of the force loop's kernels: those of the compiler (vector_size), so that any target compiles;
  * private to lib/solid. */
-#ifndef SOLID_KERNEL_VECTOR_H
-#define SOLID_KERNEL_VECTOR_H
+#pragma once
 
 #include "base/processor.h"
 #include "solid/body.h"
@@ -74,5 +73,3 @@ KERNEL_INLINE void store_components(const quad4 x[4], int dim, double *to)
         }
     }
 }
-
-#endif

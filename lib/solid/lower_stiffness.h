@@ -1,6 +1,5 @@
 /* The scalar stiffness S of inverse_factor.h by rows up to the diagonal; private to lib/solid. */
-#ifndef SOLID_LOWER_STIFFNESS_H
-#define SOLID_LOWER_STIFFNESS_H
+#pragma once
 
 #include "base/chunks.h"
 #include "solid/inverse_factor.h"
@@ -57,5 +56,3 @@ MUST_CHECK enum status lower_fetch(const bool *wanted, struct lower *lower, stru
 
 /* S_ij, j <= i; 0 where there is no such entry. */
 double lower_entry(const struct lower *lower, int32_t i, int32_t j);
-
-#endif

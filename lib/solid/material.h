@@ -11,8 +11,7 @@
  *   St. Venant-Kirchhoff   lambda/2 (tr E)^2 + mu E:E
  *
  * with I1', I2' and the stretches l isochoric (I1' = J^(-2/3) I1), C10 + C01 = mu/2, E = (F^T F - I)/2. */
-#ifndef SOLID_MATERIAL_H
-#define SOLID_MATERIAL_H
+#pragma once
 
 #include "base/status.h"
 
@@ -60,5 +59,3 @@ double material_pressure(const struct material *material, double J);
 /* Determinant, and cofactor J F^-T. */
 double determinant(const double F[9]);
 void cofactor(const double F[9], double C[9]);
-
-#endif

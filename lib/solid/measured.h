@@ -15,8 +15,7 @@
  * A single point thus moves by s^2 / (s^2 + sigma^2) of the measured displacement (Wiener 1949). The springs
  * of N points in a region together are stiffer than the region by the same ratio, s^2 / sigma^2. N is at most
  * the number of nodes that the field at the points is made of. */
-#ifndef SOLID_MEASURED_H
-#define SOLID_MEASURED_H
+#pragma once
 
 #include "solid/constraint.h"
 
@@ -62,5 +61,3 @@ MUST_CHECK enum status measured_compare(const struct measured *measured, double 
  * that a difference between measurements would be magnified ten times beside them. */
 MUST_CHECK enum status measured_dependent(const struct constraint_rows *rows, int64_t node_count,
                                           bool *dependent, struct error *error);
-
-#endif

@@ -13,8 +13,7 @@
  * and J of these. The stresses on the members' own gradients are by the transpose w_i / W sum_j P_j, so that
  * there still is an energy. What is linear stays exact, and as gradients of the interpolant differ by a
  * matrix of rank one across a face, the volume of two cells is that between their vertices. */
-#ifndef SOLID_MERGED_CELLS_H
-#define SOLID_MERGED_CELLS_H
+#pragma once
 
 #include "solid/kernel.h"
 
@@ -33,5 +32,3 @@ void merged_cells_gradients(const struct body *body, const struct block *block, 
 
 /* Replace the weighted stresses of merged cells of a block. */
 void merged_cells_stresses(const struct body *body, const struct block *block, block_rows P, block_rows T);
-
-#endif

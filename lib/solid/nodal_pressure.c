@@ -11,7 +11,6 @@
 #include "solid/nodal_volume.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };

@@ -41,8 +41,7 @@
  * that have no other nodes stay as they are.
  *
  * Groups of materials do not share nodal volumes, since the pressure jumps between them. */
-#ifndef SOLID_NODAL_VOLUME_H
-#define SOLID_NODAL_VOLUME_H
+#pragma once
 
 #include "solid/body.h"
 
@@ -79,5 +78,3 @@ void nodal_pressures_solve(struct body *body);
 /* The part k of the bulk modulus, Pa, and epsilon / mu, 1/Pa. */
 double nodal_pressure_modulus(const struct material *material);
 double nodal_pressure_compliance(const struct material *material);
-
-#endif

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "solid/rigid_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Facets of one body nearer at rest than so many widths are neighbours through it, if each is behind the

@@ -8,8 +8,7 @@
  * state of rest: facets of the same body that were near there, each behind the other. A facet that shares a
  * corner with the point's own is never far from the point, whether that has gone through it or not: the point
  * must have come from its front. */
-#ifndef SOLID_OPPOSITE_H
-#define SOLID_OPPOSITE_H
+#pragma once
 
 #include "approx/boundary.h"
 #include "solid/average.h"
@@ -66,5 +65,3 @@ bool opposite_leads(const struct opposite *opposite, const double *rest_normal, 
 
 /* The body of each node; part[cells->node_count]. -1 for a node of several bodies, or none. */
 MUST_CHECK enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error);
-
-#endif

@@ -20,8 +20,7 @@
  * systems, a two-level additive preconditioner with deflated constraints. Any positive definite A is sound;
  * what it has of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable.
  */
-#ifndef SOLID_PRECONDITIONER_H
-#define SOLID_PRECONDITIONER_H
+#pragma once
 
 #include "base/state.h"
 #include "solid/coarse_space.h"
@@ -122,5 +121,3 @@ MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditione
                                             struct error *error);
 MUST_CHECK enum status preconditioner_restore(struct preconditioner *preconditioner,
                                               const struct solid_system *system, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the parts of the preconditioner share; see preconditioner.h. */
-#ifndef SOLID_PRECONDITIONER_PRIVATE_H
-#define SOLID_PRECONDITIONER_PRIVATE_H
+#pragma once
 
 #include "solid/preconditioner.h"
 
@@ -38,5 +37,3 @@ double preconditioner_factorise(const struct preconditioner *preconditioner, dou
 
 /* The inverses, from what body, contacts and mass are. */
 void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
-
-#endif

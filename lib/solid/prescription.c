@@ -2,6 +2,7 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -99,9 +100,7 @@ static enum status average_of_table(const struct prescription *p, const struct b
         if (status != STATUS_OK) {
             return status;
         }
-        for (int i = 0; i < dim; i++) {
-            mean[i] += averages->sample_share[s] * value[i];
-        }
+        add_scaled(dim, averages->sample_share[s], value, mean);
     }
     return STATUS_OK;
 }

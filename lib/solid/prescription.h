@@ -1,6 +1,5 @@
 /* What a condition prescribes: at a place, and of an average. */
-#ifndef SOLID_PRESCRIPTION_H
-#define SOLID_PRESCRIPTION_H
+#pragma once
 
 #include "solid/conflicts.h"
 #include "solid/held_directions.h"
@@ -41,5 +40,3 @@ MUST_CHECK enum status prescription_check_table(const struct prescription *p, st
 MUST_CHECK enum status prescription_demand(const struct prescription *p,
                                            const struct boundary_averages *averages, int64_t a, bool at_node,
                                            struct demand *demand, struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Callbacks during a run: its progress, and the intermediate states that were requested. */
-#ifndef SOLID_PROGRESS_H
-#define SOLID_PROGRESS_H
+#pragma once
 
 #include "base/state.h"
 
@@ -25,5 +24,3 @@ typedef bool progress_function(void *context, const struct progress *progress);
 /* Receives frame `number` (from 1; 0: the state at the begin), the parameters u at `time` (as in struct
  * progress). */
 typedef void frame_function(void *context, int64_t number, double time, const double *u);
-
-#endif

@@ -8,8 +8,7 @@
  * relative to the largest displacement, and at the worst node, relative to the node that moved most. While
  * fast modes die out the increments do not show a slow one: before a state is accepted, the lowest frequency
  * is computed by Lanczos iteration, and the relaxation continues with it where it is lower. */
-#ifndef SOLID_RELAXATION_H
-#define SOLID_RELAXATION_H
+#pragma once
 
 #include "solid/progress.h"
 #include "solid/system.h"
@@ -68,5 +67,3 @@ struct relaxation_report {
 MUST_CHECK enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options,
                                       double *u, double *row_force, struct relaxation_report *report,
                                       struct error *error);
-
-#endif

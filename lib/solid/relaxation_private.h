@@ -1,6 +1,5 @@
 /* What the parts of the relaxation share; see relaxation.h. */
-#ifndef SOLID_RELAXATION_PRIVATE_H
-#define SOLID_RELAXATION_PRIVATE_H
+#pragma once
 
 #include "solid/frequency.h"
 #include "solid/preconditioner.h"
@@ -171,5 +170,3 @@ void relaxation_release(struct relaxation *r);
 
 /* What the next step needs of those before: see base/state.h. */
 MUST_CHECK enum status relaxation_visit(void *run, const struct state *state, struct error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* A rigid surface: line segments in 2D, triangles in 3D, with a side on which the body lies. Facets only, no
  * nodes of the body. */
-#ifndef SOLID_RIGID_H
-#define SOLID_RIGID_H
+#pragma once
 
 #include "base/status.h"
 
@@ -72,5 +71,3 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
 /* The same among the facets that the filter admits. */
 struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
                                          const struct rigid_filter *filter);
-
-#endif

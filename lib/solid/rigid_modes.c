@@ -62,9 +62,7 @@ static void look(const struct solid_system *system, const struct constraint_rows
         }
     }
     for (int i = 0; i < moves; i++) {
-        for (int k = 0; k < moves; k++) {
-            seen->matrix[i * moves + k] += value[i] * value[k];
-        }
+        add_scaled(moves, value[i], value, seen->matrix + i * moves);
     }
 }
 

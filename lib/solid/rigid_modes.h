@@ -1,6 +1,5 @@
 /* Rigid-body modes that the conditions of a system leave free. */
-#ifndef SOLID_RIGID_MODES_H
-#define SOLID_RIGID_MODES_H
+#pragma once
 
 #include "solid/system.h"
 
@@ -23,5 +22,3 @@ MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int
 
 /* Whether all nodes as one body can move as a whole without meeting a condition. */
 bool system_has_rigid_mode(const struct solid_system *system);
-
-#endif

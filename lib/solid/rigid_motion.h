@@ -1,8 +1,7 @@
 /* The motion of a rigid surface: a rotation about an axis that stays where it is, then a translation, each
  * scaled by a load curve. The rotation is finite and exact. The surface itself is never touched: a point is
  * taken into the frame in which the surface rests, and what is found there is taken back. */
-#ifndef SOLID_RIGID_MOTION_H
-#define SOLID_RIGID_MOTION_H
+#pragma once
 
 #include "base/status.h"
 
@@ -42,5 +41,3 @@ void rigid_place_turn(const struct rigid_place *place, int dim, double *directio
 /* Length of the way of a point of the surface that is at X at rest, as the factors go from 0 to 1, at the
  * most, m. */
 double rigid_motion_way(const struct rigid_motion *motion, int dim, const double *X);
-
-#endif

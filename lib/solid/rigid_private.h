@@ -1,6 +1,5 @@
 /* The parts of building a rigid surface; private to lib/solid. */
-#ifndef SOLID_RIGID_PRIVATE_H
-#define SOLID_RIGID_PRIVATE_H
+#pragma once
 
 #include "base/box.h"
 #include "base/vector.h"
@@ -37,5 +36,3 @@ static inline void normalise(int dim, double *v)
         v[a] /= sqrt(sum);
     }
 }
-
-#endif

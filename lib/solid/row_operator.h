@@ -1,8 +1,7 @@
 /* The sparse operator B of the force loop, equation (12) of lib/README.md, and its transpose, from one table
  * by rows: y = B x gathers, and y = B^T x adds each entry to the sum of its column. A column is summed by one
  * thread, in the order of the rows, so that any number of threads and of processes gives the same bits. */
-#ifndef SOLID_ROW_OPERATOR_H
-#define SOLID_ROW_OPERATOR_H
+#pragma once
 
 #include "base/sparse.h"
 
@@ -37,5 +36,3 @@ MUST_CHECK enum status row_operator_transpose(const struct row_operator *rows, c
 /* (*range)[2 * rows], to be freed: the first and the last column of each row; none: the last is before it. */
 MUST_CHECK enum status row_operator_ranges(const struct row_operator *rows, int32_t **range,
                                            struct error *error);
-
-#endif

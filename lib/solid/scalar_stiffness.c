@@ -119,23 +119,17 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                             struct error *error)
 {
-    enum status status;
     int64_t nodes = stiffness->system->node_count, fields = stiffness->field_count + stiffness->bond_count;
     *row = (struct scalar_row){0};
-    TRY(NEW_ARRAY(&row->slot, nodes, error));
-    TRY(NEW_ARRAY(&row->node, nodes, error));
-    TRY(NEW_ARRAY(&row->value, nodes, error));
-    TRY(NEW_ARRAY(&row->at_field, fields, error));
-    TRY(NEW_ARRAY(&row->on_field, fields, error));
-    TRY(NEW_ARRAY(&row->sum, nodes, error));
-    TRY(NEW_ARRAY(&row->touched, fields, error));
-    TRY(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
-    TRY(NEW_ARRAY(&row->field_seen, fields, error));
-done:
-    if (status != STATUS_OK) {
-        scalar_row_free(row);
-    }
-    return status;
+    RETURN_IF_ERROR(NEW_ARRAY(&row->slot, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->node, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->value, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->at_field, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->on_field, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->sum, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->touched, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
+    return NEW_ARRAY(&row->field_seen, fields, error);
 }
 
 enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,

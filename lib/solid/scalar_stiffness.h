@@ -1,7 +1,6 @@
 /* The scalar stiffness of smoothed cells that inverse_factor.h describes, row by row; private to lib/solid.
  */
-#ifndef SOLID_SCALAR_STIFFNESS_H
-#define SOLID_SCALAR_STIFFNESS_H
+#pragma once
 
 #include "base/sparse.h"
 
@@ -53,5 +52,3 @@ MUST_CHECK enum status scalar_row_prepare(const struct scalar_stiffness *stiffne
 
 /* Row i, one of these, up to the diagonal, which is its last entry. */
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row);
-
-#endif

@@ -8,7 +8,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */

@@ -31,8 +31,7 @@
  * energy, in 2D for each field with trace-free second derivatives, in 3D in the mean over all such fields. It
  * is of second order in the size of the cells, at any strain, and the same in all cells. What was tried:
  * pipelines/convergence/DEFAULTS.md. */
-#ifndef SOLID_SMOOTHED_CELLS_H
-#define SOLID_SMOOTHED_CELLS_H
+#pragma once
 
 #include "solid/field_averages.h"
 
@@ -113,5 +112,3 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
 
 /* The same of the linear shape functions of the cells. */
 void cell_functions_list_linear(const struct body *body, int64_t q, struct cell_functions *functions);
-
-#endif

@@ -1,6 +1,5 @@
 /* Stresses of points and smoothed cells of any law, one at a time; private to lib/solid. */
-#ifndef SOLID_STRESS_H
-#define SOLID_STRESS_H
+#pragma once
 
 #include "solid/kernel.h"
 
@@ -19,5 +18,3 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
 
 /* Energy k |F_h - F|^2 / 2 of a cell, Pa: see smoothed_cells.h. */
 double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9]);
-
-#endif

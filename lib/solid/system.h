@@ -1,8 +1,7 @@
 /* A scene ready for time stepping: a body, its loads, constraints and contacts, on the parameters of its
  * nodes.
  */
-#ifndef SOLID_SYSTEM_H
-#define SOLID_SYSTEM_H
+#pragma once
 
 #include "solid/body.h"
 #include "solid/constraint.h"
@@ -163,5 +162,3 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
 
 /* Mean spacing of the nodes, m. */
 double system_node_spacing(const struct solid_system *system);
-
-#endif

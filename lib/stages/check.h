@@ -1,6 +1,5 @@
 /* Check of a whole stream against the table of sections (io/sections.h, lib/README.md) and the views. */
-#ifndef STAGES_CHECK_H
-#define STAGES_CHECK_H
+#pragma once
 
 #include "io/stream.h"
 
@@ -14,5 +13,3 @@ typedef void violation_function(void *context, const char *text);
  * short. */
 MUST_CHECK enum status stream_check(const struct stream *stream, violation_function *report, void *context,
                                     int64_t *count, struct error *error);
-
-#endif

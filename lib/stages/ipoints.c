@@ -7,7 +7,6 @@
 #include "io/sections.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct ipoints_options ipoints_defaults(void)

@@ -1,6 +1,5 @@
 /* The settings of shape functions as text: options of command lines, and attributes of sections. */
-#ifndef STAGES_MLS_SETTINGS_H
-#define STAGES_MLS_SETTINGS_H
+#pragma once
 
 #include "approx/mls.h"
 
@@ -14,5 +13,3 @@ MUST_CHECK enum status mls_apply(const struct mls_texts *texts, struct mls *mls,
 /* "basis=mmls2 weight=quartic mu_absolute=0 mu=1e-07,1e-07,1e-07", each key with the prefix before it, into
  * text[size], for a section's attributes. */
 void mls_describe(const struct mls *mls, const char *prefix, char *text, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* The names of groups that a section carries: its attribute names=, separated by commas. */
-#ifndef STAGES_NAMES_H
-#define STAGES_NAMES_H
+#pragma once
 
 #include "io/stream.h"
 
@@ -23,5 +22,3 @@ int64_t names_find(const struct names *names, const char *name);
 /* The names, separated by blanks after the commas, into text[256] for a message; "none" when there are none.
  */
 const char *names_text(const struct names *names, char text[256]);
-
-#endif

@@ -1,8 +1,7 @@
 /* The field that mtled solved for, as its results carry it: u_h(x) = sum_j phi_j(x) d_j, with the parameters
  * d_j in the sections parameters and parameters.frame.K, and the supports that phi_j has in
  * parameters.radius. */
-#ifndef STAGES_SOLVED_H
-#define STAGES_SOLVED_H
+#pragma once
 
 #include "stages/stages.h"
 
@@ -25,5 +24,3 @@ const struct section *solved_parameters(const struct stream *stream, const struc
 
 /* Whether a section is of parameters, and no field of its own. */
 bool solved_is_parameters(const struct section *section);
-
-#endif

@@ -1,7 +1,6 @@
 /* The stages between a node cloud and a table of shape functions, on a stream: each adds its sections, and
  * removes those that were made from what it replaces. */
-#ifndef STAGES_STAGES_H
-#define STAGES_STAGES_H
+#pragma once
 
 #include "stages/views.h"
 
@@ -83,5 +82,3 @@ MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *p
 /* Put radius[node_count] as support.radius, with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,
                                     int64_t node_count, const double *radius, struct error *error);
-
-#endif

@@ -5,8 +5,6 @@
 #include "base/memory.h"
 #include "io/sections.h"
 
-#include <stdlib.h>
-
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
                                int64_t node_count, const double *x, double *radius, struct error *error)

@@ -1,7 +1,6 @@
 /* The cloud and the tables of shape functions that the stages have left in a stream, as an assembly takes
  * them. */
-#ifndef STAGES_TABLES_H
-#define STAGES_TABLES_H
+#pragma once
 
 #include "io/stream.h"
 #include "solid/assembly.h"
@@ -9,5 +8,3 @@
 /* Set the first part of *input, up to cell_side, as views of the stream, and complete it
  * (assembly_complete). STATUS_INPUT for sections that are missing or do not fit. */
 MUST_CHECK enum status stage_tables(const struct stream *stream, struct assembly *input, struct error *error);
-
-#endif

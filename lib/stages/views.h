@@ -1,7 +1,6 @@
 /* Parts of a stream as the rest of the library takes them: in view, their shapes and indices checked. The
  * messages name the tool that makes what is missing. */
-#ifndef STAGES_VIEWS_H
-#define STAGES_VIEWS_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/shape.h"
@@ -77,5 +76,3 @@ void stream_inherit(struct stream *stream, struct stream *from);
 
 /* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);
-
-#endif

@@ -1,8 +1,7 @@
 /* What the benchmarks share: repeats and their percentiles, a plain read of as many bytes in the same run,
  * and the rows of bench.tsv. Programs of pipelines/bench/ print rows; pipelines/bench.mk puts the header
  * above. */
-#ifndef BENCH_H
-#define BENCH_H
+#pragma once
 
 #include "base/status.h"
 
@@ -51,5 +50,3 @@ void bench_print(const struct bench_row *row, const struct bench_times *times);
 
 /* Print the message and end the program unless the status is STATUS_OK. */
 void bench_check(enum status status, const struct error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Bodies that the kernels are timed on: a jittered square or cube, default MLS (MMLS, quadratic) supports. */
-#ifndef BENCH_PROBLEM_H
-#define BENCH_PROBLEM_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/cloud.h"
@@ -46,5 +45,3 @@ void problem_sweep(bench_function *points, bench_function *cells, bench_function
 /* The cube with a million points in cells: its table does not fit caches of hundreds of
  * megabytes. */
 void problem_large(bench_function *points, double seconds);
-
-#endif

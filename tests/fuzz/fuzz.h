@@ -1,7 +1,6 @@
 /* What the fuzz targets share. A target is one function over bytes; libFuzzer calls it (make fuzz), and so
  * does replay.c on the files of the corpus (make check). */
-#ifndef TESTS_FUZZ_H
-#define TESTS_FUZZ_H
+#pragma once
 
 #include "base/memory.h"
 #include "base/status.h"
@@ -52,5 +51,3 @@ static inline int file_of_bytes(const void *bytes, size_t size, char path[32])
     }
     return file;
 }
-
-#endif

@@ -17,7 +17,6 @@ static void try_labels(const char *path)
     FREED_BY(label_table_free) struct label_table table = {0};
     struct error error = {""};
     if (!is_accepted(label_table_read(path, &table, &error), &error)) {
-        REQUIRE(table.name_count == 0 && table.range_count == 0);
         return;
     }
     REQUIRE(table.range_count > 0 || table.others);
@@ -115,8 +114,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         } else if (kind == 3) {
             try_triangles(&table);
         }
-    } else {
-        REQUIRE(table.values == NULL);
     }
     table_free(&table);
     close(file);

@@ -4,8 +4,8 @@
 
 #include "approx/adaptive.h"
 #include "approx/cloud.h"
-#include "approx/quadrature.h"
 #include "approx/sorted.h"
+#include "base/vector.h"
 
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
 struct body {
@@ -20,7 +20,6 @@ static struct body body_of(int dim, int64_t per_axis)
     struct cloud_options wanted = {
         .kind = CLOUD_JITTERED, .dim = dim, .jitter = dim == 2 ? 0.3 : 0.12, .seed = 3};
     struct body body = {.options = adaptive_defaults(dim)};
-    struct error error;
     for (int a = 0; a < dim; a++) {
         wanted.count[a] = per_axis;
         wanted.low[a] = 1.0;
@@ -47,7 +46,6 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
 {
     struct adaptive_options options = body->options;
     struct adaptive_points points;
-    struct error error;
     options.tolerance = tolerance;
     options.levels = levels;
     GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
@@ -70,40 +68,35 @@ TEST(lists)
 }
 
 /* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */
-TEST(fill_and_exactness)
+TEST_IN_EACH_DIM(fill_and_exactness)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 6 : 3);
-        struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
-        double quadratic = 0.0, total = 0.0;
-        int64_t at = 0;
-        for (int64_t c = 0; c < body.cells.count; c++) {
-            double volume = 0.0, first[3] = {0}, centroid[3];
-            for (; at < points.count && points.cell[at] == c; at++) {
-                const double *x = points.x + at * dim;
-                assert_true(points.weight[at] > 0.0);
-                volume += points.weight[at];
-                total += points.weight[at];
-                quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
-                for (int a = 0; a < dim; a++) {
-                    first[a] += points.weight[at] * x[a];
-                }
-            }
-            double exact = cell_volume(&body.cells, c);
-            at_most(fabs(volume / exact - 1.0), 1e-13, "volume of a cell");
-            cell_centroid(&body.cells, c, centroid);
-            for (int a = 0; a < dim; a++) {
-                at_most(fabs(first[a] / exact - centroid[a]), 1e-13, "first moment of a cell");
-            }
+    FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
+    FREED_BY(adaptive_points_free)
+    struct adaptive_points points = integrate(&body, dim == 2 ? 1e-3 : 2e-2, 4);
+    double quadratic = 0.0, total = 0.0;
+    int64_t at = 0;
+    for (int64_t c = 0; c < body.cells.count; c++) {
+        double volume = 0.0, first[3] = {0}, centroid[3];
+        for (; at < points.count && points.cell[at] == c; at++) {
+            const double *x = points.x + at * dim;
+            assert_true(points.weight[at] > 0.0);
+            volume += points.weight[at];
+            total += points.weight[at];
+            quadratic += points.weight[at] * ((x[0] - 1.0) * (x[1] - 1.0) + pow(x[dim - 1] - 1.0, 2.0));
+            add_scaled(dim, points.weight[at], x, first);
         }
-        assert_int_equal(at, points.count);
-        at_most(fabs(total / pow(0.1, dim) - 1.0), 1e-12, "volume");
-        /* integrals of x y and z^2 over the box [0, .1]^dim */
-        double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
-        at_most(fabs(quadratic / exact - 1.0), 1e-12, "integral of a quadratic");
-        adaptive_points_free(&points);
-        body_free(&body);
+        double exact = cell_volume(&body.cells, c);
+        AT_MOST(fabs(volume / exact - 1.0), 1e-13);
+        cell_centroid(&body.cells, c, centroid);
+        for (int a = 0; a < dim; a++) {
+            AT_MOST(fabs(first[a] / exact - centroid[a]), 1e-13);
+        }
     }
+    assert_int_equal(at, points.count);
+    AT_MOST(fabs(total / pow(0.1, dim) - 1.0), 1e-12);
+    /* integrals of x y and z^2 over the box [0, .1]^dim */
+    double exact = pow(0.1, dim) * (0.05 * 0.05 + 0.01 / 3.0);
+    AT_MOST(fabs(quadratic / exact - 1.0), 1e-12);
 }
 
 /* K_ij = sum_q w_q grad phi_i . grad phi_j of all nodes, dense, times the size to the power 2 - dim. */
@@ -114,7 +107,6 @@ static double *stiffness(const struct body *body, int64_t count, const double *x
     double *K = zeros(n * n, sizeof *K);
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(support_free) struct support_lists found = {0};
-    struct error error;
     GOOD(point_grid_build(&grid, dim, n, body->cells.x, body->radius, &error));
     GOOD(support_build(&body->options.support, &grid, count, x, "points.x", &found, &error));
     double *phi = zeros(found.ptr[count], sizeof *phi);
@@ -163,31 +155,27 @@ static struct adaptive_points brute(const struct body *body, int levels)
 }
 
 /* The whole body's K is within the tolerance of that of brute subdivision, with fewer points the looser. */
-TEST(convergence)
+TEST_IN_EACH_DIM(convergence)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 6 : 3);
-        int64_t n = body.cells.node_count, before = 0;
-        int deepest = dim == 2 ? 3 : 2;
-        struct adaptive_points finest = brute(&body, deepest);
-        double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
-        double error_before = INFINITY;
-        for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
-            struct adaptive_points points = integrate(&body, tolerance, deepest);
-            double *K = stiffness(&body, points.count, points.x, points.weight);
-            double error = apart(n, K, reference);
-            print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance,
-                          (int)points.count, (int)finest.count, error);
-            at_most(error, tolerance, "K against brute subdivision");
-            assert_true(error <= error_before);
-            assert_true(points.count >= before && points.count < finest.count / 2);
-            assert_int_equal(points.unresolved, 0);
-            before = points.count;
-            error_before = error;
-            adaptive_points_free(&points);
-        }
-        adaptive_points_free(&finest);
-        body_free(&body);
+    FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 6 : 3);
+    int64_t n = body.cells.node_count, before = 0;
+    int deepest = dim == 2 ? 3 : 2;
+    FREED_BY(adaptive_points_free) struct adaptive_points finest = brute(&body, deepest);
+    double *reference = stiffness(&body, finest.count, finest.x, finest.weight);
+    double error_before = INFINITY;
+    for (double tolerance = 0.3; tolerance > (dim == 2 ? 1e-3 : 1e-2); tolerance *= 0.2) {
+        FREED_BY(adaptive_points_free)
+        struct adaptive_points points = integrate(&body, tolerance, deepest);
+        double *K = stiffness(&body, points.count, points.x, points.weight);
+        double error = apart(n, K, reference);
+        print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance, (int)points.count,
+                      (int)finest.count, error);
+        AT_MOST(error, tolerance);
+        assert_true(error <= error_before);
+        assert_true(points.count >= before && points.count < finest.count / 2);
+        assert_int_equal(points.unresolved, 0);
+        before = points.count;
+        error_before = error;
     }
 }
 
@@ -226,19 +214,16 @@ TEST(threads)
 {
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
-        struct body body = body_of(dim, dim == 2 ? 9 : 3);
+        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 9 : 3);
         omp_set_num_threads(1);
-        struct adaptive_points one = integrate(&body, 0.1, 3);
+        FREED_BY(adaptive_points_free) struct adaptive_points one = integrate(&body, 0.1, 3);
         omp_set_num_threads(3);
-        struct adaptive_points three = integrate(&body, 0.1, 3);
+        FREED_BY(adaptive_points_free) struct adaptive_points three = integrate(&body, 0.1, 3);
         assert_int_equal(one.count, three.count);
         assert_memory_equal(one.x, three.x, (size_t)(one.count * dim) * sizeof(double));
         assert_memory_equal(one.weight, three.weight, (size_t)one.count * sizeof(double));
         assert_memory_equal(one.cell, three.cell, (size_t)one.count * sizeof(int32_t));
         assert_memory_equal(one.level, three.level, (size_t)one.count * sizeof(int32_t));
-        adaptive_points_free(&one);
-        adaptive_points_free(&three);
-        body_free(&body);
     }
     omp_set_num_threads(before);
 }
@@ -248,7 +233,6 @@ TEST(failures)
     FREED_BY(body_free) struct body body = body_of(2, 4);
     struct adaptive_options options = body.options;
     struct adaptive_points points;
-    struct error error;
     options.rule_points = 5;
     FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
           "no rule of 5 points");

@@ -1,7 +1,6 @@
 /* What the tests of lib/approx share: scattered clouds in several units and places, and the defects of a
  * table of shape functions against the properties that it must have. */
-#ifndef TESTS_APPROX_FIXTURE_H
-#define TESTS_APPROX_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -9,20 +8,6 @@
 #include "approx/support.h"
 
 #include <gsl/gsl_rng.h>
-
-static inline void at_most(double value, double bound, const char *what)
-{
-    if (!(value <= bound)) {
-        fail_msg("%s: %g is not at most %g", what, value, bound);
-    }
-}
-
-static inline void good(enum status status, const struct error *error)
-{
-    if (status != STATUS_OK) {
-        fail_msg("status %d: %s", (int)status, error->text);
-    }
-}
 
 /* The same body in metres, in millimetres, and a metre away from the origin. */
 struct place {
@@ -97,15 +82,13 @@ static inline enum status tabulate(const struct support_options *options, int64_
                                    int64_t point_count, const double *points, struct table *table,
                                    struct error *error)
 {
-    enum status status;
     int dim = options->mls.dim;
-    double *spacing = calloc((size_t)count, sizeof *spacing);
+    SCRATCH double *spacing = calloc((size_t)count, sizeof *spacing);
     *table = (struct table){.radius = calloc((size_t)count, sizeof(double))};
-    status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
+    enum status status = options->radius > 0.0 ? STATUS_OK : nodes_spacing(dim, count, x, spacing, error);
     if (status == STATUS_OK) {
         status = support_radii(options, count, spacing, table->radius, error);
     }
-    free(spacing);
     if (status == STATUS_OK) {
         status = point_grid_build(&table->grid, dim, count, x, table->radius, error);
     }
@@ -177,5 +160,3 @@ static inline struct support_options options_for(int dim, enum basis basis, enum
     options.factor = basis == BASIS_QUADRATIC ? 2.6 : 1.8;
     return options;
 }
-
-#endif

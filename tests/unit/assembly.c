@@ -33,49 +33,42 @@ static enum status assemble(struct lattice *l, const struct condition *condition
 }
 
 /* u = A x prescribed by a table on the whole boundary is u within. */
-TEST(linear_field_by_table)
+TEST_IN_EACH_DIM(linear_field_by_table)
 {
     static const double A[3][3] = {{0.02, 0.01, -0.01}, {0.03, -0.02, 0.01}, {0.01, -0.01, 0.015}};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
-        struct error error, note;
-        int32_t *facet;
-        double *rows;
-        struct lattice_options options = lattice_defaults(dim, 5);
-        options.jitter = 0.1;
-        lattice_build(&l, &options);
-        rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
-        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
-            for (int i = 0; i < dim; i++) {
-                rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];
-                for (int k = 0; k < dim; k++) {
-                    rows[n * 2 * dim + dim + i] += A[i][k] * l.assembly.cells.x[n * dim + k];
-                }
+    FREED_BY(lattice_free) struct lattice l = {0};
+    struct error note;
+    SCRATCH int32_t *facet = NULL;
+    struct lattice_options options = lattice_defaults(dim, 5);
+    options.jitter = 0.1;
+    lattice_build(&l, &options);
+    double *rows = zeros(l.assembly.cells.node_count * 2 * dim, sizeof *rows);
+    for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
+        for (int i = 0; i < dim; i++) {
+            rows[n * 2 * dim + i] = l.assembly.cells.x[n * dim + i];
+            for (int k = 0; k < dim; k++) {
+                rows[n * 2 * dim + dim + i] += A[i][k] * l.assembly.cells.x[n * dim + k];
             }
         }
-        const struct condition all = {.name = "all",
-                                      .where = "scene:1: [displacement all]",
-                                      .facets = side_facets(&l, 63u, &facet),
-                                      .kind = CONDITION_TABLE,
-                                      .row_count = l.assembly.cells.node_count,
-                                      .rows = rows,
-                                      .unit = 1.0,
-                                      .table = "table"};
-        GOOD(assemble(&l, &all, 1, &note, &error));
-        assert_string_equal(note.text, "");
-        double *u = lattice_vector(&l), *field = lattice_vector(&l);
-        struct relaxation_options relax = {.tolerance = 1e-8, .time_step_margin = 0.9};
-        struct relaxation_report report;
-        GOOD(relaxation_run(&l.system, &relax, u, NULL, &report, &error));
-        assert_int_equal(report.outcome, RELAXATION_CONVERGED);
-        assembly_nodal_field(&l.assembly, u, field);
-        for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
-            for (int i = 0; i < dim; i++) {
-                NEAR_TO(field[n * dim + i], rows[n * 2 * dim + dim + i], 1e-9);
-            }
-        }
-        free(facet);
-        lattice_free(&l);
+    }
+    const struct condition all = {.name = "all",
+                                  .where = "scene:1: [displacement all]",
+                                  .facets = side_facets(&l, 63u, &facet),
+                                  .kind = CONDITION_TABLE,
+                                  .row_count = l.assembly.cells.node_count,
+                                  .rows = rows,
+                                  .unit = 1.0,
+                                  .table = "table"};
+    GOOD(assemble(&l, &all, 1, &note, &error));
+    assert_string_equal(note.text, "");
+    double *u = lattice_vector(&l), *field = lattice_vector(&l);
+    struct relaxation_options relax = {.tolerance = 1e-8, .time_step_margin = 0.9};
+    struct relaxation_report report;
+    GOOD(relaxation_run(&l.system, &relax, u, NULL, &report, &error));
+    assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+    assembly_nodal_field(&l.assembly, u, field);
+    for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
+        ALL_NEAR(dim, field + n * dim, rows + n * 2 * dim + dim, 1e-9);
     }
 }
 
@@ -84,7 +77,6 @@ TEST(linear_field_by_table)
 TEST(held_faces)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    struct error error;
     SCRATCH int32_t *low = NULL, *high = NULL;
     SCRATCH bool *held = NULL, *slides = NULL;
     int64_t count = 0;
@@ -112,7 +104,7 @@ TEST(held_faces)
 TEST(shared_corners)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    struct error error, note;
+    struct error note, said;
     SCRATCH int32_t *low = NULL, *side = NULL;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
@@ -120,9 +112,9 @@ TEST(shared_corners)
         {.name = "low", .where = "s:1: [displacement low]", .facets = side_facets(&l, 1u << 2, &low)},
         {.name = "side", .where = "s:2: [displacement side]", .facets = side_facets(&l, 1u, &side)}};
     conditions[1].components[1] = 1e-3;
-    assert_int_equal(assemble(&l, conditions, 2, &note, &error), STATUS_INPUT);
-    assert_ptr_equal(strstr(error.text, "s:2: [displacement side]: node "), error.text);
-    assert_non_null(strstr(error.text, "0 m in [displacement low]"));
+    assert_int_equal(assemble(&l, conditions, 2, &note, &said), STATUS_INPUT);
+    assert_ptr_equal(strstr(said.text, "s:2: [displacement side]: node "), said.text);
+    assert_non_null(strstr(said.text, "0 m in [displacement low]"));
     conditions[0].components[1] = 0.95e-3;
     GOOD(assemble(&l, conditions, 2, &note, &error));
     assert_non_null(strstr(note.text, "is prescribed twice"));

@@ -2,8 +2,6 @@
  * linear fields, and faults told. */
 #include "body_setup.h"
 
-#include "solid/kernel.h"
-
 /* Translation, quarter turns and other rotations make no forces, and no energy. */
 static void check_rigid_motion(const struct sample *sample, const struct setup *setup, struct random *random)
 {
@@ -139,7 +137,6 @@ TEST(linear_fields)
 static void fault_of_smoothing(void)
 {
     struct body body;
-    struct error error;
     struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
     struct sample *sample = &samples[0];
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
@@ -151,17 +148,15 @@ static void fault_of_smoothing(void)
            *node_phi = stream_find(&sample->stream, "node.phi")->data;
     double *changed = &face_phi[sample->assembly.lists.ptr[7]], before = *changed;
     *changed += 0.01;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text,
-                        "face.phi: row 7: not the shape functions at this row: run shapefn again");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "face.phi: row 7: not the shape functions at this row: run shapefn again");
     body_free(&body);
     *changed = before;
     changed = &node_phi[sample->assembly.node_lists.ptr[5]];
     before = *changed;
     *changed += 0.01;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text,
-                        "node.phi: node 5: not the shape functions at this node: run shapefn again");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "node.phi: node 5: not the shape functions at this node: run shapefn again");
     body_free(&body);
     *changed = before;
     struct faces fewer = sample->assembly.faces;
@@ -183,7 +178,6 @@ static void fault_of_smoothing(void)
 TEST(faults)
 {
     struct body body;
-    struct error error;
     static const struct material material = {.shear_modulus = 1.0, .bulk_modulus = 1.0};
     static const double x[4] = {0.0}, dphi[4] = {0.0};
     static const int32_t idx[2] = {0, 1}, none[2] = {0};
@@ -200,20 +194,19 @@ TEST(faults)
                                .materials = &material,
                                .material = none,
                                .material_count = 1};
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.weight: row 1: no weight or no neighbours");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "points.weight: row 1: no weight or no neighbours");
     body_free(&body);
     ptr[1] = 1;
     weight[0] = (double)NAN;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.weight: row 0: no weight or no neighbours");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT,
+               "points.weight: row 0: no weight or no neighbours");
     body_free(&body);
     weight[0] = 1.0;
     GOOD(body_build(&input, &body, &error));
     body_free(&body);
     input.point_count = 0;
-    assert_int_equal(body_build(&input, &body, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "points.x: 0 points: none, or too many");
+    FAILS_WITH(body_build(&input, &body, &error), STATUS_INPUT, "points.x: 0 points: none, or too many");
     fault_of_smoothing();
 }
 
@@ -224,10 +217,10 @@ TEST(many_blocks)
     struct random random = {7};
     for (int i = 0; i < 4; i++) {
         bool by_faces = i >= 2;
-        struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
+        FREED_BY(sample_free) struct sample sample = make_sample(2, by_faces, by_faces ? 80 : 45);
         struct setup setup = three_materials(i % 2 == 1);
         setup.faces = by_faces;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * 2;
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *P = zeros(sample.assembly.point_count * 9, sizeof *P);
@@ -273,8 +266,6 @@ TEST(many_blocks)
             u[k] -= 2.0 * h * along[k];
         }
         NEAR_TO((high - body_energy(&body, u)) / (2.0 * h), slope, 1e-5 * fabs(slope));
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 

@@ -2,42 +2,40 @@
  * make up the volume within the boundary. */
 #include "body_setup.h"
 
+#include "base/vector.h"
+
 /* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
-TEST(accumulation)
+TEST_IN_EACH_DIM(accumulation)
 {
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
-        for (int averaged = 0; averaged < 2; averaged++) {
-            struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, averaged == 1);
-            setup.faces = true;
-            struct body body = make_body(&sample, &setup);
-            int64_t inner = 0;
-            double *u = linear_field(&sample, A, NULL);
-            double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
-            bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
-            for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-                for (int g = 0; g < OWN_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
-                    int64_t point = f * OWN_POINTS(dim) + g;
-                    for (int64_t i = sample.assembly.boundary_lists.ptr[point];
-                         i < sample.assembly.boundary_lists.ptr[point + 1]; i++) {
-                        outer[sample.assembly.boundary_lists.idx[i]] =
-                            true; /* the boundary's integral feels it */
-                    }
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
+    for (int averaged = 0; averaged < 2; averaged++) {
+        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, averaged == 1);
+        setup.faces = true;
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
+        int64_t inner = 0;
+        double *u = linear_field(&sample, A, NULL);
+        double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
+        bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
+        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+            for (int g = 0; g < OWN_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
+                int64_t point = f * OWN_POINTS(dim) + g;
+                for (int64_t i = sample.assembly.boundary_lists.ptr[point];
+                     i < sample.assembly.boundary_lists.ptr[point + 1]; i++) {
+                    outer[sample.assembly.boundary_lists.idx[i]] =
+                        true; /* the boundary's integral feels it */
                 }
             }
-            (void)body_force(&body, u, force);
-            double most = largest(force, sample.cloud.node_count * dim);
-            for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-                inner += !outer[n];
-                for (int a = 0; a < dim && !outer[n]; a++) {
-                    NEAR_TO(force[n * dim + a], 0.0, 1e-12 * most);
-                }
-            }
-            assert_true(inner > 0);
-            body_free(&body);
         }
-        sample_free(&sample);
+        (void)body_force(&body, u, force);
+        double most = largest(force, sample.cloud.node_count * dim);
+        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+            inner += !outer[n];
+            for (int a = 0; a < dim && !outer[n]; a++) {
+                NEAR_TO(force[n * dim + a], 0.0, 1e-12 * most);
+            }
+        }
+        assert_true(inner > 0);
     }
 }
 
@@ -64,9 +62,7 @@ static void mean_of_face(const struct sample *sample, int64_t face, const double
         for (int64_t i = sample->assembly.boundary_lists.ptr[p];
              i < sample->assembly.boundary_lists.ptr[p + 1]; i++) {
             double share = rule.weight[p % points] * sample->assembly.boundary_phi[i];
-            for (int a = 0; a < dim; a++) {
-                mean[a] += share * u[(int64_t)sample->assembly.boundary_lists.idx[i] * dim + a];
-            }
+            add_scaled(dim, share, u + (int64_t)sample->assembly.boundary_lists.idx[i] * dim, mean);
         }
     }
 }
@@ -79,14 +75,7 @@ static void area_of(int dim, double x[3][3], double area[3])
         a[i] = x[1][i] - x[0][i];
         b[i] = dim == 3 ? 0.5 * (x[2][i] - x[0][i]) : i == 2 ? 1.0 : 0.0;
     }
-    for (int i = 0; i < 3; i++) {
-        area[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    vector_cross(a, b, area);
 }
 
 /* What a facet of the boundary adds to the volume inside: of the cone over the triangle of its deformed
@@ -114,12 +103,12 @@ static double volume_below(const struct sample *sample, int64_t face, const doub
         }
     }
     area_of(dim, rest, area);
-    double sense = dot(area, inside) < 0.0 ? 1.0 : -1.0;
+    double sense = vector_dot(3, area, inside) < 0.0 ? 1.0 : -1.0;
     area_of(dim, x, area);
     for (int a = 0; a < 3; a++) {
         mean[a] += centre[a] / dim - centre[a];
     }
-    return sense * dot(mean, area);
+    return sense * vector_dot(3, mean, area);
 }
 
 /* Whatever the field, the volume ratios of smoothed cells make up the volume within the boundary. */
@@ -130,7 +119,7 @@ TEST(enclosed_volume)
         const struct sample *sample = &samples[i];
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
         setup.faces = true;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         double *u = random_field(sample, 0.05 * sample_size, &random), sum = 0.0, averages = 0.0,
                inside = 0.0;
         double *F = zeros(sample->assembly.point_count * 9, sizeof *F), rest = pow(sample_size, sample->dim);
@@ -146,7 +135,6 @@ TEST(enclosed_volume)
         NEAR_TO(sum, inside, 1e-13 * rest);
 
         assert_true(fabs(averages - inside) > 1e-4 * rest); /* the determinants of the averages do not */
-        body_free(&body);
     }
 }
 
@@ -160,9 +148,9 @@ TEST(faces)
             const struct sample *sample = &samples[i];
             struct setup setup = three_materials(kind == 1);
             int64_t count = sample->cloud.node_count * sample->dim, size = sample->assembly.point_count * 9;
-            struct body by_table = make_body(sample, &setup);
+            FREED_BY(body_free) struct body by_table = make_body(sample, &setup);
             setup.faces = true;
-            struct body by_faces = make_body(sample, &setup);
+            FREED_BY(body_free) struct body by_faces = make_body(sample, &setup);
             double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
             double *F = zeros(size, sizeof *F), *F_expected = zeros(size, sizeof *F_expected);
             double *u = deformed_field(sample, &by_table, expected, &random);
@@ -170,9 +158,7 @@ TEST(faces)
                                other = body_force(&by_faces, u, force);
             body_gradient(&by_table, F_expected);
             body_gradient(&by_faces, F);
-            for (int64_t k = 0; k < size; k++) {
-                NEAR_TO(F[k], F_expected[k], 1e-12);
-            }
+            ALL_NEAR(size, F, F_expected, 1e-12);
             NEAR_TO(least.least_jacobian, other.least_jacobian, 1e-12);
             assert_int_equal(least.point, other.point);
             double energy, stabilised = 0.0;
@@ -193,8 +179,6 @@ TEST(faces)
             }
             energy = body_energy(&by_table, u);
             NEAR_TO(body_energy(&by_faces, u) - 1e-10 * stabilised, energy, 1e-4 * energy);
-            body_free(&by_table);
-            body_free(&by_faces);
         }
     }
 }
@@ -208,7 +192,7 @@ TEST(general_law)
         int64_t count = sample->cloud.node_count * sample->dim;
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, i < 4);
         setup.faces = sample->smoothed;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &body, force, &random);
         (void)body_force(&body, u, force);
@@ -217,10 +201,7 @@ TEST(general_law)
             body.blocks[b].neo_hookean = false;
         }
         (void)body_force(&body, u, expected);
-        for (int64_t k = 0; k < count; k++) {
-            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
-        }
-        body_free(&body);
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
     }
 }
 

@@ -1,7 +1,6 @@
 /* A small body for tests: a jittered lattice in a square or cube of 0.1 m, and its tables by either
  * integration scheme. */
-#ifndef TESTS_BODY_FIXTURE_H
-#define TESTS_BODY_FIXTURE_H
+#pragma once
 
 #include "cell_table.h"
 #include "tables_fixture.h"
@@ -29,7 +28,6 @@ static const double sample_size = 0.1;
 /* The jittered lattice of a sample. */
 static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 {
-    struct error error;
     struct cloud made;
     struct cloud_options cloud = {.kind = CLOUD_JITTERED,
                                   .dim = dim,
@@ -45,7 +43,6 @@ static inline struct cloud sample_cloud(int dim, int64_t per_axis)
 /* Of a cloud, which becomes the sample's; factor: support radius by local spacing. */
 static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud, double factor)
 {
-    struct error error;
     struct quadrature_rule rule;
     struct sample sample = {.dim = dim, .smoothed = smoothed, .cloud = cloud};
     int per_cell = smoothed ? 1 : dim + 1, corners = dim + 1;
@@ -134,5 +131,3 @@ static inline struct face_table sample_face_table(const struct sample *sample)
                                .lists = &sample->assembly.boundary_lists,
                                .phi = sample->assembly.boundary_phi};
 }
-
-#endif

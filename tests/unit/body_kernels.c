@@ -17,7 +17,7 @@ static void check_threads(const struct sample *sample, const struct setup *setup
     int before = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
-        struct body body = make_body(sample, setup);
+        FREED_BY(body_free) struct body body = make_body(sample, setup);
         double *force = zeros(count, sizeof *force);
         body.threads = threads; /* also where so many would not pay */
         for (int call = 0; call < 2; call++) {
@@ -30,7 +30,6 @@ static void check_threads(const struct sample *sample, const struct setup *setup
             assert_memory_equal(force, first, (size_t)count * sizeof *first);
             NEAR_TO(body_energy(&body, u), energy, 0.0);
         }
-        body_free(&body);
     }
     omp_set_num_threads(before);
 }
@@ -57,9 +56,7 @@ static void check_instructions(const struct sample *sample, const struct setup *
         }
         body.kernels = kernels;
         (void)body_force(&body, u, force);
-        for (int64_t i = 0; i < count; i++) {
-            NEAR_TO(force[i], expected[i], 1e-12 * largest(expected, count));
-        }
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
     }
 }
 
@@ -79,56 +76,48 @@ TEST(compressible)
             none.material[m].bulk_modulus = whole.material[m].bulk_modulus =
                 1.5 * none.material[m].shear_modulus;
         }
-        struct body one = make_body(sample, &none), other = make_body(sample, &whole);
+        FREED_BY(body_free) struct body one = make_body(sample, &none), other = make_body(sample, &whole);
         int64_t count = sample->cloud.node_count * sample->dim;
         double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
         double *u = deformed_field(sample, &one, force, &random), energy = body_energy(&one, u);
         (void)body_force(&one, u, expected);
         (void)body_force(&other, u, force);
-        for (int64_t k = 0; k < count; k++) {
-            NEAR_TO(force[k], expected[k], 1e-12 * largest(expected, count));
-        }
+        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
         NEAR_TO(body_energy(&other, u), energy, 1e-12 * energy);
-        body_free(&one);
-        body_free(&other);
     }
 }
 
 /* Nodal volumes share out the body, and its change of volume, among nodes and materials. */
-TEST(nodal_volumes)
+TEST_IN_EACH_DIM(nodal_volumes)
 {
     struct random random = {3};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, false, 5);
-        struct setup setup = three_materials(true);
-        struct body body = make_body(&sample, &setup);
-        const struct nodal_volumes *volumes = &body.volumes;
-        double *u = random_field(&sample, 1e-3, &random), volume = 0.0, content = 0.0, carried = 0.0,
-               expected = 0.0;
-        (void)body_energy(&body, u);
-        for (int64_t a = 0; a < volumes->count; a++) {
-            int32_t material = body.material[volumes->slot[volumes->ptr[a]] / (dim + 1)];
-            for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
-                int32_t slot = volumes->slot[i];
-                volume += volumes->share[slot];
-                assert_int_equal(volumes->of_point[slot], a);
-                assert_int_equal(body.material[slot / (dim + 1)], material);
-            }
-            content += volumes->content[a];
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, false, 5);
+    struct setup setup = three_materials(true);
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
+    const struct nodal_volumes *volumes = &body.volumes;
+    double *u = random_field(&sample, 1e-3, &random), volume = 0.0, content = 0.0, carried = 0.0,
+           expected = 0.0;
+    (void)body_energy(&body, u);
+    for (int64_t a = 0; a < volumes->count; a++) {
+        int32_t material = body.material[volumes->slot[volumes->ptr[a]] / (dim + 1)];
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int32_t slot = volumes->slot[i];
+            volume += volumes->share[slot];
+            assert_int_equal(volumes->of_point[slot], a);
+            assert_int_equal(body.material[slot / (dim + 1)], material);
         }
-        for (int64_t q = 0; q < body.point_count; q++) {
-            const struct material *material = &body.materials[body.material[q]];
-            if (material_bulk(material) > nodal_volume_modulus(material)) {
-                carried += body.weight[q];
-                expected += body.weight[q] * material_volume_strain(material, body.J[q]);
-            }
-        }
-        NEAR_TO(volume, carried, 1e-15);
-        NEAR_TO(content, expected, 1e-15);
-        assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
-        body_free(&body);
-        sample_free(&sample);
+        content += volumes->content[a];
     }
+    for (int64_t q = 0; q < body.point_count; q++) {
+        const struct material *material = &body.materials[body.material[q]];
+        if (material_bulk(material) > nodal_volume_modulus(material)) {
+            carried += body.weight[q];
+            expected += body.weight[q] * material_volume_strain(material, body.J[q]);
+        }
+    }
+    NEAR_TO(volume, carried, 1e-15);
+    NEAR_TO(content, expected, 1e-15);
+    assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
 }
 
 /* at_edge[nodes]: nodes on two sides of the first axis' lower side. */
@@ -188,31 +177,25 @@ static void check_shares(const struct sample *sample, const struct body *body, c
 
 /* Of bodies with edges forces are the gradient of the energy, also where materials share nodal volumes; a
  * uniform change of volume meets the bulk modulus. */
-TEST(edges)
+TEST_IN_EACH_DIM(edges)
 {
     struct random random = {5};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
-        bool *at_edge = edge_nodes(&sample);
-        struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
-        one.faces = three.faces = true;
-        one.at_edge = three.at_edge = at_edge;
-        three.group = (int32_t[]){0, 0, 1};
-        struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
-        double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
-        double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
-        (void)body_energy(&body, u);
-        for (int64_t q = 0; q < body.point_count; q++) {
-            NEAR_TO(nodal_volume_pressure(&body, q), pressure, 1e-9 * pressure);
-        }
-        check_shares(&sample, &body, at_edge);
-        check_work(&sample, &body, &random);
-        check_work(&sample, &mixed, &random);
-        body_free(&body);
-        body_free(&mixed);
-        free(at_edge);
-        sample_free(&sample);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+    SCRATCH bool *at_edge = edge_nodes(&sample);
+    struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
+    one.faces = three.faces = true;
+    one.at_edge = three.at_edge = at_edge;
+    three.group = (int32_t[]){0, 0, 1};
+    FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
+    double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
+    double pressure = material_pressure(&one.material[0], dim == 2 ? 1.0201 : 1.030301);
+    (void)body_energy(&body, u);
+    for (int64_t q = 0; q < body.point_count; q++) {
+        NEAR_TO(nodal_volume_pressure(&body, q), pressure, 1e-9 * pressure);
     }
+    check_shares(&sample, &body, at_edge);
+    check_work(&sample, &body, &random);
+    check_work(&sample, &mixed, &random);
 }
 
 /* A body of one material, of that Poisson's ratio. */
@@ -229,8 +212,8 @@ TEST(nodal_pressures)
 {
     const double poisson_ratio[3] = {0.49, 0.4999, 0.49999};
     for (int k = 0; k < 6; k++) {
-        struct sample sample = make_sample(2 + k % 2, false, 5);
-        struct body body = make_alike(&sample, poisson_ratio[k / 2]);
+        FREED_BY(sample_free) struct sample sample = make_sample(2 + k % 2, false, 5);
+        FREED_BY(body_free) struct body body = make_alike(&sample, poisson_ratio[k / 2]);
         struct nodal_volumes *volumes = &body.volumes;
         const struct material *material = &body.materials[0];
         double *u = zeros(sample.cloud.node_count * sample.dim, sizeof *u), J = 1.0;
@@ -264,8 +247,6 @@ TEST(nodal_pressures)
         }
         AT_MOST(sqrt(missing2 / whole2),
                 2.0 * 0.02 / 0.98); /* by the iterations, and scaled for uniform ones */
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
@@ -273,7 +254,6 @@ TEST(nodal_pressures)
 TEST(empty_volumes)
 {
     FREED_BY(body_free) struct body body = {0};
-    struct error error;
     struct material material[2] = {make_material(MATERIAL_NEO_HOOKEAN, 3000.0),
                                    make_material(MATERIAL_NEO_HOOKEAN, 6000.0)};
     struct body_input input = {.dim = 2,
@@ -311,7 +291,7 @@ TEST(diagonal)
         int dim = sample->dim;
         struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, false);
         setup.faces = by_faces;
-        struct body body = make_body(sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(sample, &setup);
         int64_t count = sample->cloud.node_count * dim;
         double mu = setup.material[0].shear_modulus, h = 1e-8;
         double wave = material_wave_modulus(&setup.material[0]), lambda = wave - 2.0 * mu;
@@ -337,7 +317,6 @@ TEST(diagonal)
                 NEAR_TO(trace, bound[n] * (lambda + (dim + 1) * mu) / wave, 1e-6 * bound[n]);
             }
         }
-        body_free(&body);
     }
 }
 
@@ -363,9 +342,7 @@ static void check_inversion(const struct sample *sample, const struct setup *set
                         u[(int64_t)sample->idx[i] * dim + k / dim] * sample->dphi[i * dim + k % dim];
                 }
             }
-            for (int k = 0; k < 9; k++) {
-                NEAR_TO(F[9 * q + k], G[k], 1e-11);
-            }
+            ALL_NEAR(9, F + 9 * q, G, 1e-11);
             least = determinant(F + 9 * q) < determinant(F + 9 * least) ? q : least;
         }
         assert_true(deformation.least_jacobian < 0.0);

@@ -1,7 +1,6 @@
 /* How the tests of the force loop make bodies of the fixture's samples, and what they have in common: fields,
  * and a check of every kind of body. */
-#ifndef TESTS_BODY_SETUP_H
-#define TESTS_BODY_SETUP_H
+#pragma once
 
 #include "body_fixture.h"
 
@@ -52,7 +51,6 @@ static inline int32_t material_at(const struct sample *sample, const struct setu
 static inline struct body make_body(const struct sample *sample, const struct setup *setup)
 {
     struct body body;
-    struct error error;
     struct smoothed_cells_input smoothed = sample_smoothed(sample);
     SCRATCH int32_t *material = NULL;
     ARRAY(material, sample->assembly.point_count);
@@ -158,5 +156,3 @@ static inline double *deformed_field(const struct sample *sample, struct body *b
     }
     return u;
 }
-
-#endif

@@ -1,6 +1,7 @@
 /* Boundary averages: sums, linear fields, boundary averages split where the boundary turns, areas, the
  * divergence theorem against the cells' table, and facets that are none. */
 #include "body_fixture.h"
+#include "base/vector.h"
 
 static struct facet_set all_facets(const struct sample *sample)
 {
@@ -23,7 +24,6 @@ static struct facet_set facets_of_side(const struct sample *sample, int side)
 static struct boundary_averages averages_of(const struct sample *sample, struct facet_set set)
 {
     struct boundary_averages averages;
-    struct error error;
     struct face_table table = sample_face_table(sample);
     GOOD(boundary_averages_build(&table, &set, &averages, &error));
     return averages;
@@ -49,16 +49,12 @@ static void check_averages(const struct sample *sample, const struct boundary_av
         for (int64_t i = averages->ptr[a]; i < averages->ptr[a + 1]; i++) {
             sum += averages->phi[i];
             assert_true(i == averages->ptr[a] || averages->idx[i - 1] < averages->idx[i]);
-            for (int c = 0; c < dim; c++) {
-                mean[c] += averages->phi[i] * sample->cloud.x[(int64_t)averages->idx[i] * dim + c];
-            }
+            add_scaled(dim, averages->phi[i], sample->cloud.x + (int64_t)averages->idx[i] * dim, mean);
         }
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             share += averages->sample_share[s];
             assert_true(averages->sample_share[s] > 0.0);
-            for (int c = 0; c < dim; c++) {
-                sampled[c] += averages->sample_share[s] * averages->sample_x[s * dim + c];
-            }
+            add_scaled(dim, averages->sample_share[s], averages->sample_x + s * dim, sampled);
         }
         NEAR_TO(sum, 1.0, 1e-12);
         NEAR_TO(share, 1.0, 1e-14);
@@ -74,165 +70,150 @@ static void check_averages(const struct sample *sample, const struct boundary_av
 }
 
 /* The whole boundary in one set: a boundary average for each side that meets at a node. */
-TEST(averages_split_at_corners)
+TEST_IN_EACH_DIM(averages_split_at_corners)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int smoothed = 0; smoothed < 2; smoothed++) {
-            struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
-            struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
-            int64_t expected = 0;
-            double area = 0.0, outward[3] = {0.0};
-            check_averages(&sample, &averages);
-            for (int32_t n = 0; n < sample.cloud.node_count; n++) {
-                int64_t parts = 0;
-                for (int64_t a = 0; a < averages.count; a++) {
-                    parts += averages.node[a] == n;
-                }
-                assert_int_equal(parts, sides_at(&sample, n));
-                expected += sides_at(&sample, n);
-            }
-            assert_int_equal(averages.count, expected);
-            int64_t longest = 0;
+    for (int smoothed = 0; smoothed < 2; smoothed++) {
+        FREED_BY(sample_free)
+        struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
+        FREED_BY(boundary_averages_free)
+        struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+        int64_t expected = 0;
+        double area = 0.0, outward[3] = {0.0};
+        check_averages(&sample, &averages);
+        for (int32_t n = 0; n < sample.cloud.node_count; n++) {
+            int64_t parts = 0;
             for (int64_t a = 0; a < averages.count; a++) {
-                longest = averages.ptr[a + 1] - averages.ptr[a] > longest
-                              ? averages.ptr[a + 1] - averages.ptr[a]
-                              : longest;
+                parts += averages.node[a] == n;
             }
-            assert_true(dim == 2 || longest > 64); /* so that its row has grown */
-            for (int64_t a = 0; a < averages.count; a++) {
-                int aligned = 0;
-                area += averages.area[a];
-                for (int c = 0; c < dim; c++) {
-                    double n = averages.normal[a * dim + c], x = averages.position[a * dim + c];
-                    outward[c] += averages.area[a] * n;
-                    aligned += fabs(fabs(n) - 1.0) < 1e-14;
-                    if (fabs(n) > 0.5) {
-                        NEAR_TO(x, n > 0.0 ? sample_size : 0.0, 1e-14);
-                    }
-                }
-                assert_int_equal(aligned, 1); /* no part mixes two sides */
-            }
-            NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-            for (int c = 0; c < dim; c++) {
-                NEAR_TO(outward[c], 0.0, 1e-14);
-            }
-            boundary_averages_free(&averages);
-            sample_free(&sample);
+            assert_int_equal(parts, sides_at(&sample, n));
+            expected += sides_at(&sample, n);
         }
+        assert_int_equal(averages.count, expected);
+        int64_t longest = 0;
+        for (int64_t a = 0; a < averages.count; a++) {
+            longest = averages.ptr[a + 1] - averages.ptr[a] > longest ? averages.ptr[a + 1] - averages.ptr[a]
+                                                                      : longest;
+        }
+        assert_true(dim == 2 || longest > 64); /* so that its row has grown */
+        for (int64_t a = 0; a < averages.count; a++) {
+            int aligned = 0;
+            area += averages.area[a];
+            for (int c = 0; c < dim; c++) {
+                double n = averages.normal[a * dim + c], x = averages.position[a * dim + c];
+                outward[c] += averages.area[a] * n;
+                aligned += fabs(fabs(n) - 1.0) < 1e-14;
+                if (fabs(n) > 0.5) {
+                    NEAR_TO(x, n > 0.0 ? sample_size : 0.0, 1e-14);
+                }
+            }
+            assert_int_equal(aligned, 1); /* no part mixes two sides */
+        }
+        NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
+        ALL_NEAR(dim, outward, NULL, 1e-14);
     }
 }
 
 /* A side alone has one boundary average for each of its nodes, and that is the part of it in the whole
  * boundary. */
-TEST(sides)
+TEST_IN_EACH_DIM(sides)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
-        struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
-        int64_t matched = 0;
-        for (int side = 0; side < 2 * dim; side++) {
-            struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, side));
-            double area = 0.0;
-            check_averages(&sample, &averages);
-            assert_int_equal(averages.count, dim == 2 ? 4 : 16);
-            for (int64_t a = 0; a < averages.count; a++) {
-                NEAR_TO(averages.normal[a * dim + side / 2], side % 2 ? 1.0 : -1.0, 1e-15);
-                area += averages.area[a];
-                for (int64_t b = 0; b < whole.count; b++) {
-                    if (whole.node[b] != averages.node[a] ||
-                        fabs(whole.normal[b * dim + side / 2] - averages.normal[a * dim + side / 2]) > 0.5) {
-                        continue;
-                    }
-                    int64_t length = averages.ptr[a + 1] - averages.ptr[a];
-                    matched++;
-                    assert_int_equal(whole.ptr[b + 1] - whole.ptr[b], length);
-                    for (int64_t i = 0; i < length; i++) {
-                        assert_int_equal(whole.idx[whole.ptr[b] + i], averages.idx[averages.ptr[a] + i]);
-                        NEAR_TO(whole.phi[whole.ptr[b] + i], averages.phi[averages.ptr[a] + i], 1e-15);
-                    }
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
+    FREED_BY(boundary_averages_free)
+    struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
+    int64_t matched = 0;
+    for (int side = 0; side < 2 * dim; side++) {
+        FREED_BY(boundary_averages_free)
+        struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, side));
+        double area = 0.0;
+        check_averages(&sample, &averages);
+        assert_int_equal(averages.count, dim == 2 ? 4 : 16);
+        for (int64_t a = 0; a < averages.count; a++) {
+            NEAR_TO(averages.normal[a * dim + side / 2], side % 2 ? 1.0 : -1.0, 1e-15);
+            area += averages.area[a];
+            for (int64_t b = 0; b < whole.count; b++) {
+                if (whole.node[b] != averages.node[a] ||
+                    fabs(whole.normal[b * dim + side / 2] - averages.normal[a * dim + side / 2]) > 0.5) {
+                    continue;
+                }
+                int64_t length = averages.ptr[a + 1] - averages.ptr[a];
+                matched++;
+                assert_int_equal(whole.ptr[b + 1] - whole.ptr[b], length);
+                for (int64_t i = 0; i < length; i++) {
+                    assert_int_equal(whole.idx[whole.ptr[b] + i], averages.idx[averages.ptr[a] + i]);
+                    NEAR_TO(whole.phi[whole.ptr[b] + i], averages.phi[averages.ptr[a] + i], 1e-15);
                 }
             }
-            NEAR_TO(area, pow(sample_size, dim - 1), 1e-15);
-            boundary_averages_free(&averages);
         }
-        assert_int_equal(matched, whole.count);
-        boundary_averages_free(&whole);
-        sample_free(&sample);
+        NEAR_TO(area, pow(sample_size, dim - 1), 1e-15);
     }
+    assert_int_equal(matched, whole.count);
 }
 
 /* The mean gradient of any field over the body is its boundary's: for every node j,
  * sum_cells V dphi_j = sum_averages A Phi_j n, to round-off, since cells and boundary averages share their
  * quadrature. */
-TEST(divergence_theorem)
+TEST_IN_EACH_DIM(divergence_theorem)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
-        struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
-        int64_t count = sample.cloud.node_count * dim;
-        double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
-        double largest = 0.0;
-        for (int64_t q = 0; q < sample.assembly.point_count; q++) {
-            for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
-                for (int c = 0; c < dim; c++) {
-                    inside[(int64_t)sample.idx[i] * dim + c] +=
-                        sample.assembly.weight[q] * sample.dphi[i * dim + c];
-                }
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 7 : 4);
+    FREED_BY(boundary_averages_free)
+    struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
+    int64_t count = sample.cloud.node_count * dim;
+    double *inside = zeros(count, sizeof *inside), *outside = zeros(count, sizeof *outside);
+    double largest = 0.0;
+    for (int64_t q = 0; q < sample.assembly.point_count; q++) {
+        for (int64_t i = sample.ptr[q]; i < sample.ptr[q + 1]; i++) {
+            for (int c = 0; c < dim; c++) {
+                inside[(int64_t)sample.idx[i] * dim + c] +=
+                    sample.assembly.weight[q] * sample.dphi[i * dim + c];
             }
         }
-        for (int64_t a = 0; a < averages.count; a++) {
-            for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
-                for (int c = 0; c < dim; c++) {
-                    outside[(int64_t)averages.idx[i] * dim + c] +=
-                        averages.area[a] * averages.phi[i] * averages.normal[a * dim + c];
-                }
-            }
-        }
-        for (int64_t i = 0; i < count; i++) {
-            largest = fmax(largest, fabs(outside[i]));
-            NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
-        }
-        assert_true(largest > 0.01 * pow(sample_size, dim - 1));
-        boundary_averages_free(&averages);
-        sample_free(&sample);
     }
+    for (int64_t a = 0; a < averages.count; a++) {
+        for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+            for (int c = 0; c < dim; c++) {
+                outside[(int64_t)averages.idx[i] * dim + c] +=
+                    averages.area[a] * averages.phi[i] * averages.normal[a * dim + c];
+            }
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(outside[i]));
+        NEAR_TO(inside[i], outside[i], 1e-13 * pow(sample_size, dim - 1));
+    }
+    assert_true(largest > 0.01 * pow(sample_size, dim - 1));
 }
 
 /* A facet is the same face whatever node it begins with; which way it is turned gives the normal. */
-TEST(other_vertex_orders)
+TEST_IN_EACH_DIM(other_vertex_orders)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
-        struct facet_set set = all_facets(&sample);
-        struct boundary_averages expected = averages_of(&sample, set);
-        int32_t *turned = zeros(set.count * dim, sizeof *turned);
-        for (int shift = 1; shift < dim + 1; shift++) {
-            /* Begin with the next node; at last, swap two: inside out. */
-            for (int64_t f = 0; f < set.count; f++) {
-                for (int k = 0; k < dim; k++) {
-                    int from = dim == 2 || shift == dim ? dim - 1 - k : (k + shift) % dim;
-                    turned[f * dim + k] = set.facet[f * dim + from];
-                }
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
+    struct facet_set set = all_facets(&sample);
+    FREED_BY(boundary_averages_free) struct boundary_averages expected = averages_of(&sample, set);
+    int32_t *turned = zeros(set.count * dim, sizeof *turned);
+    for (int shift = 1; shift < dim + 1; shift++) {
+        /* Begin with the next node; at last, swap two: inside out. */
+        for (int64_t f = 0; f < set.count; f++) {
+            for (int k = 0; k < dim; k++) {
+                int from = dim == 2 || shift == dim ? dim - 1 - k : (k + shift) % dim;
+                turned[f * dim + k] = set.facet[f * dim + from];
             }
-            double sign = dim == 2 || shift == dim ? -1.0 : 1.0;
-            struct boundary_averages averages = averages_of(&sample, (struct facet_set){set.count, turned});
-            assert_int_equal(averages.count, expected.count);
-            for (int64_t a = 0; a < averages.count; a++) {
-                assert_int_equal(averages.node[a], expected.node[a]);
-                NEAR_TO(averages.area[a], expected.area[a], 1e-15);
-                for (int c = 0; c < dim; c++) {
-                    NEAR_TO(averages.position[a * dim + c], expected.position[a * dim + c], 1e-15);
-                    NEAR_TO(averages.normal[a * dim + c], sign * expected.normal[a * dim + c], 1e-14);
-                }
-                for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
-                    assert_int_equal(averages.idx[i], expected.idx[i]);
-                    NEAR_TO(averages.phi[i], expected.phi[i], 1e-14);
-                }
-            }
-            boundary_averages_free(&averages);
         }
-        boundary_averages_free(&expected);
-        sample_free(&sample);
+        double sign = dim == 2 || shift == dim ? -1.0 : 1.0;
+        FREED_BY(boundary_averages_free)
+        struct boundary_averages averages = averages_of(&sample, (struct facet_set){set.count, turned});
+        assert_int_equal(averages.count, expected.count);
+        for (int64_t a = 0; a < averages.count; a++) {
+            assert_int_equal(averages.node[a], expected.node[a]);
+            NEAR_TO(averages.area[a], expected.area[a], 1e-15);
+            for (int c = 0; c < dim; c++) {
+                NEAR_TO(averages.position[a * dim + c], expected.position[a * dim + c], 1e-15);
+                NEAR_TO(averages.normal[a * dim + c], sign * expected.normal[a * dim + c], 1e-14);
+            }
+            for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
+                assert_int_equal(averages.idx[i], expected.idx[i]);
+                NEAR_TO(averages.phi[i], expected.phi[i], 1e-14);
+            }
+        }
     }
 }
 
@@ -250,10 +231,10 @@ TEST(touching_facets)
         for (int i = 0; i < 9; i++) {
             shared += facets[i / 3] == facets[3 + i % 3];
         }
+        FREED_BY(boundary_averages_free)
         struct boundary_averages averages = averages_of(&sample, (struct facet_set){2, facets});
         assert_int_equal(averages.count, shared == 2 ? 4 : 6);
         pairs[shared]++;
-        boundary_averages_free(&averages);
     }
     assert_true(pairs[0] > 0 && pairs[1] > 0 && pairs[2] > 0);
 }
@@ -267,9 +248,8 @@ TEST(gentle_and_sharp_turns)
         double x[2 * (MOST + 1)] = {0.0}, phi[4 * MOST], widen[2 * MOST];
         int32_t cells[3 * MOST], facets[2 * MOST], idx[4 * MOST];
         int64_t ptr[2 * MOST + 1] = {0};
-        struct faces faces;
-        struct error error;
-        struct boundary_averages averages;
+        FREED_BY(faces_free) struct faces faces = {0};
+        FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
         for (int i = 0; i < corners; i++) {
             x[2 * (i + 1)] = cos(2.0 * M_PI * i / corners);
             x[2 * (i + 1) + 1] = sin(2.0 * M_PI * i / corners);
@@ -309,99 +289,84 @@ TEST(gentle_and_sharp_turns)
             NEAR_TO(averages.normal[2 * a], x[2 * node], 1e-14);
             NEAR_TO(averages.normal[2 * a + 1], x[2 * node + 1], 1e-14);
         }
-        boundary_averages_free(&averages);
-        faces_free(&faces);
     }
 }
 
 /* Boundary averages that are not split, and the mean over each side of the box: the boundary averages of a
  * side, split there, make its mean. Of split boundary averages the groups are the sides. */
-TEST(whole_sides)
+TEST_IN_EACH_DIM(whole_sides)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = sample_face_table(&sample);
-        struct facet_set set = all_facets(&sample);
-        struct error error;
-        for (int split = 0; split < 2; split++) {
-            struct boundary_averages averages;
-            struct boundary_sides sides;
-            int64_t nodes = 0, parts = 0;
-            double whole = pow(sample_size, dim - 1);
-            GOOD(boundary_sides_build(&table, &set, split == 1, &averages, &sides, &error));
-            for (int32_t n = 0; n < sample.cloud.node_count; n++) {
-                nodes += sides_at(&sample, n) > 0;
-                parts += sides_at(&sample, n);
-            }
-            assert_int_equal(sides.node_average_count, split == 1 ? parts : nodes);
-            assert_int_equal(averages.count, sides.node_average_count + 2 * dim);
-            assert_int_equal(sides.group_count, split == 1 ? 2 * dim : 1);
-            for (int64_t a = 0; a < averages.count; a++) {
-                bool is_side = a >= sides.node_average_count;
-                double extent = 0.0;
-                assert_int_equal(sides.flat[a],
-                                 is_side || split == 1 || sides_at(&sample, averages.node[a]) == 1);
-                for (int c = 0; c < dim; c++) {
-                    double along = fabs(averages.normal[a * dim + c]);
-                    extent = along > extent ? along : extent;
-                    if (is_side && along < 0.5) {
-                        NEAR_TO(averages.position[a * dim + c], 0.5 * sample_size, 1e-14);
-                    }
-                }
-                if (is_side) {
-                    NEAR_TO(averages.area[a], whole, 1e-12 * whole);
-                    NEAR_TO(extent, 1.0, 1e-12);
-                }
-            }
-            for (int64_t s = sides.node_average_count; s < averages.count && split == 1; s++) {
-                double area = 0.0;
-                for (int64_t a = 0; a < sides.node_average_count; a++) {
-                    area += sides.group[a] == sides.group[s] ? averages.area[a] : 0.0;
-                }
-                NEAR_TO(area, whole, 1e-12 * whole);
-            }
-            boundary_averages_free(&averages);
-            boundary_sides_free(&sides);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+    struct face_table table = sample_face_table(&sample);
+    struct facet_set set = all_facets(&sample);
+    for (int split = 0; split < 2; split++) {
+        FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+        FREED_BY(boundary_sides_free) struct boundary_sides sides = {0};
+        int64_t nodes = 0, parts = 0;
+        double whole = pow(sample_size, dim - 1);
+        GOOD(boundary_sides_build(&table, &set, split == 1, &averages, &sides, &error));
+        for (int32_t n = 0; n < sample.cloud.node_count; n++) {
+            nodes += sides_at(&sample, n) > 0;
+            parts += sides_at(&sample, n);
         }
-        sample_free(&sample);
+        assert_int_equal(sides.node_average_count, split == 1 ? parts : nodes);
+        assert_int_equal(averages.count, sides.node_average_count + 2 * dim);
+        assert_int_equal(sides.group_count, split == 1 ? 2 * dim : 1);
+        for (int64_t a = 0; a < averages.count; a++) {
+            bool is_side = a >= sides.node_average_count;
+            double extent = 0.0;
+            assert_int_equal(sides.flat[a],
+                             is_side || split == 1 || sides_at(&sample, averages.node[a]) == 1);
+            for (int c = 0; c < dim; c++) {
+                double along = fabs(averages.normal[a * dim + c]);
+                extent = along > extent ? along : extent;
+                if (is_side && along < 0.5) {
+                    NEAR_TO(averages.position[a * dim + c], 0.5 * sample_size, 1e-14);
+                }
+            }
+            if (is_side) {
+                NEAR_TO(averages.area[a], whole, 1e-12 * whole);
+                NEAR_TO(extent, 1.0, 1e-12);
+            }
+        }
+        for (int64_t s = sides.node_average_count; s < averages.count && split == 1; s++) {
+            double area = 0.0;
+            for (int64_t a = 0; a < sides.node_average_count; a++) {
+                area += sides.group[a] == sides.group[s] ? averages.area[a] : 0.0;
+            }
+            NEAR_TO(area, whole, 1e-12 * whole);
+        }
     }
 }
 
 /* Node values: one entry for each node, never split, with the table's row of the node. */
-TEST(node_values)
+TEST_IN_EACH_DIM(node_values)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct error error;
-        struct sample sample = make_sample(dim, true, 5);
-        const struct neighbours lists = sample.assembly.node_lists;
-        const double *phi = sample.assembly.node_phi;
-        struct boundary_averages averages;
-        int64_t count = sample.cloud.node_count, expected = 0;
-        double area = 0.0;
-        struct face_table table = sample_face_table(&sample);
-        struct facet_set set = all_facets(&sample);
-        GOOD(boundary_nodes_build(&table, &set, &lists, phi, &averages, &error));
-        check_averages(&sample, &averages);
-        for (int32_t n = 0; n < count; n++) {
-            expected += sides_at(&sample, n) > 0;
-        }
-        assert_int_equal(averages.count, expected);
-        for (int64_t a = 0; a < averages.count; a++) {
-            int32_t node = averages.node[a];
-            area += averages.area[a];
-            assert_int_equal(averages.ptr[a + 1] - averages.ptr[a], lists.ptr[node + 1] - lists.ptr[node]);
-            for (int64_t i = 0; i < lists.ptr[node + 1] - lists.ptr[node]; i++) {
-                assert_int_equal(averages.idx[averages.ptr[a] + i], lists.idx[lists.ptr[node] + i]);
-                NEAR_TO(averages.phi[averages.ptr[a] + i], phi[lists.ptr[node] + i], 0.0);
-            }
-            for (int c = 0; c < dim; c++) {
-                NEAR_TO(averages.position[a * dim + c], sample.cloud.x[(int64_t)node * dim + c], 0.0);
-            }
-        }
-        NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-        boundary_averages_free(&averages);
-        sample_free(&sample);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+    const struct neighbours lists = sample.assembly.node_lists;
+    const double *phi = sample.assembly.node_phi;
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+    int64_t count = sample.cloud.node_count, expected = 0;
+    double area = 0.0;
+    struct face_table table = sample_face_table(&sample);
+    struct facet_set set = all_facets(&sample);
+    GOOD(boundary_nodes_build(&table, &set, &lists, phi, &averages, &error));
+    check_averages(&sample, &averages);
+    for (int32_t n = 0; n < count; n++) {
+        expected += sides_at(&sample, n) > 0;
     }
+    assert_int_equal(averages.count, expected);
+    for (int64_t a = 0; a < averages.count; a++) {
+        int32_t node = averages.node[a];
+        area += averages.area[a];
+        assert_int_equal(averages.ptr[a + 1] - averages.ptr[a], lists.ptr[node + 1] - lists.ptr[node]);
+        for (int64_t i = 0; i < lists.ptr[node + 1] - lists.ptr[node]; i++) {
+            assert_int_equal(averages.idx[averages.ptr[a] + i], lists.idx[lists.ptr[node] + i]);
+            NEAR_TO(averages.phi[averages.ptr[a] + i], phi[lists.ptr[node] + i], 0.0);
+        }
+        ALL_NEAR(dim, averages.position + a * dim, sample.cloud.x + (int64_t)node * dim, 0.0);
+    }
+    NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
 }
 
 /* Whether a face lies on the side x = 0 of the box, there all of it below y = limit. */
@@ -418,105 +383,96 @@ static bool on_side_below(const struct sample *sample, int64_t face, double limi
 
 /* A side that is held in part ends where the held faces do; at the edges of the box, where the boundary
  * turns, and within a boundary that is held altogether nothing ends. */
-TEST(ends)
+TEST_IN_EACH_DIM(ends)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 5);
-        struct face_table table = sample_face_table(&sample);
-        struct error error;
-        bool *held = zeros(sample.assembly.faces.count, sizeof *held);
-        bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
-        bool *end = zeros(sample.cloud.node_count, sizeof *end);
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
+    struct face_table table = sample_face_table(&sample);
+    bool *held = zeros(sample.assembly.faces.count, sizeof *held);
+    bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
+    bool *end = zeros(sample.cloud.node_count, sizeof *end);
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+        held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+    }
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+        held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
+    }
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+        assert_false(end[n]);
+    }
+    double highest = 0.0;
+    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+        held[f] = on_side_below(&sample, f, 0.6 * sample_size);
+        for (int k = 0; k < dim && held[f]; k++) {
+            highest =
+                fmax(highest, sample.cloud.x[(int64_t)sample.assembly.faces.node[f * dim + k] * dim + 1]);
         }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
+    }
+    assert_true(highest > 0.2 * sample_size);
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    int64_t count = 0;
+    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+        const double *x = sample.cloud.x + n * dim;
+        count += end[n];
+        if (end[n]) {
+            assert_true(fabs(x[0]) < 1e-12 && x[1] > 0.3 * sample_size && x[1] < 0.6 * sample_size);
         }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            assert_false(end[n]);
+    }
+    assert_int_equal(count, dim == 2 ? 1 : 5);
+    /* The whole side, whose edges are sharp ends. */
+    memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
+    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+        held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+    }
+    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
+        touched[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
+    }
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, touched, end, &error));
+    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+        assert_false(end[n]);
+    }
+    GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, held, end, &error));
+    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+        const double *x = sample.cloud.x + n * dim;
+        bool is_edge = false;
+        for (int k = 1; k < dim; k++) {
+            is_edge = is_edge || x[k] < 1e-12 || x[k] > sample_size - 1e-12;
         }
-        double highest = 0.0;
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            held[f] = on_side_below(&sample, f, 0.6 * sample_size);
-            for (int k = 0; k < dim && held[f]; k++) {
-                highest =
-                    fmax(highest, sample.cloud.x[(int64_t)sample.assembly.faces.node[f * dim + k] * dim + 1]);
-            }
-        }
-        assert_true(highest > 0.2 * sample_size);
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
-        int64_t count = 0;
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            const double *x = sample.cloud.x + n * dim;
-            count += end[n];
-            if (end[n]) {
-                assert_true(fabs(x[0]) < 1e-12 && x[1] > 0.3 * sample_size && x[1] < 0.6 * sample_size);
-            }
-        }
-        assert_int_equal(count, dim == 2 ? 1 : 5);
-        /* The whole side, whose edges are sharp ends. */
-        memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            held[f] = on_side_below(&sample, f, 2.0 * sample_size);
-        }
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            touched[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
-        }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, touched, end, &error));
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            assert_false(end[n]);
-        }
-        GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, held, end, &error));
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            const double *x = sample.cloud.x + n * dim;
-            bool is_edge = false;
-            for (int k = 1; k < dim; k++) {
-                is_edge = is_edge || x[k] < 1e-12 || x[k] > sample_size - 1e-12;
-            }
-            assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
-        }
-        sample_free(&sample);
+        assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
     }
 }
 
-TEST(faults)
+TEST_IN_EACH_DIM(faults)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = make_sample(dim, true, 4);
-        struct face_table table = sample_face_table(&sample);
-        struct boundary_averages averages;
-        struct error error;
-        int32_t facets[6];
-        struct facet_set set = {2, facets};
-        memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
-        /* A face between two cells. */
-        int64_t inner = 0;
-        while (sample.assembly.faces.cell[2 * inner + 1] < 0) {
-            inner++;
-        }
-        memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
-        boundary_averages_free(&averages);
-        /* Nodes that are no face at all, and none that exist. */
-        facets[dim] = facets[dim + 1] = facets[0];
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: row 1 of the set is no boundary face of the cells");
-        boundary_averages_free(&averages);
-        facets[dim] = (int32_t)sample.cloud.node_count;
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, dim == 2 ? "facets: no node 16" : "facets: no node 64");
-        boundary_averages_free(&averages);
-        facets[dim] = -1;
-        assert_int_equal(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT);
-        assert_string_equal(error.text, "facets: no node -1");
-        boundary_averages_free(&averages);
-        sample_free(&sample);
+    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
+    struct face_table table = sample_face_table(&sample);
+    struct boundary_averages averages;
+    int32_t facets[6];
+    struct facet_set set = {2, facets};
+    memcpy(facets, sample.cloud.facets, (size_t)dim * sizeof *facets);
+    /* A face between two cells. */
+    int64_t inner = 0;
+    while (sample.assembly.faces.cell[2 * inner + 1] < 0) {
+        inner++;
     }
+    memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
+    FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+               "facets: row 1 of the set is no boundary face of the cells");
+    boundary_averages_free(&averages);
+    /* Nodes that are no face at all, and none that exist. */
+    facets[dim] = facets[dim + 1] = facets[0];
+    FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+               "facets: row 1 of the set is no boundary face of the cells");
+    boundary_averages_free(&averages);
+    facets[dim] = (int32_t)sample.cloud.node_count;
+    FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
+               dim == 2 ? "facets: no node 16" : "facets: no node 64");
+    boundary_averages_free(&averages);
+    facets[dim] = -1;
+    FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT, "facets: no node -1");
+    boundary_averages_free(&averages);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,5 @@
 /* A jittered lattice over a square or cube of .1 m, with its cells. */
-#ifndef TESTS_BOX_FIXTURE_H
-#define TESTS_BOX_FIXTURE_H
+#pragma once
 
 #include "approx_fixture.h"
 
@@ -11,7 +10,6 @@ static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, d
 {
     struct cloud_options options = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter, .seed = 5};
     struct cloud cloud;
-    struct error error;
     for (int a = 0; a < dim; a++) {
         options.count[a] = per_axis;
         options.low[a] = offset;
@@ -30,5 +28,3 @@ static inline struct cells cells_of(const struct cloud *cloud)
                           .count = cloud->cell_count,
                           .node = cloud->cells};
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Shape functions in smoothed cells and their mean gradients, from averages over faces, one cell after the
  * other as the divergence theorem has it: what tests compare with. */
-#ifndef TESTS_CELL_TABLE_H
-#define TESTS_CELL_TABLE_H
+#pragma once
 
 #include "unit.h"
 
@@ -79,5 +78,3 @@ static inline void cell_table_free(struct cell_table *table)
     free(table->dphi);
     *table = (struct cell_table){0};
 }
-
-#endif

@@ -19,10 +19,7 @@ static struct cloud_options options_of(enum cloud_kind kind, int dim)
 static struct cloud make(const struct cloud_options *options)
 {
     struct cloud cloud;
-    struct error error = {""};
-    enum status status = cloud_make(options, &cloud, &error);
-    assert_string_equal(error.text, "");
-    assert_int_equal(status, STATUS_OK);
+    GOOD(cloud_make(options, &cloud, &error));
     return cloud;
 }
 
@@ -47,69 +44,58 @@ static double box_volume(const struct cloud_options *options)
     return volume;
 }
 
-TEST(cells_fill_the_box)
+TEST_IN_EACH_DIM(cells_fill_the_box)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
-            struct cloud_options options = options_of((enum cloud_kind)kind, dim);
-            struct cloud cloud = make(&options);
-            if (kind == CLOUD_HALTON) {
-                assert_int_equal(cloud.node_count, 5);
-                assert_int_equal(cloud.cell_count, 0);
-            } else {
-                assert_int_equal(cloud.node_count, dim == 2 ? 20 : 60);
-                assert_int_equal(cloud.cell_count, dim == 2 ? 2 * 12 : 6 * 24);
-                assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) < 1e-14);
-            }
-            cloud_free(&cloud);
+    for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
+        struct cloud_options options = options_of((enum cloud_kind)kind, dim);
+        FREED_BY(cloud_free) struct cloud cloud = make(&options);
+        if (kind == CLOUD_HALTON) {
+            assert_int_equal(cloud.node_count, 5);
+            assert_int_equal(cloud.cell_count, 0);
+        } else {
+            assert_int_equal(cloud.node_count, dim == 2 ? 20 : 60);
+            assert_int_equal(cloud.cell_count, dim == 2 ? 2 * 12 : 6 * 24);
+            assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) < 1e-14);
         }
     }
 }
 
 /* Each side is covered once, all its facets looking outward: their area vectors sum to that of the side. */
-TEST(facets_look_outward)
+TEST_IN_EACH_DIM(facets_look_outward)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-        struct cloud cloud = make(&options);
-        double sum[6][3] = {{0}};
-        double size[6] = {0};
-        for (int64_t f = 0; f < cloud.facet_count; f++) {
-            double vector[3] = {0};
-            int side = cloud.facet_set[f];
-            assert_true(f == 0 || cloud.facet_set[f - 1] <= side);
-            face_area_vector(dim, cloud.x, &cloud.facets[f * dim], vector);
-            for (int a = 0; a < dim; a++) {
-                sum[side][a] += vector[a];
-            }
-            size[side] += fabs(vector[side / 2]);
+    struct cloud_options options = options_of(CLOUD_JITTERED, dim);
+    FREED_BY(cloud_free) struct cloud cloud = make(&options);
+    double sum[6][3] = {{0}};
+    double size[6] = {0};
+    for (int64_t f = 0; f < cloud.facet_count; f++) {
+        double vector[3] = {0};
+        int side = cloud.facet_set[f];
+        assert_true(f == 0 || cloud.facet_set[f - 1] <= side);
+        face_area_vector(dim, cloud.x, &cloud.facets[f * dim], vector);
+        for (int a = 0; a < dim; a++) {
+            sum[side][a] += vector[a];
         }
-        for (int side = 0; side < 2 * dim; side++) {
-            double area = box_volume(&options) / (options.high[side / 2] - options.low[side / 2]);
-            for (int a = 0; a < dim; a++) {
-                double expected = a == side / 2 ? (side % 2 == 0 ? -area : area) : 0;
-                assert_true(fabs(sum[side][a] - expected) < 1e-13);
-            }
-            assert_true(fabs(size[side] - area) < 1e-13);
+        size[side] += fabs(vector[side / 2]);
+    }
+    for (int side = 0; side < 2 * dim; side++) {
+        double area = box_volume(&options) / (options.high[side / 2] - options.low[side / 2]);
+        for (int a = 0; a < dim; a++) {
+            double expected = a == side / 2 ? (side % 2 == 0 ? -area : area) : 0;
+            assert_true(fabs(sum[side][a] - expected) < 1e-13);
         }
-        cloud_free(&cloud);
+        assert_true(fabs(size[side] - area) < 1e-13);
     }
 }
 
-TEST(neighbours_conform)
+TEST_IN_EACH_DIM(neighbours_conform)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-        struct cloud cloud = make(&options);
-        struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
-        struct faces boundary;
-        struct error error;
-        GOOD(faces_build(&cells, true, &boundary, &error));
-        assert_int_equal(boundary.count, cloud.facet_count);
-        assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
-        faces_free(&boundary);
-        cloud_free(&cloud);
-    }
+    struct cloud_options options = options_of(CLOUD_JITTERED, dim);
+    FREED_BY(cloud_free) struct cloud cloud = make(&options);
+    struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
+    FREED_BY(faces_free) struct faces boundary = {0};
+    GOOD(faces_build(&cells, true, &boundary, &error));
+    assert_int_equal(boundary.count, cloud.facet_count);
+    assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
 }
 
 TEST(regular_nodes_are_where_they_should)
@@ -201,7 +187,7 @@ TEST(wrong_options_are_refused)
     struct cloud_options good = options_of(CLOUD_JITTERED, 2);
     for (int i = 0; i < 7; i++) {
         struct cloud_options options = good;
-        struct cloud cloud;
+        FREED_BY(cloud_free) struct cloud cloud = {0};
         struct error error = {""};
         options.dim = i == 0 ? 4 : 2;
         options.count[1] = i == 1 ? 1 : i == 2 ? INT32_MAX : 4;
@@ -213,7 +199,6 @@ TEST(wrong_options_are_refused)
         }
         assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_INPUT);
         assert_ptr_equal(strstr(error.text, about[i]), error.text);
-        cloud_free(&cloud);
     }
 }
 

@@ -2,7 +2,6 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
-#include "base/memory.h"
 #include "solid/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */
@@ -28,7 +27,6 @@ static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count
 {
     struct cloud cloud = {.size = node_count * dim};
     struct random random = {(uint64_t)(17 * dim + centre_count)};
-    struct error error;
     cloud.X = numbers(cloud.size, -0.1, 0.1, &random);
     for (int64_t n = 0; n < node_count; n++) {
         cloud.X[n * dim] += 5.0 * cloud.X[n * dim + 1]; /* slender, so that some shares vanish */
@@ -68,33 +66,26 @@ static void sum_plainly(const struct cloud *cloud, const double *weight, double 
     }
 }
 
-TEST(plain_sums)
+TEST_IN_EACH_DIM(plain_sums)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
-            for (int weighted = 0; weighted < 2; weighted++) {
-                struct cloud cloud = make_cloud(dim, NODES, centres);
-                int64_t size = cloud.coarse.count * dim;
-                const double *weight = weighted ? cloud.weight : NULL;
-                double *amount = array_new(size, sizeof *amount),
-                       *expected = array_new(size, sizeof *expected);
-                double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
-                assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
-                sum_plainly(&cloud, weight, expected, field);
-                coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
-                coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
-                for (int64_t i = 0; i < size; i++) {
-                    NEAR_TO(amount[i], expected[i], 1e-12 * NODES);
-                }
-                for (int64_t i = 0; i < cloud.size; i++) {
-                    NEAR_TO(u[i], field[i], 1e-13);
-                }
-                free(amount);
-                free(expected);
-                free(u);
-                free(field);
-                release(&cloud);
-            }
+    for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
+        for (int weighted = 0; weighted < 2; weighted++) {
+            struct cloud cloud = make_cloud(dim, NODES, centres);
+            int64_t size = cloud.coarse.count * dim;
+            const double *weight = weighted ? cloud.weight : NULL;
+            double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
+            double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
+            assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
+            sum_plainly(&cloud, weight, expected, field);
+            coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
+            coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
+            ALL_NEAR(size, amount, expected, 1e-12 * NODES);
+            ALL_NEAR(cloud.size, u, field, 1e-13);
+            free(amount);
+            free(expected);
+            free(u);
+            free(field);
+            release(&cloud);
         }
     }
 }
@@ -131,28 +122,25 @@ TEST(same_bits)
 }
 
 /* The shares of all centres make the constant field, and with the places of the centres the coordinates. */
-TEST(linear_fields)
+TEST_IN_EACH_DIM(linear_fields)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = make_cloud(dim, 500, 6);
-        const struct coarse_space *coarse = &cloud.coarse;
-        double *u = array_new(cloud.size, sizeof *u);
-        assert_non_null(u);
-        memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
-        for (int c = 0; c < coarse->centre_count; c++) {
-            for (int a = 0; a < dim; a++) {
-                int64_t first = (int64_t)c * (dim + 1);
-                cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
-                cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
-            }
+    struct cloud cloud = make_cloud(dim, 500, 6);
+    const struct coarse_space *coarse = &cloud.coarse;
+    SCRATCH double *u = array_new(cloud.size, sizeof *u);
+    assert_non_null(u);
+    memset(cloud.amount, 0, (size_t)(coarse->count * dim) * sizeof *cloud.amount);
+    for (int c = 0; c < coarse->centre_count; c++) {
+        for (int a = 0; a < dim; a++) {
+            int64_t first = (int64_t)c * (dim + 1);
+            cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
+            cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
         }
-        coarse_space_prolongate(coarse, cloud.amount, u);
-        for (int64_t i = 0; i < cloud.size; i++) {
-            NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
-        }
-        free(u);
-        release(&cloud);
     }
+    coarse_space_prolongate(coarse, cloud.amount, u);
+    for (int64_t i = 0; i < cloud.size; i++) {
+        NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
+    }
+    release(&cloud);
 }
 
 /* A ring of nodes with a slit, each with its neighbours, and `alone` nodes behind it without any. */
@@ -184,8 +172,7 @@ TEST(ways)
     struct neighbours neighbours = {.count = ALL, .ptr = ptr, .idx = idx};
     make_ring(RING, ALONE, X, ptr, idx);
     for (int with_ways = 0; with_ways < 2; with_ways++) {
-        struct coarse_space coarse;
-        struct error error;
+        FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
         GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, COARSE_MOST_CENTRES, &coarse,
                                 &error));
         double both = 0.0;
@@ -200,7 +187,6 @@ TEST(ways)
             }
             NEAR_TO(sum, 1.0, 1e-14);
         }
-        coarse_space_free(&coarse);
     }
 }
 

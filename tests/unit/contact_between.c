@@ -53,7 +53,6 @@ static struct pair *make_pair(const struct sample *sample, bool itself, bool *an
     *pair = (struct pair){.sample = sample, .nodes = sample->cloud.node_count};
     struct face_table table = sample_face_table(sample);
     struct opposite opposite;
-    struct error error;
     int dim = sample->dim;
     struct facet_set points = facets_of_side(sample, itself ? -1 : HIGH_SIDE);
     struct facet_set others = itself ? points : facets_of_side(sample, LOW_SIDE);

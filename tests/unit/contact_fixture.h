@@ -1,7 +1,6 @@
 /* What the tests of contacts share: contact nodes made up of a few nodes, particles, and closed or open
  * shells. */
-#ifndef TESTS_CONTACT_FIXTURE_H
-#define TESTS_CONTACT_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -74,7 +73,6 @@ static inline void make_particles(struct contact_nodes *contact_nodes, int dim, 
 static inline struct rigid_surface make_shell(int dim, int sides, double radius, bool open)
 {
     struct rigid_surface surface;
-    struct error error;
     double corners[24 * 9];
     int64_t count = 0;
     if (dim == 2) {
@@ -105,7 +103,6 @@ static inline struct contact built(const struct contact_nodes *contact_nodes, st
                                    double stiffness)
 {
     struct contact contact;
-    struct error error;
     GOOD(contact_build(&contact_nodes->averages, NULL, contact_nodes->X, contact_nodes->dim, &surface,
                        stiffness, &contact, &error));
     assert_null(surface.vertex);
@@ -138,5 +135,3 @@ static inline int touching(const struct contact *contact)
     }
     return count;
 }
-
-#endif

@@ -52,7 +52,6 @@ TEST(across)
     FREED_BY(contact_free) struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct contact_patch patch;
-        struct error error;
         for (int a = 0; a < CONTACT_NODES; a++) {
             contact.pressure[a] = cases[i].presses[a] - '0';
         }
@@ -78,7 +77,6 @@ TEST(inside)
     FREED_BY(contact_free) struct contact contact = built(&contact_nodes, make_shell(2, 4, 0.5, false), 1.0);
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
         struct contact_patch patch;
-        struct error error;
         double low = bodies[i].low, high = bodies[i].high;
         double x[2 * NODES] = {-2.0, low, 2.0, low, 2.0, high, -2.0, high};
         struct cells cells = {2, NODES, x, 2, node};

@@ -13,7 +13,6 @@ static bool resolves(const double X[2 * (FACETS + 1)])
     double average_area[FACETS + 1] = {0}, share[4 * FACETS];
     int64_t ptr[FACETS + 2] = {0}, point[4 * FACETS];
     bool resolved = false;
-    struct error error;
     for (int p = 0; p < 2 * FACETS; p++) {
         const double *a = X + p / 2 * 2;
         double along[2] = {a[2] - a[0], a[3] - a[1]}, length = hypot(along[0], along[1]);

@@ -35,7 +35,6 @@ TEST(held_outside)
 {
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
     FREED_BY(curve_free) struct load_curve table = {0};
-    struct error error;
     GOOD(curve_tabulate(&table, 4, points, 2, &error));
     for (int kind = CURVE_SMOOTH; kind <= CURVE_TABLE; kind++) {
         struct load_curve curve = kind < CURVE_TABLE ? curve_of_kind((enum curve_kind)kind) : table;
@@ -65,7 +64,6 @@ TEST(tabulated)
 {
     static const double points[] = {0, 0, .2, 0, .3, 1, .5, 1, 1.2, -.5, 2, -.5, 4, 7};
     FREED_BY(curve_free) struct load_curve curve = {0};
-    struct error error;
     GOOD(curve_tabulate(&curve, 7, points, 4, &error));
     for (int i = 0; i < 7; i++) {
         NEAR_TO(curve_value(&curve, points[2 * i] / 4), points[2 * i + 1], 1e-14);
@@ -86,7 +84,6 @@ TEST(two_points)
 {
     static const double points[] = {0, 1, 8, 5};
     FREED_BY(curve_free) struct load_curve curve = {0};
-    struct error error;
     GOOD(curve_tabulate(&curve, 2, points, 4, &error));
     NEAR_TO(curve_value(&curve, .5), 2, 1e-15);
     NEAR_TO(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
@@ -95,9 +92,7 @@ TEST(two_points)
 static void fails(int64_t count, const double *points, double end, const char *expected)
 {
     struct load_curve curve;
-    struct error error = {""};
-    assert_int_equal(curve_tabulate(&curve, count, points, end, &error), STATUS_INPUT);
-    assert_string_equal(error.text, expected);
+    FAILS_WITH(curve_tabulate(&curve, count, points, end, &error), STATUS_INPUT, expected);
     assert_null(curve.time);
 }
 

@@ -17,7 +17,6 @@ static struct dynamics_report run(struct lattice *l, const struct dynamics_optio
                                   double *v, struct energy_log *log)
 {
     struct dynamics_report report;
-    struct error error;
     GOOD(dynamics_run(&l->system, options, u, v, NULL, log, &report, &error));
     return report;
 }
@@ -226,37 +225,34 @@ static void momenta(const struct lattice *l, const double *u, const double *v, d
 }
 
 /* A free body, thrown and spinning, keeps its momenta to round-off however it swings. */
-TEST(free_spin)
+TEST_IN_EACH_DIM(free_spin)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
-        struct lattice l;
-        options.jitter = 0.1;
-        lattice_build(&l, &options);
-        double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
-        static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
-        const double *w = dim == 2 ? spin : tumble;
-        for (int64_t n = 0; n < l.system.node_count; n++) {
-            double X[3] = {0};
-            memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
-            for (int a = 0; a < dim; a++) {
-                v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
-            }
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
+    FREED_BY(lattice_free) struct lattice l = {0};
+    options.jitter = 0.1;
+    lattice_build(&l, &options);
+    double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
+    static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
+    const double *w = dim == 2 ? spin : tumble;
+    for (int64_t n = 0; n < l.system.node_count; n++) {
+        double X[3] = {0};
+        memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
+        for (int a = 0; a < dim; a++) {
+            v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
         }
-        momenta(&l, u, v, p[0], L[0]);
-        struct dynamics_options dynamics = over(0.5); /* about one turn */
-        struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
-        assert_int_equal(report.outcome, DYNAMICS_DONE);
-        momenta(&l, u, v, p[1], L[1]);
-        double scale = fabs(L[0][2]);
-        for (int a = 0; a < 3; a++) {
-            NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
-            /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
-            NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
-        }
-        AT_MOST(report.largest_drift, 1e-3);
-        lattice_free(&l);
     }
+    momenta(&l, u, v, p[0], L[0]);
+    struct dynamics_options dynamics = over(0.5); /* about one turn */
+    struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
+    assert_int_equal(report.outcome, DYNAMICS_DONE);
+    momenta(&l, u, v, p[1], L[1]);
+    double scale = fabs(L[0][2]);
+    for (int a = 0; a < 3; a++) {
+        NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
+        /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
+        NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
+    }
+    AT_MOST(report.largest_drift, 1e-3);
 }
 
 /* A side pushed in and held: the work of the condition is what the energies hold, with and without damping,
@@ -266,9 +262,8 @@ TEST(pushed)
     static const double dampings[] = {0, 100};
     for (int k = 0; k < 2; k++) {
         struct lattice_options options = lattice_defaults(2, 7);
-        struct lattice l;
-        struct energy_log log = {0};
-        struct error error;
+        FREED_BY(lattice_free) struct lattice l = {0};
+        FREED_BY(energy_log_free) struct energy_log log = {0};
         struct dynamics_report report;
         lattice_build(&l, &options);
         static const double points[] = {0, 0, 0.05, 1, 0.3, 1};
@@ -296,8 +291,6 @@ TEST(pushed)
             NEAR_TO(P / expected, 1.0, 1e-4);
             NEAR_TO(end->work, end->internal + end->dissipated, 2e-3 * end->work);
         }
-        energy_log_free(&log);
-        lattice_free(&l);
     }
 }
 
@@ -368,7 +361,6 @@ TEST(bounce)
     struct lattice_options options = lattice_defaults(2, 6);
     FREED_BY(lattice_free) struct lattice l = {0};
     FREED_BY(energy_log_free) struct energy_log log = {0};
-    struct error error;
     struct rigid_surface floor;
     static const double corners[4] = {-1, -0.01, 1, -0.01};
     options.nodal_volume = false;
@@ -466,7 +458,6 @@ TEST(conditions_twice)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
     struct dynamics_report report;
-    struct error error;
     int32_t curve = lattice_begin(&l, 2, 4, 0.0, CURVE_SMOOTH);
     lattice_push(&l, 3, -0.001, curve);
     lattice_push(&l, 3, -0.001, curve);
@@ -485,7 +476,7 @@ TEST(any_number_of_threads)
     int most = omp_get_max_threads();
     size_t bytes = 0;
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         omp_set_num_threads(threads);
         int32_t curve = lattice_begin(&l, 3, 6, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4, curve);
@@ -500,7 +491,6 @@ TEST(any_number_of_threads)
         } else {
             assert_memory_equal(first, u, bytes);
         }
-        lattice_free(&l);
     }
     omp_set_num_threads(most);
 }

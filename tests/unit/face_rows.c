@@ -51,13 +51,13 @@ static void check_points(const struct cells *cells, const struct faces *faces)
                     const int32_t *node = faces->node + f * dim;
                     double middle = cells->x[(int64_t)node[k] * dim + a];
                     middle = 0.5 * (middle + cells->x[(int64_t)node[(k + 1) % dim] * dim + a]);
-                    at_most(fabs(x[first * dim + a] - middle), 1e-16, "middle of an edge");
+                    AT_MOST(fabs(x[first * dim + a] - middle), 1e-16);
                 }
             }
             for (int k = 0; k < dim; k++) {
                 centre += cells->x[(int64_t)faces->node[f * dim + k] * dim + a] / dim;
             }
-            at_most(fabs(mean - centre), 1e-15, "centre of a face");
+            AT_MOST(fabs(mean - centre), 1e-15);
         }
     }
 }
@@ -69,7 +69,6 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
     int64_t next = 0;
     SCRATCH int32_t *cell = NULL;
     int dim = faces->dim;
-    struct error error;
     GOOD(face_rows_cells(cells->node_count, faces, &ptr, &cell, &error));
     for (int64_t i = 0; i < faces->count * FACE_ROWS(dim); i++) {
         int64_t f = i / FACE_ROWS(dim), k = i % FACE_ROWS(dim), row = face_row(faces, f, (int)k), with = 0;
@@ -131,37 +130,33 @@ static void check_rows(const struct faces *faces, const int32_t *side)
     assert_int_equal(next, faces->row_count);
 }
 
-TEST(rows_of_faces)
+TEST_IN_EACH_DIM(rows_of_faces)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
-        struct cells cells = cells_of(&cloud);
-        int32_t *side = zeros(cells.count, sizeof *side);
-        struct faces faces;
-        struct error error;
-        int64_t own[2];
-        for (int64_t c = 0; c < cells.count; c++) {
-            double middle[3];
-            cell_centroid(&cells, c, middle);
-            side[c] = middle[0] > 0.045;
-        }
-        GOOD(faces_build(&cells, false, &faces, &error));
-        for (int sides = 0; sides < 2; sides++) {
-            free(faces.row);
-            GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
-            check_rows(&faces, sides ? side : NULL);
-            check_points(&cells, &faces);
-            check_cells(&cells, &faces);
-            own[sides] = faces.own_count;
-        }
-        assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
-        faces_free(&faces);
-        GOOD(faces_build(&cells, true, &faces, &error));
-        assert_null(faces.row);
-        assert_int_equal(faces.row_count, faces.boundary_count);
-        faces_free(&faces);
-        cloud_free(&cloud);
+    FREED_BY(cloud_free) struct cloud cloud = box_cloud(dim, 6, 0.1, 0.0);
+    struct cells cells = cells_of(&cloud);
+    int32_t *side = zeros(cells.count, sizeof *side);
+    struct faces faces;
+    int64_t own[2];
+    for (int64_t c = 0; c < cells.count; c++) {
+        double middle[3];
+        cell_centroid(&cells, c, middle);
+        side[c] = middle[0] > 0.045;
     }
+    GOOD(faces_build(&cells, false, &faces, &error));
+    for (int sides = 0; sides < 2; sides++) {
+        free(faces.row);
+        GOOD(face_rows_number(cells.node_count, sides ? side : NULL, &faces, &error));
+        check_rows(&faces, sides ? side : NULL);
+        check_points(&cells, &faces);
+        check_cells(&cells, &faces);
+        own[sides] = faces.own_count;
+    }
+    assert_true(dim == 2 ? own[0] == faces.count : own[0] < own[1] && own[1] < faces.count);
+    faces_free(&faces);
+    GOOD(faces_build(&cells, true, &faces, &error));
+    assert_null(faces.row);
+    assert_int_equal(faces.row_count, faces.boundary_count);
+    faces_free(&faces);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -26,28 +26,24 @@ static struct nodal_field view(const struct scattered *cloud, const double *valu
         .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
 }
 
-TEST(linear_fields_are_exact)
+TEST_IN_EACH_DIM(linear_fields_are_exact)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int p = 0; p < PLACE_COUNT; p++) {
-            struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
-            struct support_options options = support_defaults(dim);
-            struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-            struct field_table table;
-            struct error error;
-            double *spacing = zeros(cloud.count, sizeof *spacing);
-            double *values = linear_field(dim, cloud.count, cloud.x);
-            double *expected = linear_field(dim, 80, cloud.points), got[160];
-            GOOD(field_spacing(&cells, spacing, &error));
-            GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
-            GOOD(field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table,
-                                   &error));
-            field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
-            for (int i = 0; i < 160; i++) {
-                at_most(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0), "a linear field");
-            }
-            field_table_free(&table);
-            scattered_free(&cloud);
+    for (int p = 0; p < PLACE_COUNT; p++) {
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
+        struct support_options options = support_defaults(dim);
+        struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
+        FREED_BY(field_table_free) struct field_table table = {0};
+        double *spacing = zeros(cloud.count, sizeof *spacing);
+        double *values = linear_field(dim, cloud.count, cloud.x);
+        double *expected = linear_field(dim, 80, cloud.points), got[160];
+        GOOD(field_spacing(&cells, spacing, &error));
+        GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
+        GOOD(
+            field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table, &error));
+        field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
+        for (int i = 0; i < 160; i++) {
+            AT_MOST(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0));
         }
     }
 }
@@ -59,12 +55,11 @@ TEST(spacing_with_and_without_cells)
     static const int32_t node[] = {0, 1, 2, 0, 2, 3};
     struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
     double spacing[5], nearest[5], alone[5];
-    struct error error;
     GOOD(field_spacing(&cells, spacing, &error));
     GOOD(nodes_spacing(2, 5, x, nearest, &error));
     GOOD(field_spacing(&bare, alone, &error));
     assert_memory_equal(alone, nearest, sizeof nearest);
-    at_most(fabs(spacing[1] - 1.0), 1e-15, "spacing of cells");
+    AT_MOST(fabs(spacing[1] - 1.0), 1e-15);
     assert_true(spacing[4] == nearest[4]);
 }
 
@@ -76,7 +71,6 @@ TEST(outside_of_nodes)
     static const bool expected[] = {false, false, false, true, true, false};
     struct cells cells = {2, 3, x, 0, NULL};
     bool got[6];
-    struct error error;
     GOOD(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error));
     assert_memory_equal(got, expected, sizeof got);
 }
@@ -99,7 +93,6 @@ TEST(outside_of_cells)
     static const bool near3[] = {false, false, false, false, true, false, true, false, true};
     struct cells cells2 = {2, 6, x2, 3, triangle}, cells3 = {3, 4, x3, 1, tetrahedron};
     bool got[9];
-    struct error error;
     GOOD(field_outside(&cells2, spacing, 0.0, 7, points2, got, &error));
     assert_memory_equal(got, in2, sizeof in2);
     GOOD(field_outside(&cells2, spacing, 0.2, 7, points2, got, &error));
@@ -118,7 +111,6 @@ TEST(matching)
     int32_t *match = zeros(cloud.count, sizeof *match);
     char seen[81] = {0};
     bool matched;
-    struct error error;
     memcpy(cloud.x + 2 * 40, cloud.x + 2 * 41, 2 * sizeof(double));
     for (int64_t n = 0; n < 81; n++) { /* 31 and 81 have no common factor */
         other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
@@ -134,8 +126,8 @@ TEST(matching)
     for (int64_t n = 0; n < 81; n++) {
         assert_false(seen[match[n]]);
         seen[match[n]] = 1;
-        at_most(fabs(other[2 * match[n]] - cloud.x[2 * n]), 1e-10, "a matched node");
-        at_most(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10, "a matched node");
+        AT_MOST(fabs(other[2 * match[n]] - cloud.x[2 * n]), 1e-10);
+        AT_MOST(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10);
     }
     other[5] += 1e-8;
     GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
@@ -153,15 +145,14 @@ TEST(statistics_of_differences)
     double difference[] = {3.0, 0.0, 4.0, 100.0, 4.0, 1.0};
     static const int64_t index[] = {0, 1, 2, 4, 5};
     struct field_statistics statistics;
-    struct error error;
     GOOD(field_statistics(5, index, difference, &statistics, &error));
-    at_most(fabs(statistics.average - 2.4), 1e-15, "average");
-    at_most(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15, "rmse");
+    AT_MOST(fabs(statistics.average - 2.4), 1e-15);
+    AT_MOST(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15);
     assert_true(statistics.largest == 4.0 && statistics.largest_at == 2);
     assert_true(field_percentile(&statistics, 50) == 3.0);
     assert_true(field_percentile(&statistics, 100) == 4.0);
     assert_true(field_percentile(&statistics, 0) == 0.0);
-    at_most(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15, "percentile between two");
+    AT_MOST(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15);
     field_statistics_free(&statistics);
     difference[4] = NAN;
     GOOD(field_statistics(5, index, difference, &statistics, &error));
@@ -178,50 +169,45 @@ TEST(statistics_of_differences)
 }
 
 /* A field against itself, against itself on another cloud, and against one that differs at one node. */
-TEST(comparisons)
+TEST_IN_EACH_DIM(comparisons)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
-        struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
-        double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
-        struct nodal_field first = view(&coarse, a), second = view(&fine, b);
-        struct field_comparison comparison;
-        struct error error;
-        bool *chosen = zeros(coarse.count, sizeof *chosen);
-        GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
-        assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
-        for (int64_t n = 0; n < coarse.count; n++) {
-            assert_true(comparison.difference[n] == 0.0);
-        }
-        field_comparison_free(&comparison);
-
-        a[2 * 7] += 3.0;
-        a[2 * 7 + 1] += 4.0;
-        GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
-        assert_false(comparison.coincide);
-        for (int64_t n = 0; n < coarse.count; n++) {
-            at_most(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11, "difference");
-        }
-        field_comparison_free(&comparison);
-
-        coarse.x[9 * dim] += 10.0; /* outside, unless left out */
-        assert_int_equal(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT);
-        assert_int_equal(comparison.outside, 1);
-        assert_non_null(strstr(error.text, "row 9"));
-        field_comparison_free(&comparison);
-        GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
-        assert_int_equal(comparison.count, coarse.count - 1);
-        assert_true(isnan(comparison.difference[9]));
-        field_comparison_free(&comparison);
-        chosen[7] = chosen[8] = true;
-        GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
-        assert_int_equal(comparison.count, 2);
-        assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
-        assert_true(isnan(comparison.difference[0]));
-        field_comparison_free(&comparison);
-        scattered_free(&coarse);
-        scattered_free(&fine);
+    FREED_BY(scattered_free) struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
+    FREED_BY(scattered_free)
+    struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
+    double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
+    struct nodal_field first = view(&coarse, a), second = view(&fine, b);
+    struct field_comparison comparison;
+    bool *chosen = zeros(coarse.count, sizeof *chosen);
+    GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
+    assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
+    for (int64_t n = 0; n < coarse.count; n++) {
+        assert_true(comparison.difference[n] == 0.0);
     }
+    field_comparison_free(&comparison);
+
+    a[2 * 7] += 3.0;
+    a[2 * 7 + 1] += 4.0;
+    GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
+    assert_false(comparison.coincide);
+    for (int64_t n = 0; n < coarse.count; n++) {
+        AT_MOST(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11);
+    }
+    field_comparison_free(&comparison);
+
+    coarse.x[9 * dim] += 10.0; /* outside, unless left out */
+    FAILS(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT, "row 9");
+    assert_int_equal(comparison.outside, 1);
+    field_comparison_free(&comparison);
+    GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
+    assert_int_equal(comparison.count, coarse.count - 1);
+    assert_true(isnan(comparison.difference[9]));
+    field_comparison_free(&comparison);
+    chosen[7] = chosen[8] = true;
+    GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
+    assert_int_equal(comparison.count, 2);
+    assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
+    assert_true(isnan(comparison.difference[0]));
+    field_comparison_free(&comparison);
 }
 
 /* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */
@@ -231,8 +217,7 @@ TEST(not_comparable)
     struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
     struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
     FREED_BY(field_comparison_free) struct field_comparison comparison = {0};
-    struct error error;
-    assert_int_equal(field_compare(&a, &b, NULL, false, &comparison, &error), STATUS_INPUT);
+    FAILS(field_compare(&a, &b, NULL, false, &comparison, &error), STATUS_INPUT, "");
 }
 
 RUN_TESTS(NULL, NULL)

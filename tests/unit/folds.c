@@ -71,7 +71,6 @@ static void finish(struct shape *shape, int axis, double place)
                           .count = shape->cells,
                           .node = shape->cell};
     FREED_BY(faces_free) struct faces faces = {0};
-    struct error error;
     GOOD(cells_check(&cells, &error));
     GOOD(faces_build(&cells, true, &faces, &error));
     memcpy(shape->facet, faces.node, (size_t)(faces.count * shape->dim) * sizeof *faces.node);
@@ -469,7 +468,6 @@ TEST(over_itself)
     static struct shape shape;
     double y[MOST_NODES * 3], u[MOST_NODES * 3];
     struct fold fold;
-    struct error error;
     for (int dim = 2; dim <= 3; dim++) {
         make_grid(&shape, dim, 16, 2);
         for (int turns = 12; turns <= 18; turns += 2) { /* as many pieces make a whole turn */

@@ -51,43 +51,36 @@ static double least_of_all(struct lattice *l, struct constraint *constraint, con
     return least;
 }
 
-TEST(agrees_with_all_eigenvalues)
+TEST_IN_EACH_DIM(agrees_with_all_eigenvalues)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
-        struct preconditioner preconditioner;
-        struct error error;
-        struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
-        double *mass, *scratch;
-        struct spectrum spectrum;
-        options.jitter = 0.2;
-        options.size[0] = 0.3;
-        lattice_build(&l, &options);
-        int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
-        lattice_slide(&l, dim == 2 ? 1u << 0 | 1u << 2 : 1u << 0 | 1u << 2 | 1u << 4, curve);
-        int64_t size = l.system.node_count * dim;
-        double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
-        mass = zeros(l.system.node_count, sizeof *mass);
-        scratch = zeros(4 * size, sizeof *scratch);
-        for (int64_t i = 0; i < size; i++) { /* a strained state; a start without favour */
-            u[i] = (i % dim == 0 ? -0.05 : 0.05 / (dim - 1)) * l.system.X[i];
-            start[i] = sin(1.0 + (double)(i * i % 97));
-        }
-        (void)system_residual(&l.system, u, residual);
-        system_relaxation_mass(&l.system, false, mass);
-        GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
-        GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
-        double least = least_of_all(&l, &preconditioner.constraint, mass, u, residual);
-        GOOD(system_spectrum(&l.system, &preconditioner, u, residual, 1000, start, scratch, &spectrum,
-                             &error));
-        print_message("%dD: %g for %g after %d iterations\n", dim, spectrum.lowest, least,
-                      spectrum.iterations);
-        /* From above; a relaxation takes .8 of it for the least. */
-        assert_true(spectrum.lowest > (1.0 - 1e-9) * least);
-        AT_MOST(0.8 * spectrum.lowest, least);
-        preconditioner_free(&preconditioner);
-        lattice_free(&l);
+    FREED_BY(lattice_free) struct lattice l = {0};
+    FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
+    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 9 : 4);
+    double *mass, *scratch;
+    struct spectrum spectrum;
+    options.jitter = 0.2;
+    options.size[0] = 0.3;
+    lattice_build(&l, &options);
+    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
+    lattice_slide(&l, dim == 2 ? 1u << 0 | 1u << 2 : 1u << 0 | 1u << 2 | 1u << 4, curve);
+    int64_t size = l.system.node_count * dim;
+    double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
+    mass = zeros(l.system.node_count, sizeof *mass);
+    scratch = zeros(4 * size, sizeof *scratch);
+    for (int64_t i = 0; i < size; i++) { /* a strained state; a start without favour */
+        u[i] = (i % dim == 0 ? -0.05 : 0.05 / (dim - 1)) * l.system.X[i];
+        start[i] = sin(1.0 + (double)(i * i % 97));
     }
+    (void)system_residual(&l.system, u, residual);
+    system_relaxation_mass(&l.system, false, mass);
+    GOOD(preconditioner_build(&l.system, false, &preconditioner, &error));
+    GOOD(preconditioner_set_mass(&preconditioner, &l.system, mass, &error));
+    double least = least_of_all(&l, &preconditioner.constraint, mass, u, residual);
+    GOOD(system_spectrum(&l.system, &preconditioner, u, residual, 1000, start, scratch, &spectrum, &error));
+    print_message("%dD: %g for %g after %d iterations\n", dim, spectrum.lowest, least, spectrum.iterations);
+    /* From above; a relaxation takes .8 of it for the least. */
+    assert_true(spectrum.lowest > (1.0 - 1e-9) * least);
+    AT_MOST(0.8 * spectrum.lowest, least);
 }
 
 /* A block in plane strain between sliding ends, compressed along the first axis, its free side along it: a
@@ -96,9 +89,8 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
 {
     const double stretch[] = {0.8, 0.5}, across[] = {1.2379, 1.9123}; /* lateral: of no stress there */
     for (int k = 0; k < 2; k++) {
-        struct lattice l;
-        struct preconditioner preconditioner;
-        struct error error;
+        FREED_BY(lattice_free) struct lattice l = {0};
+        FREED_BY(preconditioner_free) struct preconditioner preconditioner = {0};
         struct lattice_options options = lattice_defaults(2, 9);
         struct spectrum spectrum;
         struct stability stability;
@@ -129,8 +121,6 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
             assert_true(spectrum.lowest < 0.0 && stability.least < 0.0);
             AT_MOST(0.1 - l.system.X[stability.node * 2 + 1], 1e-9); /* on the free side */
         }
-        preconditioner_free(&preconditioner);
-        lattice_free(&l);
     }
 }
 

@@ -5,21 +5,13 @@
 #include "io/image.h"
 
 #include <fcntl.h>
-#include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <zlib.h>
 
 static struct nifti_file file;
 static struct image image;
-static struct error error;
-
-static void assert_near(double value, double expected, double tolerance)
-{
-    if (!(fabs(value - expected) <= tolerance)) {
-        fail_msg("%.17g instead of %.17g", value, expected);
-    }
-}
+static struct error said;
 
 /* Read bytes as a file. */
 static enum status read_bytes(const void *bytes, size_t size)
@@ -28,11 +20,11 @@ static enum status read_bytes(const void *bytes, size_t size)
     assert_true(descriptor >= 0);
     assert_int_equal(write(descriptor, bytes, size), size);
     assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
-    enum status status = image_read_from(&image, descriptor, "file", &error);
+    enum status status = image_read_from(&image, descriptor, "file", &said);
     close(descriptor);
     if (status != STATUS_OK) {
         assert_null(image.values);
-        assert_int_equal(strncmp(error.text, "file: ", 6), 0);
+        assert_int_equal(strncmp(said.text, "file: ", 6), 0);
     }
     return status;
 }
@@ -40,15 +32,15 @@ static enum status read_bytes(const void *bytes, size_t size)
 static void refused(const char *text)
 {
     assert_int_equal(read_bytes(file.bytes, file.size), STATUS_INPUT);
-    if (strstr(error.text, text) == NULL) {
-        fail_msg("'%s' instead of '%s'", error.text, text);
+    if (strstr(said.text, text) == NULL) {
+        fail_msg("'%s' instead of '%s'", said.text, text);
     }
 }
 
 static void accepted(void)
 {
     if (read_bytes(file.bytes, file.size) != STATUS_OK) {
-        fail_msg("%s", error.text);
+        fail_msg("%s", said.text);
     }
 }
 
@@ -137,15 +129,15 @@ TEST(scaling)
     make_kind(&kinds[0], 1, true);
     put_scale(&file, 0.5, -10);
     accepted();
-    assert_near(image.values[3], 53.5, 0);
+    NEAR_TO(image.values[3], 53.5, 0);
     image_free(&image);
     put_scale(&file, 0, 7); /* a slope of 0: no scaling */
     accepted();
-    assert_near(image.values[3], 127, 0);
+    NEAR_TO(image.values[3], 127, 0);
     image_free(&image);
     put_scale(&file, NAN, NAN);
     accepted();
-    assert_near(image.values[3], 127, 0);
+    NEAR_TO(image.values[3], 127, 0);
     image_free(&image);
     put_scale(&file, INFINITY, 0);
     refused("scaling");
@@ -154,9 +146,7 @@ TEST(scaling)
 static void same_space(double expected[3][4])
 {
     for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 4; c++) {
-            assert_near(image.to_world[r][c], expected[r][c], 1e-8);
-        }
+        ALL_NEAR(4, image.to_world[r], expected[r], 1e-8);
     }
 }
 
@@ -190,7 +180,7 @@ TEST(spaces)
             put_units(&file, units);
             accepted();
             assert_int_equal(image.space, IMAGE_SPACE_MNI);
-            assert_near(image.unit, unit[units], 0);
+            NEAR_TO(image.unit, unit[units], 0);
             assert_int_equal(strstr(image.note, "no unit") != NULL, units == 0);
             assert_non_null(strstr(image.note, "sform and qform differ"));
             for (int i = 0; i < 12; i++) {
@@ -206,7 +196,7 @@ TEST(spaces)
     image_world(&image, (double[3]){0.25, 1, 0.5}, world);
     for (int r = 0; r < 3; r++) {
         double place = back[r][0] * world[0] + back[r][1] * world[1] + back[r][2] * world[2] + back[r][3];
-        assert_near(place, ((double[3]){0.25, 1, 0.5})[r], 1e-10);
+        NEAR_TO(place, ((double[3]){0.25, 1, 0.5})[r], 1e-10);
     }
     image_free(&image);
 }
@@ -236,7 +226,7 @@ TEST(spaces_that_are_none)
     put_sform(&file, 1, flat);
     accepted();
     for (int r = 0; r < 3; r++) { /* the normal, as long as the step along the first axis */
-        assert_near(image.to_world[r][2], (r < 2 ? -1e-3 : 1e-3) * sqrt(2.0 / 3), 1e-12);
+        NEAR_TO(image.to_world[r][2], (r < 2 ? -1e-3 : 1e-3) * sqrt(2.0 / 3), 1e-12);
     }
     image_free(&image);
 }
@@ -250,7 +240,7 @@ TEST(colours_and_vectors)
     put_scale(&file, 2, 5); /* not for colours */
     accepted();
     assert_int_equal(image.components, 3);
-    assert_near(image.values[3 * 2 + 1], 17, 0);
+    NEAR_TO(image.values[3 * 2 + 1], 17, 0);
     image_free(&image);
     begin_nifti(&file, 2, true, 2, 2, 1, 4, 16);
     put_dim(&file, 0, 5);
@@ -260,7 +250,7 @@ TEST(colours_and_vectors)
     }
     accepted();
     assert_int_equal(image.components, 3);
-    assert_near(image.values[3 * 2 + 1], 10 + 4 * 1 + 2, 0);
+    NEAR_TO(image.values[3 * 2 + 1], 10 + 4 * 1 + 2, 0);
     image_free(&image);
 }
 
@@ -330,8 +320,6 @@ TEST(other_files)
     make_kind(&kinds[0], 2, false);
     file.bytes[5] = 'x';
     refused("no mark of NIfTI-2");
-    FAILS(image_read(&image, "/nonexistent.nii", &error), STATUS_INPUT, "/nonexistent.nii: No such file");
-    assert_int_equal(image_read(&image, "/", &error), STATUS_INPUT);
 }
 
 /* No part of a file passes for the whole, compressed or not; no bit of compressed data can be turned unseen.
@@ -387,7 +375,7 @@ TEST(without_checksum)
     size_t first = compress_bytes(file.bytes, 1000, packed, sizeof packed);
     size = first + compress_bytes(file.bytes + 1000, file.size - 1000, packed + first, sizeof packed - first);
     assert_int_equal(read_bytes(packed, size), STATUS_OK);
-    assert_near(image.values[99999], random >> 24, 0);
+    NEAR_TO(image.values[99999], random >> 24, 0);
     image_free(&image);
 }
 
@@ -411,10 +399,10 @@ static void assert_same(const struct image *a, const struct image *b)
     assert_int_equal(a->intent, b->intent);
     assert_string_equal(a->intent_name, b->intent_name);
     assert_string_equal(a->description, b->description);
-    assert_near(a->unit, b->unit, 0);
+    NEAR_TO(a->unit, b->unit, 0);
     assert_memory_equal(a->values, b->values, image_voxels(a) * a->components * sizeof(double));
     for (int i = 0; i < 12; i++) {
-        assert_near(a->to_world[i / 4][i % 4], b->to_world[i / 4][i % 4], 1e-7 * a->unit);
+        NEAR_TO(a->to_world[i / 4][i % 4], b->to_world[i / 4][i % 4], 1e-7 * a->unit);
     }
 }
 
@@ -426,7 +414,7 @@ TEST(round_trips)
             make_kind(&kinds[k], version, version == 1);
             put_sform(&file, 2, oblique);
             accepted();
-            struct image first = image;
+            FREED_BY(image_free) struct image first = image;
             strcpy(first.description, "made by hand");
             strcpy(first.intent_name, "what");
             first.intent = IMAGE_INTENT_LABEL;
@@ -437,7 +425,6 @@ TEST(round_trips)
                 assert_string_equal(image.note, ""); /* the quaternion tells the same as the matrix */
                 image_free(&image);
             }
-            image_free(&first);
         }
     }
 }
@@ -459,7 +446,7 @@ TEST(rounding)
     written.inter = 3;
     written.values[4] = 13;
     write_and_read(&written, false);
-    assert_near(image.values[4], 13, 0);
+    NEAR_TO(image.values[4], 13, 0);
     image_free(&image);
 }
 
@@ -479,18 +466,16 @@ TEST(large)
     assert_same(&written, &image);
     image_free(&image);
     written.datatype = IMAGE_RGBA32;
-    assert_int_equal(image_write(&written, 1, false, &error), STATUS_INPUT);
+    FAILS(image_write(&written, 1, false, &error), STATUS_INPUT, "");
 }
 
 TEST(full_device)
 {
-    struct image written;
+    FREED_BY(image_free) struct image written = {0};
     const size_t size[3] = {10, 10, 10};
     int full = open("/dev/full", O_WRONLY);
     GOOD(image_new(&written, size, 1, &error));
-    assert_int_equal(image_write(&written, full, true, &error), STATUS_SYSTEM);
-    assert_string_equal(error.text, "No space left on device");
-    image_free(&written);
+    FAILS_WITH(image_write(&written, full, true, &error), STATUS_SYSTEM, "No space left on device");
     close(full);
 }
 

@@ -1,7 +1,6 @@
 /* NIfTI files made byte by byte from the standard's tables, apart from the reader and the writer under test.
  */
-#ifndef IMAGE_FIXTURE_H
-#define IMAGE_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -111,5 +110,3 @@ static inline void append_value(struct nifti_file *file, int size, uint64_t bits
     put_number(file, file->size, size, bits);
     file->size += (size_t)size;
 }
-
-#endif

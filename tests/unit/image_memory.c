@@ -17,7 +17,7 @@ static struct nifti_file file;
 /* A vector image is read and written, compressed. */
 static enum status read_and_write(struct error *error)
 {
-    struct image image;
+    FREED_BY(image_free) struct image image = {0};
     int in = memfd_create("in", 0), out = memfd_create("out", 0);
     assert_int_equal(write(in, file.bytes, file.size), file.size);
     assert_int_equal(lseek(in, 0, SEEK_SET), 0);
@@ -25,7 +25,6 @@ static enum status read_and_write(struct error *error)
     if (status == STATUS_OK) {
         status = image_write(&image, out, true, error);
     }
-    image_free(&image);
     close(in);
     close(out);
     return status;
@@ -33,12 +32,10 @@ static enum status read_and_write(struct error *error)
 
 TEST(images)
 {
-    struct error error;
     begin_nifti(&file, 1, false, 4, 3, 2, 16, 32);
     put_dim(&file, 0, 5);
     put_dim(&file, 5, 3);
     file.size += 4 * 3 * 2 * 3 * 4;
-    GOOD(read_and_write(&error)); /* OpenMP has its teams then */
     fail_each(read_and_write, 6);
 }
 
@@ -48,20 +45,17 @@ static double *u;
 static enum status move(struct error *error)
 {
     FREED_BY(motion_free) struct motion motion = {0};
-    enum status status = motion_build(&cells, u, false, NULL, &motion, error);
-    return status;
+    return motion_build(&cells, u, false, NULL, &motion, error);
 }
 
 TEST(motions)
 {
-    struct error error;
     struct cloud_options options = {.kind = CLOUD_REGULAR, .dim = 3, .count = {4, 4, 4}, .high = {3, 3, 3}};
     FREED_BY(cloud_free) struct cloud cloud = {0};
     static double none[4 * 4 * 4 * 3];
     GOOD(cloud_make(&options, &cloud, &error));
     cells = (struct cells){3, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     u = none;
-    GOOD(move(&error));
     fail_each(move, 10);
 }
 

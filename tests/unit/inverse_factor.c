@@ -14,9 +14,8 @@ struct cube {
 
 static void build(struct cube *cube, bool bonded)
 {
-    struct error error;
-    struct scalar_stiffness stiffness;
-    struct scalar_row row;
+    FREED_BY(scalar_stiffness_free) struct scalar_stiffness stiffness = {0};
+    FREED_BY(scalar_row_free) struct scalar_row row = {0};
     struct lattice_options options = lattice_defaults(3, 5);
     options.jitter = 0.2;
     lattice_build(&cube->l, &options);
@@ -35,13 +34,12 @@ static void build(struct cube *cube, bool bonded)
     ARRAY(cube->S, cube->n * cube->n);
     GOOD(scalar_stiffness_make(system, &stiffness, &error));
     GOOD(scalar_row_make(&stiffness, &row, &error));
-    int32_t *place;
+    SCRATCH int32_t *place = NULL;
     ARRAY(place, cube->n);
     for (int64_t p = 0; p < cube->n; p++) {
         place[p] = (int32_t)p;
     }
     GOOD(scalar_row_prepare(&stiffness, place, cube->n, &row, &error));
-    free(place);
     for (int64_t i = 0; i < cube->n; i++) {
         scalar_stiffness_row(&stiffness, i, &row);
         assert_int_equal(row.node[row.count - 1], i);
@@ -49,8 +47,6 @@ static void build(struct cube *cube, bool bonded)
             cube->S[i * cube->n + row.node[k]] = cube->S[row.node[k] * cube->n + i] = row.value[k];
         }
     }
-    scalar_row_free(&row);
-    scalar_stiffness_free(&stiffness);
     GOOD(inverse_factor_build(system, &cube->factor, &error));
 }
 
@@ -79,8 +75,7 @@ TEST(linear_fields_have_their_energy)
         build(&cube, bonded);
         const struct body *body = &cube.l.system.body;
         const struct material *material = body->materials;
-        double *x;
-        x = zeros(cube.n, sizeof *x);
+        double *x = zeros(cube.n, sizeof *x);
         for (int64_t i = 0; i < cube.n; i++) {
             x[i] = 1.0;
         }
@@ -103,8 +98,7 @@ TEST(the_diagonal_is_one)
     struct cube cube;
     build(&cube, true);
     const struct inverse_factor *factor = &cube.factor;
-    double *x;
-    x = zeros(cube.n, sizeof *x);
+    double *x = zeros(cube.n, sizeof *x);
     for (int64_t i = 0; i < cube.n; i++) {
         assert_int_equal(factor->rows.idx[factor->rows.ptr[i + 1] - 1], i);
         memset(x, 0, (size_t)cube.n * sizeof *x);
@@ -121,8 +115,7 @@ TEST(the_diagonal_is_one)
 TEST(the_transpose_is_undone)
 {
     struct cube cube;
-    struct error error;
-    struct constraint_rows rows;
+    FREED_BY(constraint_rows_free) struct constraint_rows rows = {0};
     build(&cube, false);
     struct random random = {3};
     double *y = lattice_vector(&cube.l), *u = lattice_vector(&cube.l), *back = lattice_vector(&cube.l);
@@ -147,7 +140,6 @@ TEST(the_transpose_is_undone)
     for (int64_t i = 0; i < 3 * cube.n; i++) {
         AT_MOST(fabs(u[i] - y[i]), 1e-9);
     }
-    constraint_rows_free(&rows);
     release(&cube);
 }
 
@@ -165,7 +157,6 @@ TEST(stretches_make_no_difference)
     static const int64_t stretches[] = {1, 7, 60, 124};
     for (int weak = 0; weak < 2; weak++) {
         struct cube cube;
-        struct error error;
         build(&cube, true);
         struct solid_system *system = &cube.l.system;
         for (int64_t q = 0; q < system->body.point_count && weak == 1; q++) {
@@ -173,16 +164,14 @@ TEST(stretches_make_no_difference)
             system->body.weight[q] *=
                 system->X[3 * node] < 0.7 * cube.l.assembly.cells.x[3 * (cube.n - 1)] ? 1e-12 : 1.0;
         }
-        struct inverse_factor whole;
+        FREED_BY(inverse_factor_free) struct inverse_factor whole = {0};
         GOOD(inverse_factor_build(system, &whole, &error));
         for (size_t k = 0; k < sizeof stretches / sizeof *stretches; k++) {
-            struct inverse_factor factor;
+            FREED_BY(inverse_factor_free) struct inverse_factor factor = {0};
             GOOD(inverse_factor_build_by(system, stretches[k], &factor, &error));
             same_bits(&factor.rows, &whole.rows);
-            inverse_factor_free(&factor);
         }
         assert_true((memcmp(whole.rows.value, cube.factor.rows.value, sizeof(double)) != 0) == (weak == 1));
-        inverse_factor_free(&whole);
         release(&cube);
     }
 }

@@ -1,6 +1,5 @@
 /* Label images of known shapes, in the middle of a box of about 64 mm. */
-#ifndef LABEL_SHAPES_H
-#define LABEL_SHAPES_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -169,5 +168,3 @@ static inline bool label_shape_make(const char *name, uint64_t seed, const doubl
     }
     return shape->label != NULL;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Small bodies for tests of whole systems: a box of lattice cells, its tables and its system as the tools
  * make them, and conditions on its sides. */
-#ifndef TESTS_LATTICE_FIXTURE_H
-#define TESTS_LATTICE_FIXTURE_H
+#pragma once
 
 #include "cell_table.h"
 #include "tables_fixture.h"
@@ -41,7 +40,7 @@ static inline struct lattice_options lattice_defaults(int dim, int64_t n)
 /* The system: of one material, and without conditions. */
 static inline void lattice_build(struct lattice *l, const struct lattice_options *options)
 {
-    struct error error, note;
+    struct error note;
     struct assembly *assembly = &l->assembly;
     struct material_list *list = &assembly->materials;
     *l = (struct lattice){.options = *options};
@@ -103,7 +102,6 @@ static inline int32_t lattice_begin(struct lattice *l, int dim, int64_t n, doubl
 /* The boundary averages over the sides in `sides` (bit 2 * axis, + 1 at the high end), split at corners. */
 static inline struct boundary_averages lattice_averages(const struct lattice *l, unsigned sides)
 {
-    struct error error;
     struct boundary_averages averages;
     int dim = l->options.dim;
     SCRATCH int32_t *facet = NULL;
@@ -125,7 +123,6 @@ static inline void lattice_prescribe(struct lattice *l, unsigned sides, const do
                                      double (*value)(const double *X, const double *parameters),
                                      const double *parameters, int32_t curve)
 {
-    struct error error;
     int dim = l->options.dim;
     FREED_BY(boundary_averages_free) struct boundary_averages averages = lattice_averages(l, sides);
     for (int64_t a = 0; a < averages.count; a++) {
@@ -188,5 +185,3 @@ static inline double *lattice_vector(const struct lattice *l)
 {
     return zeros(l->system.node_count * l->options.dim, sizeof(double));
 }
-
-#endif

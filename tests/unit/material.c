@@ -3,6 +3,7 @@
 #include "unit.h"
 
 #include "solid/material.h"
+#include "base/vector.h"
 
 static struct material make(enum material_model model, double poisson_ratio)
 {
@@ -34,9 +35,7 @@ static void stress(const struct material *material, const double F[9], double P[
     double C[9];
     material_shape_stress(material, F, P);
     cofactor(F, C);
-    for (int i = 0; i < 9; i++) {
-        P[i] += material_pressure(material, determinant(F)) * C[i];
-    }
+    add_scaled(9, material_pressure(material, determinant(F)), C, P);
 }
 
 /* A = B C */
@@ -154,20 +153,14 @@ TEST(rotations)
             stress(&all[m], F, P);
             multiply(Q, P, expected);
             stress(&all[m], QF, turned);
-            for (int i = 0; i < 9; i++) {
-                NEAR_TO(turned[i], expected[i], 1e-11 * fabs(W) + 1e-9);
-            }
+            ALL_NEAR(9, turned, expected, 1e-11 * fabs(W) + 1e-9);
             multiply(P, Q, expected);
             stress(&all[m], FQ, turned);
-            for (int i = 0; i < 9; i++) {
-                NEAR_TO(turned[i], expected[i], 1e-11 * fabs(W) + 1e-9);
-            }
+            ALL_NEAR(9, turned, expected, 1e-11 * fabs(W) + 1e-9);
             /* Rotation alone makes neither stress nor energy. */
             stress(&all[m], Q, P);
             NEAR_TO(energy(&all[m], Q), 0.0, 1e-10);
-            for (int i = 0; i < 9; i++) {
-                NEAR_TO(P[i], 0.0, 1e-9);
-            }
+            ALL_NEAR(9, P, NULL, 1e-9);
         }
     }
 }
@@ -181,9 +174,7 @@ TEST(rest)
         double P[9];
         stress(&all[m], identity, P);
         NEAR_TO(energy(&all[m], identity), 0.0, 0.0);
-        for (int i = 0; i < 9; i++) {
-            NEAR_TO(P[i], 0.0, 0.0);
-        }
+        ALL_NEAR(9, P, NULL, 0.0);
     }
 }
 
@@ -229,14 +220,10 @@ TEST(special_cases)
         stress(&hooke, F, P);
         stress(&ogden, F, Q);
         NEAR_TO(energy(&ogden, F), energy(&hooke, F), 1e-8);
-        for (int i = 0; i < 9; i++) {
-            NEAR_TO(Q[i], P[i], 1e-8);
-        }
+        ALL_NEAR(9, Q, P, 1e-8);
         stress(&mooney, F, Q);
         NEAR_TO(energy(&mooney, F), energy(&hooke, F), 1e-9);
-        for (int i = 0; i < 9; i++) {
-            NEAR_TO(Q[i], P[i], 1e-9);
-        }
+        ALL_NEAR(9, Q, P, 1e-9);
         /* C01 alone is Ogden's law of exponent -2: I2' is the sum of the inverse squares. */
         mooney.mooney_ratio = 1e14;
         second.ogden_alpha = -2.0;
@@ -335,9 +322,7 @@ TEST(principal_stretches)
         multiply(Q, D, QD);
         multiply(QD, R, expected);
         material_shape_stress(&material, F, P);
-        for (int i = 0; i < 9; i++) {
-            NEAR_TO(P[i], expected[i], 1e-9 * (largest + mu));
-        }
+        ALL_NEAR(9, P, expected, 1e-9 * (largest + mu));
     }
 }
 

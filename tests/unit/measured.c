@@ -58,7 +58,6 @@ TEST(pairs)
     const double deviation[] = {0, 0, 0, 0, 0, 0.1, 0.1, 0.1, 0, 0};
     struct measured measured = {2, 10, x, u, deviation};
     struct measured_pair exact, others, repeated;
-    struct error error;
     GOOD(measured_compare(&measured, 1e-9, &exact, &others, &repeated, &error));
     assert_int_equal(exact.count, 1);
     assert_int_equal(exact.first, 0);
@@ -82,8 +81,7 @@ TEST(dependence)
         double part = k == 0 ? 0.05 : 0.2; /* of its length */
         double side = sqrt((1 - part * part) / 2);
         const double third[] = {side, side, part};
-        struct constraint_rows rows;
-        struct error error;
+        FREED_BY(constraint_rows_free) struct constraint_rows rows = {0};
         bool dependent[4];
         constraint_rows_init(&rows, 2);
         GOOD(constraint_rows_add(&rows, 3, nodes, one, along, 0, 0, 0, 0, &error));
@@ -93,7 +91,6 @@ TEST(dependence)
         GOOD(measured_dependent(&rows, 3, dependent, &error));
         assert_int_equal(dependent[0] + dependent[1] + dependent[2], k == 0);
         assert_false(dependent[3]);
-        constraint_rows_free(&rows);
     }
 }
 

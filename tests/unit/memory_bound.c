@@ -121,7 +121,6 @@ TEST(announced)
 TEST(tables)
 {
     struct table table;
-    struct error error;
     char path[32];
     for (int blocks = 0; blocks < 2; blocks++) {
         repeat(blocks ? "0 0\n\n" : "0 0\n", blocks ? 20000 : 1000000);
@@ -137,7 +136,6 @@ TEST(tables)
 TEST(scenes)
 {
     struct scene scene;
-    struct error error;
     char path[32];
     append("[scene]\ndim = 2\nanalysis = dynamic\n");
     for (int i = 0; i < 1000; i++) {
@@ -147,7 +145,7 @@ TEST(scenes)
     }
     int file = make_file(path, true);
     begin();
-    assert_int_equal(scene_read(path, &scene, &error), STATUS_INPUT); /* no material */
+    FAILS(scene_read(path, &scene, &error), STATUS_INPUT, ""); /* no material */
     scene_free(&scene);
     end("scene of loads", 16.0);
     close(file);
@@ -156,7 +154,6 @@ TEST(scenes)
 TEST(meshes)
 {
     struct msh msh;
-    struct error error;
     char line[96];
     append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n160000\n");
     for (int i = 160000; i > 0; i--) { /* out of order: an index is made */
@@ -175,7 +172,7 @@ TEST(meshes)
     end("mesh of points", 6.0);
     append("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000000000\n1 0 0 0\n");
     begin();
-    assert_int_equal(msh_parse(&msh, text, length, &error), STATUS_INPUT);
+    FAILS(msh_parse(&msh, text, length, &error), STATUS_INPUT, "");
     end("mesh that announces nodes", 1.0);
 }
 

@@ -27,30 +27,26 @@ static void write_file(const char *text)
 static enum status try_scene(struct error *error)
 {
     FREED_BY(scene_free) struct scene scene = {0};
-    enum status status = scene_read(path, &scene, error);
-    return status;
+    return scene_read(path, &scene, error);
 }
 
 static enum status try_table(struct error *error)
 {
     FREED_BY(table_free) struct table table = {0};
-    enum status status = table_read(path, 2, 2, &table, error);
-    return status;
+    return table_read(path, 2, 2, &table, error);
 }
 
 static enum status try_surface(struct error *error)
 {
     FREED_BY(table_free) struct table table = {0};
-    enum status status = surface_read(path, 3, &table, error);
-    return status;
+    return surface_read(path, 3, &table, error);
 }
 
 static enum status try_curve(struct error *error)
 {
     static const double points[] = {0, 0, .5, 1, .7, 2, 1, 1};
     FREED_BY(curve_free) struct load_curve curve = {0};
-    enum status status = curve_tabulate(&curve, 4, points, 1, error);
-    return status;
+    return curve_tabulate(&curve, 4, points, 1, error);
 }
 
 TEST(scenes)

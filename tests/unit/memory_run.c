@@ -9,7 +9,6 @@
 
 #ifdef FAILING_ALLOCATOR
 
-#include "base/memory.h"
 #include "solid/dynamics.h"
 #include "solid/relaxation.h"
 
@@ -36,8 +35,7 @@ static enum status try_dynamics(struct error *error)
     struct dynamics_report report;
     FREED_BY(energy_log_free) struct energy_log log = {0};
     to_rest();
-    enum status status = dynamics_run(&lattice.system, &options, u, v, NULL, &log, &report, error);
-    return status;
+    return dynamics_run(&lattice.system, &options, u, v, NULL, &log, &report, error);
 }
 
 /* Anew, with conditions on facets, a traction, a pressure, gravity and a contact. */

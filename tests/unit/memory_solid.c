@@ -23,8 +23,7 @@ static enum status try_body_of(const struct smoothed_cells_input *smoothed, stru
     material[1] = 1;
     struct body_input input = sample_input(&sample, materials, 2, material);
     input.smoothed = smoothed;
-    enum status status = body_build(&input, &body, error);
-    return status;
+    return body_build(&input, &body, error);
 }
 
 static enum status try_body(struct error *error)
@@ -48,8 +47,7 @@ static enum status build_averages(struct boundary_averages *averages, struct err
 static enum status try_boundary(struct error *error)
 {
     FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
-    enum status status = build_averages(&averages, error);
-    return status;
+    return build_averages(&averages, error);
 }
 
 static enum status try_ends(struct error *error)
@@ -65,8 +63,7 @@ static enum status try_rigid(struct error *error)
     static const double corners[] = {0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
                                      0, 0, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     FREED_BY(rigid_free) struct rigid_surface surface = {0};
-    enum status status = rigid_build(3, 4, corners, false, &surface, error);
-    return status;
+    return rigid_build(3, 4, corners, false, &surface, error);
 }
 
 static enum status try_contact(struct error *error)
@@ -120,8 +117,7 @@ static enum status try_folds(struct error *error)
                                .facet_count = 4,
                                .facet = facet,
                                .held = prescribed};
-    enum status status = folds_build(&input, &folds, error);
-    return status;
+    return folds_build(&input, &folds, error);
 }
 
 TEST(bodies)

@@ -9,7 +9,7 @@
 static double height_of(const struct cells *cells, int64_t cell, int k, double normal[3])
 {
     int dim = cells->dim;
-    int32_t face[3], vertex = cells->node[cell * (dim + 1) + k];
+    int32_t face[3] = {0}, vertex = cells->node[cell * (dim + 1) + k];
     double length = 0.0, height = 0.0;
     for (int i = 0; i < dim; i++) {
         face[i] = cells->node[cell * (dim + 1) + (k + 1 + i) % (dim + 1)];
@@ -120,43 +120,37 @@ static void measure(int dim, double thickness, double result[3])
 }
 
 /* Slivers a thousand times thinner change nothing: without merging all three go with 1 / thickness. */
-TEST(flatness)
+TEST_IN_EACH_DIM(flatness)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        double thick[3], thin[3];
-        measure(dim, 1e-4 * sample_size, thick);
-        measure(dim, 1e-7 * sample_size, thin);
-        for (int k = 0; k < 3; k++) {
-            NEAR_TO(thin[k], thick[k], 0.01 * thick[k]);
-        }
+    double thick[3], thin[3];
+    measure(dim, 1e-4 * sample_size, thick);
+    measure(dim, 1e-7 * sample_size, thin);
+    for (int k = 0; k < 3; k++) {
+        NEAR_TO(thin[k], thick[k], 0.01 * thick[k]);
     }
 }
 
 /* F is that of a linear field to round-off, and forces inside vanish. */
-TEST(linear)
+TEST_IN_EACH_DIM(linear)
 {
     static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
-        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
-        setup.faces = true;
-        struct body body = make_body(&sample, &setup);
-        int64_t nodes = sample.cloud.node_count;
-        double *u = linear_field(&sample, A, NULL), *force = zeros(nodes * dim, sizeof *force);
-        double *F = zeros(sample.assembly.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
-        (void)body_force(&body, u, force);
-        body_gradient(&body, F);
-        for (int64_t i = 0; i < sample.assembly.point_count * 9; i++) {
-            NEAR_TO(F[i], A[i % 9], 1e-11);
-        }
-        for (int64_t q = 0; q < sample.assembly.point_count; q++) {
-            sum += body.weight[q] * body.J[q];
-            total += body.weight[q];
-        }
-        NEAR_TO(sum, determinant(A) * total, 1e-11 * total);
-        body_free(&body);
-        sample_free(&sample);
+    FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-6 * sample_size);
+    struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, true);
+    setup.faces = true;
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
+    int64_t nodes = sample.cloud.node_count;
+    double *u = linear_field(&sample, A, NULL), *force = zeros(nodes * dim, sizeof *force);
+    double *F = zeros(sample.assembly.point_count * 9, sizeof *F), sum = 0.0, total = 0.0;
+    (void)body_force(&body, u, force);
+    body_gradient(&body, F);
+    for (int64_t i = 0; i < sample.assembly.point_count * 9; i++) {
+        NEAR_TO(F[i], A[i % 9], 1e-11);
     }
+    for (int64_t q = 0; q < sample.assembly.point_count; q++) {
+        sum += body.weight[q] * body.J[q];
+        total += body.weight[q];
+    }
+    NEAR_TO(sum, determinant(A) * total, 1e-11 * total);
 }
 
 /* Forces are the gradient of the energy, whatever the law, and of groups with cells of large volume. */
@@ -165,10 +159,10 @@ TEST(gradient)
     struct random random = {5};
     for (int i = 0; i < 8; i++) {
         int dim = 2 + i % 2;
-        struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
+        FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
         struct setup setup = i < 4 ? one_material(MATERIAL_NEO_HOOKEAN, i < 2) : three_materials(i < 6);
         setup.faces = true;
-        struct body body = make_body(&sample, &setup);
+        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
         int64_t count = sample.cloud.node_count * dim;
         double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
         double *u = random_field(&sample, 0.005 * sample_size, &random),
@@ -187,39 +181,33 @@ TEST(gradient)
             all += fabs(force[n] * v[n]);
         }
         NEAR_TO(work, (value[0] - value[1]) / (2.0 * h), 1e-6 * all);
-        body_free(&body);
-        sample_free(&sample);
     }
 }
 
 /* A group is of one material, in one block, and has a cell that is not poor. */
-TEST(groups)
+TEST_IN_EACH_DIM(groups)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
-        struct setup setup = three_materials(true);
-        setup.faces = true;
-        struct body body = make_body(&sample, &setup);
-        int64_t merged = 0;
-        for (int64_t b = 0; b < body.block_count; b++) {
-            const struct block *block = &body.blocks[b];
-            for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-                int64_t first = smoothed_cells_group(&body, q);
-                assert_true(first >= block->first_point && first <= q);
-                assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
-                assert_int_equal(body.material[first], body.material[q]);
-                if (first != q) {
-                    assert_true(cell_quality(&sample.assembly.cells, body.order[q]) < POOR_QUALITY);
-                    assert_true(cell_quality(&sample.assembly.cells, body.order[first]) > POOR_QUALITY);
-                    merged++;
-                }
+    FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-5 * sample_size);
+    struct setup setup = three_materials(true);
+    setup.faces = true;
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
+    int64_t merged = 0;
+    for (int64_t b = 0; b < body.block_count; b++) {
+        const struct block *block = &body.blocks[b];
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            int64_t first = smoothed_cells_group(&body, q);
+            assert_true(first >= block->first_point && first <= q);
+            assert_true(smoothed_cells_group_end(&body, q) <= block->first_point + block->point_count);
+            assert_int_equal(body.material[first], body.material[q]);
+            if (first != q) {
+                assert_true(cell_quality(&sample.assembly.cells, body.order[q]) < POOR_QUALITY);
+                assert_true(cell_quality(&sample.assembly.cells, body.order[first]) > POOR_QUALITY);
+                merged++;
             }
         }
-        assert_int_equal(merged, body.cells.merged_count);
-        assert_true(merged > 0);
-        body_free(&body);
-        sample_free(&sample);
     }
+    assert_int_equal(merged, body.cells.merged_count);
+    assert_true(merged > 0);
 }
 
 RUN_TESTS(NULL, NULL)

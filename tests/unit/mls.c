@@ -10,7 +10,7 @@ TEST(weights)
     for (int w = 0; w < WEIGHT_COUNT; w++) {
         double value, slope, before = 1.0;
         weight_evaluate((enum weight_function)w, 0.0, &value, &slope);
-        at_most(fabs(value - 1.0), 1e-14, "w(0) - 1");
+        AT_MOST(fabs(value - 1.0), 1e-14);
         assert_true(isfinite(slope) && slope <= 0.0);
         for (double r = 0.01; r < 1.0; r += 0.0137) {
             double h = 1e-6, plus, minus, unused;
@@ -19,40 +19,35 @@ TEST(weights)
             weight_evaluate((enum weight_function)w, (r - h) * (r - h), &minus, &unused);
             assert_true(value > 0.0 && value <= before);
             before = value;
-            at_most(fabs(slope * r - (plus - minus) / (2.0 * h)), 1e-6, "slope against differences");
+            AT_MOST(fabs(slope * r - (plus - minus) / (2.0 * h)), 1e-6);
         }
         weight_evaluate((enum weight_function)w, 1.0 - 1e-9, &value, &slope);
-        at_most(fabs(value), 1e-9, "w(1)");
+        AT_MOST(fabs(value), 1e-9);
     }
 }
 
 /* All bases, weights, dimensions and places. */
-TEST(reproduction)
+TEST_IN_EACH_DIM(reproduction)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int p = 0; p < PLACE_COUNT; p++) {
-            struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
-            for (int b = 0; b < BASIS_COUNT; b++) {
-                for (int w = 0; w < WEIGHT_COUNT; w++) {
-                    struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                    struct table table;
-                    struct error error;
-                    GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
-                    struct defects worst =
-                        table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
-                    if (getenv("SHOW")) {
-                        print_message("%dD %s %s %s: %.1e %.1e %.1e %.1e widened %d\n", dim, places[p].name,
-                                      basis_names[b], weight_names[w], worst.unity, worst.position,
-                                      worst.gradient_sum, worst.gradient_position, (int)table.lists.widened);
-                    }
-                    at_most(worst.unity, 1e-12, "sum phi - 1");
-                    at_most(worst.position, 1e-12, "sum phi x - x");
-                    at_most(worst.gradient_sum, 1e-12, "sum grad phi");
-                    at_most(worst.gradient_position, 1e-12, "sum grad phi x - I");
-                    table_free(&table);
+    for (int p = 0; p < PLACE_COUNT; p++) {
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 7);
+        for (int b = 0; b < BASIS_COUNT; b++) {
+            for (int w = 0; w < WEIGHT_COUNT; w++) {
+                struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
+                FREED_BY(table_free) struct table table = {0};
+                GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
+                struct defects worst = table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
+                if (getenv("SHOW")) {
+                    print_message("%dD %s %s %s: %.1e %.1e %.1e %.1e widened %d\n", dim, places[p].name,
+                                  basis_names[b], weight_names[w], worst.unity, worst.position,
+                                  worst.gradient_sum, worst.gradient_position, (int)table.lists.widened);
                 }
+                AT_MOST(worst.unity, 1e-12);
+                AT_MOST(worst.position, 1e-12);
+                AT_MOST(worst.gradient_sum, 1e-12);
+                AT_MOST(worst.gradient_position, 1e-12);
             }
-            scattered_free(&cloud);
         }
     }
 }
@@ -77,33 +72,29 @@ static double quadratic(int dim, const double *x, double offset, double size, do
     return value;
 }
 
-TEST(quadratic_reproduction)
+TEST_IN_EACH_DIM(quadratic_reproduction)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int p = 0; p < PLACE_COUNT; p++) {
-            struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
-            struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
-            struct table table;
-            struct error error;
-            GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
-            for (int64_t q = 0; q < 100; q++) {
-                double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
-                for (int64_t i = table.lists.ptr[q]; i < table.lists.ptr[q + 1]; i++) {
-                    double nodal = quadratic(dim, cloud.x + (int64_t)table.lists.idx[i] * dim,
-                                             places[p].offset, cloud.size, unused);
-                    value += table.phi[i] * nodal;
-                    for (int a = 0; a < dim; a++) {
-                        slope[a] += table.dphi[i * dim + a] * nodal;
-                    }
-                }
-                value -= quadratic(dim, cloud.points + q * dim, places[p].offset, cloud.size, expected);
-                at_most(fabs(value), 1e-11, "value of a quadratic");
+    for (int p = 0; p < PLACE_COUNT; p++) {
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 12 : 6, 100, &places[p], 0.3, 11);
+        struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
+        FREED_BY(table_free) struct table table = {0};
+        GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
+        for (int64_t q = 0; q < 100; q++) {
+            double value = 0.0, slope[3] = {0.0}, expected[3], unused[3];
+            for (int64_t i = table.lists.ptr[q]; i < table.lists.ptr[q + 1]; i++) {
+                double nodal = quadratic(dim, cloud.x + (int64_t)table.lists.idx[i] * dim, places[p].offset,
+                                         cloud.size, unused);
+                value += table.phi[i] * nodal;
                 for (int a = 0; a < dim; a++) {
-                    at_most(fabs(slope[a] - expected[a]) * cloud.size, 1e-9, "gradient of a quadratic");
+                    slope[a] += table.dphi[i * dim + a] * nodal;
                 }
             }
-            table_free(&table);
-            scattered_free(&cloud);
+            value -= quadratic(dim, cloud.points + q * dim, places[p].offset, cloud.size, expected);
+            AT_MOST(fabs(value), 1e-11);
+            for (int a = 0; a < dim; a++) {
+                AT_MOST(fabs(slope[a] - expected[a]) * cloud.size, 1e-9);
+            }
         }
     }
 }
@@ -114,7 +105,6 @@ static void evaluate(const struct mls *mls, const struct scattered *cloud, const
 {
     FREED_BY(mls_work_free) struct mls_work work = {0};
     enum mls_verdict verdict;
-    struct error error;
     struct mls_support support = {.x = x,
                                   .nodes = cloud->x,
                                   .radius = table->radius,
@@ -129,42 +119,37 @@ enum { MOST = 1000 };
 
 /* Full gradients against central differences; nodes that leave or enter the support between the two points
  * have weights of zero to third order. */
-TEST(gradients)
+TEST_IN_EACH_DIM(gradients)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            for (int w = 0; w < WEIGHT_COUNT; w++) {
-                struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                struct table table;
-                struct error error;
-                GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
-                double h = 1e-5 * cloud.spacing;
-                for (int64_t p = 0; p < 20; p++) {
-                    double plus[MOST], minus[MOST], x[3], largest = 0.0;
-                    int64_t first = table.lists.ptr[p], count = table.lists.ptr[p + 1] - first;
-                    assert_true(count <= MOST);
-                    for (int64_t i = first * dim; i < (first + count) * dim; i++) {
-                        largest = fmax(largest, fabs(table.dphi[i]));
-                    }
-                    for (int a = 0; a < dim; a++) {
-                        memcpy(x, cloud.points + p * dim, (size_t)dim * sizeof *x);
-                        double up = x[a] + h, down = x[a] - h;
-                        x[a] = up;
-                        evaluate(&options.mls, &cloud, &table, p, x, plus, NULL);
-                        x[a] = down;
-                        evaluate(&options.mls, &cloud, &table, p, x, minus, NULL);
-                        for (int64_t i = 0; i < count; i++) {
-                            double difference = (plus[i] - minus[i]) / (up - down);
-                            at_most(fabs(table.dphi[(first + i) * dim + a] - difference) / largest, 3e-5,
-                                    "gradient against differences");
-                        }
+    FREED_BY(scattered_free)
+    struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 20, &places[2], 0.3, 3);
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        for (int w = 0; w < WEIGHT_COUNT; w++) {
+            struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
+            FREED_BY(table_free) struct table table = {0};
+            GOOD(tabulate(&options, cloud.count, cloud.x, 20, cloud.points, &table, &error));
+            double h = 1e-5 * cloud.spacing;
+            for (int64_t p = 0; p < 20; p++) {
+                double plus[MOST], minus[MOST], x[3], largest = 0.0;
+                int64_t first = table.lists.ptr[p], count = table.lists.ptr[p + 1] - first;
+                assert_true(count <= MOST);
+                for (int64_t i = first * dim; i < (first + count) * dim; i++) {
+                    largest = fmax(largest, fabs(table.dphi[i]));
+                }
+                for (int a = 0; a < dim; a++) {
+                    memcpy(x, cloud.points + p * dim, (size_t)dim * sizeof *x);
+                    double up = x[a] + h, down = x[a] - h;
+                    x[a] = up;
+                    evaluate(&options.mls, &cloud, &table, p, x, plus, NULL);
+                    x[a] = down;
+                    evaluate(&options.mls, &cloud, &table, p, x, minus, NULL);
+                    for (int64_t i = 0; i < count; i++) {
+                        double difference = (plus[i] - minus[i]) / (up - down);
+                        AT_MOST(fabs(table.dphi[(first + i) * dim + a] - difference) / largest, 3e-5);
                     }
                 }
-                table_free(&table);
             }
         }
-        scattered_free(&cloud);
     }
 }
 
@@ -199,94 +184,79 @@ static struct mls with_mu(struct mls mls, double mu)
 }
 
 /* MMLS lies between linear MLS (mu huge) and quadratic MLS (mu nothing). */
-TEST(limits_of_modified)
+TEST_IN_EACH_DIM(limits_of_modified)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
-        struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
-        struct table table;
-        struct error error;
-        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
-        struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
-        struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
-        struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
-        at_most(apart(&huge, &linear, &cloud, &table), 1e-9, "mu = 1e12 from linear MLS");
-        at_most(apart(&nothing, &options.mls, &cloud, &table), 1e-8, "mu = 1e-14 from quadratic MLS");
-        struct mls middle = with_mu(modified, 1e-2);
-        assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
-        assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
-        table_free(&table);
-        scattered_free(&cloud);
-    }
+    FREED_BY(scattered_free)
+    struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
+    struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
+    FREED_BY(table_free) struct table table = {0};
+    GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
+    struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
+    struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
+    struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
+    AT_MOST(apart(&huge, &linear, &cloud, &table), 1e-9);
+    AT_MOST(apart(&nothing, &options.mls, &cloud, &table), 1e-8);
+    struct mls middle = with_mu(modified, 1e-2);
+    assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
+    assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
 }
 
 /* An absolute mu is the dimensionless mu s^4; one mu for each monomial acts on that one. */
-TEST(units_of_mu)
+TEST_IN_EACH_DIM(units_of_mu)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
-        struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
-        options.radius = 2.1 * cloud.spacing;
-        options.widen = false;
-        struct table table;
-        struct error error;
-        GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
-        double s4 = pow(options.radius, 4.0);
-        struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
-        absolute.mu_absolute = true;
-        at_most(apart(&relative, &absolute, &cloud, &table), 1e-10, "absolute mu from mu / s^4");
-        for (int k = 0; k < mls_second_order_count(dim); k++) {
-            struct mls one = relative;
-            one.mu[k] = 1.0;
-            assert_true(apart(&relative, &one, &cloud, &table) > 1e-4);
-        }
-        table_free(&table);
-        scattered_free(&cloud);
+    FREED_BY(scattered_free)
+    struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[1], 0.3, 6);
+    struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
+    options.radius = 2.1 * cloud.spacing;
+    options.widen = false;
+    FREED_BY(table_free) struct table table = {0};
+    GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
+    double s4 = pow(options.radius, 4.0);
+    struct mls relative = with_mu(options.mls, 1e-3), absolute = with_mu(options.mls, 1e-3 * s4);
+    absolute.mu_absolute = true;
+    AT_MOST(apart(&relative, &absolute, &cloud, &table), 1e-10);
+    for (int k = 0; k < mls_second_order_count(dim); k++) {
+        struct mls one = relative;
+        one.mu[k] = 1.0;
+        assert_true(apart(&relative, &one, &cloud, &table) > 1e-4);
     }
 }
 
 /* Scaling by a power of two changes no bit of phi; a translation changes round-off only. */
-TEST(invariance)
+TEST_IN_EACH_DIM(invariance)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            const double factor = 1024.0;
-            struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-            struct scattered scaled = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-            struct scattered moved = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-            for (int64_t i = 0; i < cloud.count * dim; i++) {
-                scaled.x[i] *= factor;
-                moved.x[i] += 1.0;
-            }
-            for (int64_t i = 0; i < 50 * dim; i++) {
-                scaled.points[i] *= factor;
-                moved.points[i] += 1.0;
-            }
-            struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
-            struct table one, two, three;
-            struct error error;
-            GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
-            GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
-            GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
-            int64_t pairs = one.lists.ptr[50];
-            assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
-            assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
-            assert_memory_equal(one.lists.idx, three.lists.idx, (size_t)pairs * sizeof(int32_t));
-            assert_memory_equal(one.phi, two.phi, (size_t)pairs * sizeof(double));
-            for (int64_t i = 0; i < pairs; i++) {
-                at_most(fabs(one.phi[i] - three.phi[i]), 1e-9, "phi after a translation");
-            }
-            for (int64_t i = 0; i < pairs * dim; i++) {
-                assert_true(one.dphi[i] == two.dphi[i] * factor);
-                at_most(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8,
-                        "grad phi after a translation");
-            }
-            table_free(&one);
-            table_free(&two);
-            table_free(&three);
-            scattered_free(&cloud);
-            scattered_free(&scaled);
-            scattered_free(&moved);
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        const double factor = 1024.0;
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+        FREED_BY(scattered_free)
+        struct scattered scaled = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+        FREED_BY(scattered_free)
+        struct scattered moved = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
+        for (int64_t i = 0; i < cloud.count * dim; i++) {
+            scaled.x[i] *= factor;
+            moved.x[i] += 1.0;
+        }
+        for (int64_t i = 0; i < 50 * dim; i++) {
+            scaled.points[i] *= factor;
+            moved.points[i] += 1.0;
+        }
+        struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
+        FREED_BY(table_free) struct table one = {0}, two = {0}, three = {0};
+        GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
+        GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
+        GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
+        int64_t pairs = one.lists.ptr[50];
+        assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
+        assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
+        assert_memory_equal(one.lists.idx, three.lists.idx, (size_t)pairs * sizeof(int32_t));
+        assert_memory_equal(one.phi, two.phi, (size_t)pairs * sizeof(double));
+        for (int64_t i = 0; i < pairs; i++) {
+            AT_MOST(fabs(one.phi[i] - three.phi[i]), 1e-9);
+        }
+        for (int64_t i = 0; i < pairs * dim; i++) {
+            assert_true(one.dphi[i] == two.dphi[i] * factor);
+            AT_MOST(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8);
         }
     }
 }
@@ -300,12 +270,12 @@ TEST(normal_equations)
     int64_t decided = 0, left = 0;
     assert_non_null(scratch);
     for (int dim = 2; dim <= 3; dim++) {
+        FREED_BY(scattered_free)
         struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 100, &places[2], 0.4, 12);
         for (int b = 0; b < BASIS_COUNT; b++) {
             for (int w = 0; w < WEIGHT_COUNT; w++) {
                 struct support_options options = options_for(dim, (enum basis)b, (enum weight_function)w);
-                struct table table;
-                struct error error;
+                FREED_BY(table_free) struct table table = {0};
                 GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 for (int64_t p = 0; p < 100; p++) {
                     struct mls_support support = {.x = cloud.points + p * dim,
@@ -325,18 +295,15 @@ TEST(normal_equations)
                         most = fmax(most, fabs(dphi[1][i]));
                     }
                     for (int64_t i = 0; served && i < support.count; i++) {
-                        at_most(fabs(phi[0][i] - phi[1][i]), 1e-11, "phi against the careful way");
+                        AT_MOST(fabs(phi[0][i] - phi[1][i]), 1e-11);
                         for (int a = 0; a < dim; a++) {
                             double gradient = dphi[1][i * dim + a];
-                            at_most(fabs(dphi[0][i * dim + a] - gradient) / most, 1e-10,
-                                    "grad phi against the careful way");
+                            AT_MOST(fabs(dphi[0][i * dim + a] - gradient) / most, 1e-10);
                         }
                     }
                 }
-                table_free(&table);
             }
         }
-        scattered_free(&cloud);
     }
     print_message("# %d points decided by the normal equations, %d left\n", (int)decided, (int)left);
     assert_true(decided > 3 * left && left > 0);
@@ -359,7 +326,6 @@ static double fit_error(int dim, enum basis basis, int per_axis)
     struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
     options.radius = (basis == BASIS_LINEAR ? 1.8 : 2.6) * cloud.spacing;
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     double sum = 0.0;
     GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
     for (int64_t p = 0; p < 400; p++) {
@@ -373,18 +339,15 @@ static double fit_error(int dim, enum basis basis, int per_axis)
 }
 
 /* Order 2 for the linear basis, 3 for the quadratic and the modified. */
-TEST(convergence)
+TEST_IN_EACH_DIM(convergence)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
-            double before = fit_error(dim, (enum basis)b, coarse),
-                   after = fit_error(dim, (enum basis)b, fine);
-            double order = log2(before / after);
-            print_message("# %dD %s: %d, %d nodes per axis: %.3g, %.3g, order %.2f\n", dim, basis_names[b],
-                          coarse, fine, before, after, order);
-            at_most((b == BASIS_LINEAR ? 1.8 : 2.7), order, "order of convergence");
-        }
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
+        double before = fit_error(dim, (enum basis)b, coarse), after = fit_error(dim, (enum basis)b, fine);
+        double order = log2(before / after);
+        print_message("# %dD %s: %d, %d nodes per axis: %.3g, %.3g, order %.2f\n", dim, basis_names[b],
+                      coarse, fine, before, after, order);
+        AT_MOST((b == BASIS_LINEAR ? 1.8 : 2.7), order);
     }
 }
 
@@ -442,7 +405,7 @@ TEST(paper_table)
             if (isinf(rows[r].rmse[c])) {
                 assert_true(isinf(rmse));
             } else {
-                at_most(fabs(rmse - rows[r].rmse[c]), 1.5e-4, "difference from the paper");
+                AT_MOST(fabs(rmse - rows[r].rmse[c]), 1.5e-4);
             }
         }
     }

@@ -4,8 +4,7 @@
 #include "approx/cloud.h"
 #include "approx/motion.h"
 #include "approx/raster.h"
-
-static struct error error;
+#include "base/vector.h"
 
 /* A jittered cloud in the unit square or cube, and a field on it. */
 struct body {
@@ -62,15 +61,6 @@ static void drop_body(struct body *body)
     free(body->u);
 }
 
-static double distance(int dim, const double *a, const double *b)
-{
-    double square = 0;
-    for (int i = 0; i < dim; i++) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-    }
-    return sqrt(square);
-}
-
 /* Barycentric coordinates of sample s of a cell: inside, on faces, at corners. */
 static void sample_place(const struct cells *cells, int64_t cell, int s, double *X)
 {
@@ -85,9 +75,7 @@ static void sample_place(const struct cells *cells, int64_t cell, int s, double 
     }
     for (int a = 0; a <= cells->dim; a++) {
         const double *node = cells->x + cells->node[cell * (cells->dim + 1) + a] * cells->dim;
-        for (int i = 0; i < cells->dim; i++) {
-            X[i] += weights[s][a] / sum * node[i];
-        }
+        add_scaled(cells->dim, weights[s][a] / sum, node, X);
     }
 }
 
@@ -107,10 +95,10 @@ static double largest_error(const struct motion *motion, field_function field, d
             for (int i = 0; i < dim; i++) {
                 exact[i] = X[i] + u[i];
             }
-            most = fmax(most, distance(dim, moved, exact));
+            most = fmax(most, vector_distance(dim, moved, exact));
             assert_true(motion_inverse(motion, c, moved, 1e-12, back, &residual));
             assert_true(residual <= 1e-12);
-            *inverse_error = fmax(*inverse_error, distance(dim, back, X));
+            *inverse_error = fmax(*inverse_error, vector_distance(dim, back, X));
         }
     }
     return most;
@@ -119,23 +107,20 @@ static double largest_error(const struct motion *motion, field_function field, d
 static void check_polynomial(int dim, bool linear, field_function field, double tolerance)
 {
     struct body body;
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     double inverse_error;
     make_body(dim, dim == 2 ? 9 : 6, field, &body);
     GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
     assert_true(largest_error(&motion, field, &inverse_error) <= tolerance);
     assert_true(inverse_error <= 1e-10);
-    motion_free(&motion);
     drop_body(&body);
 }
 
-TEST(polynomials_are_exact)
+TEST_IN_EACH_DIM(polynomials_are_exact)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        check_polynomial(dim, false, linear_field, 1e-11);
-        check_polynomial(dim, true, linear_field, 1e-11);
-        check_polynomial(dim, false, quadratic_field, 1e-7); /* to the regularisation of the modified basis */
-    }
+    check_polynomial(dim, false, linear_field, 1e-11);
+    check_polynomial(dim, true, linear_field, 1e-11);
+    check_polynomial(dim, false, quadratic_field, 1e-7); /* to the regularisation of the modified basis */
 }
 
 /* Half the spacing: an eighth of the error, a quarter without gradients. */
@@ -145,11 +130,10 @@ TEST(orders)
         double errors[2], ignored;
         for (int fine = 0; fine < 2; fine++) {
             struct body body;
-            struct motion motion;
+            FREED_BY(motion_free) struct motion motion = {0};
             make_body(2, fine ? 41 : 21, smooth_field, &body);
             GOOD(motion_build(&body.cells, body.u, linear, NULL, &motion, &error));
             errors[fine] = largest_error(&motion, smooth_field, &ignored);
-            motion_free(&motion);
             drop_body(&body);
         }
         double order = log2(errors[0] / errors[1]);
@@ -164,7 +148,7 @@ TEST(orders)
 TEST(walks)
 {
     struct body body;
-    struct motion motion;
+    FREED_BY(motion_free) struct motion motion = {0};
     make_body(3, 6, smooth_field, &body);
     GOOD(motion_build(&body.cells, body.u, false, NULL, &motion, &error));
     for (int64_t c = 0; c < body.cells.count; c++) {
@@ -175,11 +159,10 @@ TEST(walks)
                 sample_place(&body.cells, c, 0, X);
                 motion_place(&motion, c, X, moved);
                 assert_true(motion_inverse(&motion, start, moved, 1e-12, back, &residual));
-                assert_true(distance(3, back, X) <= 1e-10);
+                assert_true(vector_distance(3, back, X) <= 1e-10);
             }
         }
     }
-    motion_free(&motion);
     drop_body(&body);
 }
 
@@ -215,43 +198,41 @@ static bool holds(const struct cells *cells, int64_t cell, const double *y)
     return true;
 }
 
-TEST(owners)
+TEST_IN_EACH_DIM(owners)
 {
     static const int64_t sizes[2][3] = {{37, 29, 1}, {13, 11, 17}};
-    for (int dim = 2; dim <= 3; dim++) {
-        struct body body;
-        make_body(dim, 5, linear_field, &body);
-        const int64_t *size = sizes[dim - 2];
-        int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
-        int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
-        for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
-            /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
-            body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
-        }
-        omp_set_num_threads(1);
-        raster_cells(&body.cells, 1, size, owner, &doubly);
-        assert_int_equal(doubly, 0);
-        omp_set_num_threads(3);
-        raster_cells(&body.cells, 1, size, again, &doubly);
-        assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
-        for (int64_t v = 0; v < count; v++) {
-            const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
-                                 (double)(v / size[0] / size[1])};
-            int64_t lowest = 0;
-            while (lowest < body.cells.count && !holds(&body.cells, lowest, y)) {
-                lowest++;
-            }
-            assert_int_equal(owner[v], lowest < body.cells.count ? lowest : -1);
-            found += owner[v] >= 0;
-        }
-        assert_true(found > (dim == 2 ? 100 : 1000));
-        /* Seen in a mirror all cells are turned over. */
-        raster_cells(&body.cells, -1, size, owner, &doubly);
-        for (int64_t v = 0; v < count; v++) {
-            assert_int_equal(owner[v], -1);
-        }
-        drop_body(&body);
+    struct body body;
+    make_body(dim, 5, linear_field, &body);
+    const int64_t *size = sizes[dim - 2];
+    int64_t count = size[0] * size[1] * size[2], doubly, found = 0;
+    int32_t *owner = zeros(count, sizeof *owner), *again = zeros(count, sizeof *again);
+    for (int64_t i = 0; i < body.cells.node_count * dim; i++) {
+        /* Beyond the grid on two sides; nodes at the corners of the lattice fall on grid points. */
+        body.cloud.x[i] = body.cloud.x[i] * 12 - 2;
     }
+    omp_set_num_threads(1);
+    raster_cells(&body.cells, 1, size, owner, &doubly);
+    assert_int_equal(doubly, 0);
+    omp_set_num_threads(3);
+    raster_cells(&body.cells, 1, size, again, &doubly);
+    assert_memory_equal(owner, again, (size_t)count * sizeof *owner);
+    for (int64_t v = 0; v < count; v++) {
+        const double y[3] = {(double)(v % size[0]), (double)(v / size[0] % size[1]),
+                             (double)(v / size[0] / size[1])};
+        int64_t lowest = 0;
+        while (lowest < body.cells.count && !holds(&body.cells, lowest, y)) {
+            lowest++;
+        }
+        assert_int_equal(owner[v], lowest < body.cells.count ? lowest : -1);
+        found += owner[v] >= 0;
+    }
+    assert_true(found > (dim == 2 ? 100 : 1000));
+    /* Seen in a mirror all cells are turned over. */
+    raster_cells(&body.cells, -1, size, owner, &doubly);
+    for (int64_t v = 0; v < count; v++) {
+        assert_int_equal(owner[v], -1);
+    }
+    drop_body(&body);
 }
 
 TEST(two_parts_at_one_place)

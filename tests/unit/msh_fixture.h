@@ -1,8 +1,7 @@
 /* A small mesh as the bytes of a file, in every version, as text and binary: a square of 2 mm x 1 mm of two
  * triangles in "body", its lower edge "bottom", its lower left point "corner", and a node of no cell. Tags
  * have gaps. */
-#ifndef MSH_FIXTURE_H
-#define MSH_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -240,5 +239,3 @@ static inline bool fixture_replace(struct fixture *f, const char *from, const ch
     f->size = f->size - strlen(from) + strlen(to);
     return true;
 }
-
-#endif

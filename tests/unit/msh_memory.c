@@ -20,8 +20,7 @@ static enum status try_read(struct error *error)
         assert_true(fixture_replace(&f, "\n9 ", "\n300000 "));
         assert_true(fixture_replace(&f, "\"body\"", "\"the body\""));
     }
-    enum status status = msh_parse(&msh, f.bytes, f.size, error);
-    return status;
+    return msh_parse(&msh, f.bytes, f.size, error);
 }
 
 /* Two squares side by side, their border, a named corner, and a node of no cell. */
@@ -44,7 +43,6 @@ static enum status try_build(struct error *error)
                       node_ptr, node_idx, member_ptr, member_idx, 4,           groups};
     FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
-    stream_init(&stream);
     enum status status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, error);
     if (status == STATUS_OK) {
         status = mesh_put(&mesh, &stream, error);
@@ -57,8 +55,7 @@ static enum status try_cloud(struct error *error)
     struct cloud_options options = {
         .kind = CLOUD_JITTERED, .dim = 3, .count = {3, 3, 3}, .high = {1, 1, 1}, .jitter = 0.1, .seed = 1};
     FREED_BY(cloud_free) struct cloud cloud = {0};
-    enum status status = cloud_make(&options, &cloud, error);
-    return status;
+    return cloud_make(&options, &cloud, error);
 }
 
 TEST(files)

@@ -87,7 +87,6 @@ TEST(own_letter)
 TEST(uses)
 {
     struct options options;
-    struct error error;
     char operands[256];
     GOOD(parse("a -vk3 --part=x=1 - --part y -- -k", &options, operands, &error));
     assert_string_equal(operands, "a - -k");
@@ -111,10 +110,8 @@ TEST(refused)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct options options;
-        struct error error;
         char operands[256];
-        assert_int_equal(parse(cases[i][0], &options, operands, &error), STATUS_INPUT);
-        assert_string_equal(error.text, cases[i][1]);
+        FAILS_WITH(parse(cases[i][0], &options, operands, &error), STATUS_INPUT, cases[i][1]);
     }
 }
 

@@ -4,7 +4,6 @@
 #include "approx/cloud.h"
 #include "approx/partition.h"
 #include "approx/support.h"
-#include "base/memory.h"
 
 struct body {
     struct cloud cloud;
@@ -19,7 +18,6 @@ struct body {
 
 static void body_setup(struct body *body, int dim, double ratio, int32_t parts, double widen)
 {
-    struct error error;
     SCRATCH double *spacing = NULL;
     struct cloud_options wanted = {
         .kind = CLOUD_GRADED, .dim = dim, .count = {16, 7, 6}, .high = {0.2, 0.1, 0.1}, .ratio = ratio};
@@ -88,7 +86,6 @@ static void point_in(const struct cells *cells, int64_t cell, uint32_t *state, d
  */
 static void check_part(const struct body *body, int32_t part)
 {
-    struct error error;
     FREED_BY(body_part_free) struct body_part got = {0};
     FREED_BY(body_part_work_free) struct body_part_work work = {0};
     const struct cells *cells = &body->cells;

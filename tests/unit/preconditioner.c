@@ -15,9 +15,7 @@ struct strained {
 
 static void measure(struct strained *s, bool coarse)
 {
-    struct error error;
-    double *mass;
-    mass = zeros(s->l.system.node_count, sizeof *mass);
+    double *mass = zeros(s->l.system.node_count, sizeof *mass);
     (void)system_residual(&s->l.system, s->u, s->residual);
     system_relaxation_mass(&s->l.system, false, mass);
     GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));
@@ -116,7 +114,6 @@ TEST(mass_and_inverse_agree)
 
 static void frequencies(struct strained *s, double *largest, double *lowest)
 {
-    struct error error;
     double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
     struct spectrum spectrum;
     scratch = zeros(4 * s->size, sizeof *scratch);
@@ -179,7 +176,6 @@ struct pressed {
 
 static void press_bar(struct pressed *p, bool clamped)
 {
-    struct error error;
     struct rigid_surface plate;
     const double corners[4] = {-1.0, 0.1, 2.0, 0.1}; /* the body is below: on the right of it */
     struct strained *s = &p->s;

@@ -3,7 +3,6 @@
 #include "body_setup.h"
 
 #include "base/envelope.h"
-#include "base/memory.h"
 #include "base/ranks.h"
 
 #include <pthread.h>
@@ -224,7 +223,7 @@ static void *evaluate_member(void *context)
     if (reads_some) {
         keep_some(&member->ranks, &member->sample->assembly, &sample.assembly);
     }
-    struct body body = make_body(&sample, &setup);
+    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
     if (reads_some) { /* the body has fetched what it needs */
         free((void *)(uintptr_t)sample.assembly.lists.ptr);
         free((void *)(uintptr_t)sample.assembly.lists.idx);
@@ -233,7 +232,6 @@ static void *evaluate_member(void *context)
     }
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
-    body_free(&body);
     return NULL;
 }
 
@@ -287,7 +285,6 @@ TEST(large_body)
 /* Stretches are of about the same work, cover all items in turn, and say whose an item is. */
 TEST(shares)
 {
-    struct error error;
     struct ranks ranks = {.count = 3};
     const double work[8] = {4.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 4.0};
     int64_t *first;
@@ -312,7 +309,6 @@ TEST(shares)
 
 TEST(rows_in_stretches)
 {
-    struct error error;
     struct stretches stretches;
     const bool wanted[9] = {true, true, false, true, false, false, true, true, true};
     GOOD(stretches_of(1, 8, wanted, &stretches, &error));
@@ -332,13 +328,13 @@ static void *agree_member(void *context)
 {
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
-    struct error error = {"?"};
+    struct error said = {"?"};
     SCRATCH int64_t *each = NULL;
     GOOD(ranks_agree(ranks, STATUS_OK, &error));
     enum status status =
-        ranks->rank > 0 ? (fail)(&error, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
-    assert_int_equal(ranks_agree(ranks, status, &error), STATUS_INPUT);
-    assert_string_equal(error.text, "by 1");
+        ranks->rank > 0 ? (fail)(&said, STATUS_INPUT + (ranks->rank > 1), "by %d", ranks->rank) : STATUS_OK;
+    assert_int_equal(ranks_agree(ranks, status, &said), STATUS_INPUT);
+    assert_string_equal(said.text, "by 1");
     GOOD(ranks_list(ranks, 10 + ranks->rank, &each, &error));
     for (int r = 0; r < ranks->count; r++) {
         assert_int_equal(each[r], 10 + r);
@@ -349,9 +345,8 @@ static void *agree_member(void *context)
 TEST(agreement)
 {
     struct member members[3] = {{.sample = NULL}};
-    struct error error;
     run_team(3, members, agree_member);
-    assert_int_equal(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT);
+    FAILS(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT, "");
 }
 
 enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
@@ -359,7 +354,6 @@ enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
 /* A chain in each of some blocks that do not couple. */
 static void make_chains(struct envelope *factor)
 {
-    struct error error;
     int64_t ptr[SOLVED + 1] = {0}, column[3 * SOLVED], at = 0;
     double value[3 * SOLVED];
     for (int64_t i = 0; i < SOLVED; i++) {
@@ -378,7 +372,6 @@ static void *solve_member(void *context)
 {
     struct member *member = context;
     const struct ranks *ranks = &member->ranks;
-    struct error error;
     FREED_BY(envelope_free) struct envelope factor = {0};
     SCRATCH int64_t *first = NULL;
     double *x = member->results + ranks->rank * SOLVED;
@@ -400,7 +393,7 @@ static void *solve_member(void *context)
 TEST(solving)
 {
     double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
-    struct envelope factor;
+    FREED_BY(envelope_free) struct envelope factor = {0};
     make_chains(&factor);
     for (int i = 0; i < SOLVED; i++) {
         alone[i] = right[i] = 1.0 / (1.0 + i);
@@ -411,7 +404,6 @@ TEST(solving)
         double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
         AT_MOST(fabs(sum - right[i]), 1e-14);
     }
-    envelope_free(&factor);
     for (int count = 2; count <= MOST; count += count == 3 ? MOST - 3 : 1) {
         struct member members[MOST];
         for (int r = 0; r < count; r++) {

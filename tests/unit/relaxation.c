@@ -13,7 +13,6 @@ static struct relaxation_report relax(struct lattice *l, const struct relaxation
                                       double *row_force)
 {
     struct relaxation_report report;
-    struct error error;
     GOOD(relaxation_run(&l->system, options, u, row_force, &report, &error));
     return report;
 }
@@ -107,13 +106,12 @@ TEST(simple_shear)
     static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
     struct lattice_options options = lattice_defaults(2, 7);
     FREED_BY(lattice_free) struct lattice l = {0};
-    double *stress;
     options.jitter = 0.2;
     lattice_build(&l, &options);
     prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
     double *u = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
     (void)system_residual(&l.system, u, residual);
-    stress = zeros(l.system.body.point_count * 9, sizeof *stress);
+    double *stress = zeros(l.system.body.point_count * 9, sizeof *stress);
     body_stress(&l.system.body, stress);
     for (int64_t q = 0; q < l.system.body.point_count; q++) {
         const double *P = stress + 9 * q;
@@ -129,13 +127,12 @@ TEST(simple_shear)
 static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
-    double *row_force;
     int top = 2 * dim - 1;
     int32_t curve = lattice_begin(&l, dim, dim == 2 ? 6 : 4, 0.1, CURVE_SMOOTH);
     unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
     lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
     lattice_push(&l, top, (stretch - 1) * 0.1, curve);
-    row_force = zeros(l.system.rows.count, sizeof *row_force);
+    double *row_force = zeros(l.system.rows.count, sizeof *row_force);
     double *u = relaxed(&l, 1e-9, row_force);
     double area = dim == 2 ? 0.1 : 0.01;
     NEAR_TO(lattice_reaction(&l, row_force, 1u << top) / area / expected, 1, 1e-6);
@@ -208,14 +205,12 @@ TEST(reaction_does_the_work)
     for (int large = 0; large < 2; large++) {
         double energy[3], force[3], down = large ? -0.02 : -1e-7, change = large ? 1e-4 : 0;
         for (int k = 0; k < 3; k++) {
-            struct lattice l;
-            double *row_force;
+            FREED_BY(lattice_free) struct lattice l = {0};
             clamp(&l, 7, down + (k - 1) * change, 0, true);
-            row_force = zeros(l.system.rows.count, sizeof *row_force);
+            double *row_force = zeros(l.system.rows.count, sizeof *row_force);
             double *u = relaxed(&l, 1e-9, row_force);
             force[k] = lattice_reaction(&l, row_force, 1);
             energy[k] = body_energy(&l.system.body, u);
-            lattice_free(&l);
         }
         if (large) {
             NEAR_TO((energy[2] - energy[0]) / (2 * change) / force[1], 1, 1e-4);
@@ -277,7 +272,7 @@ TEST(estimate_is_a_bound)
 {
     static const double tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8};
     for (int problem = 0; problem < 5; problem++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         double *mass, largest_overestimate = 0;
         problem_of_bound(&l, problem);
         double *exact = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
@@ -297,7 +292,6 @@ TEST(estimate_is_a_bound)
         }
         print_message("problem %d: the error is overestimated by at most %.3g\n", problem,
                       largest_overestimate);
-        lattice_free(&l);
     }
 }
 
@@ -317,7 +311,7 @@ TEST(ramp_does_not_matter)
     static const int64_t ramps[] = {0, 150, 1000};
     double *first = NULL;
     for (int k = 0; k < 3; k++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         clamp(&l, 7, -0.02, 0.01, true);
         double *u = lattice_vector(&l);
         struct relaxation_options options = to(1e-8);
@@ -330,14 +324,13 @@ TEST(ramp_does_not_matter)
         } else {
             AT_MOST(largest_difference(first, u, l.system.node_count * 2), 1e-7 * 0.02);
         }
-        lattice_free(&l);
     }
 }
 
 /* A load on in ten steps inverts a cell. From the state kept before, it goes on at half its rate at once. */
 TEST(load_goes_on_after_an_inversion)
 {
-    struct lattice l;
+    FREED_BY(lattice_free) struct lattice l = {0};
     clamp(&l, 15, -0.02, 0.0, true);
     double *u = lattice_vector(&l), *slow = relaxed(&l, 1e-7, NULL);
     struct relaxation_options options = to(1e-7);
@@ -347,7 +340,6 @@ TEST(load_goes_on_after_an_inversion)
     assert_true(report.loading_steps > 10); /* it went back */
     assert_true(report.loading_steps <= 50);
     AT_MOST(largest_difference(slow, u, l.system.node_count * 2), 1e-6 * 0.02);
-    lattice_free(&l);
 }
 
 TEST(any_number_of_threads)
@@ -355,7 +347,7 @@ TEST(any_number_of_threads)
     double *first = NULL;
     int most = omp_get_max_threads();
     for (int threads = 1; threads <= 3; threads++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         omp_set_num_threads(threads);
         int32_t curve = lattice_begin(&l, 3, 5, 0.1, CURVE_SMOOTH);
         lattice_slide(&l, 1u << 4 | 1u << 0, curve);
@@ -368,7 +360,6 @@ TEST(any_number_of_threads)
         } else {
             assert_memory_equal(first, u, (size_t)l.system.node_count * 3 * sizeof *u);
         }
-        lattice_free(&l);
     }
     omp_set_num_threads(most);
 }
@@ -378,7 +369,7 @@ TEST(any_number_of_threads)
 TEST(pressures_are_augmented)
 {
     for (int dim = 2; dim <= 3; dim++) {
-        struct lattice l;
+        FREED_BY(lattice_free) struct lattice l = {0};
         struct lattice_options options = lattice_defaults(dim, 5);
         static const double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         options.jitter = 0.2;
@@ -400,7 +391,6 @@ TEST(pressures_are_augmented)
             most = fmax(most, fabs(expected[i]));
         }
         AT_MOST(largest_difference(force, expected, size), 0.01 * most);
-        lattice_free(&l);
     }
 }
 
@@ -408,7 +398,6 @@ TEST(pressures_are_augmented)
 TEST(conditions_twice)
 {
     FREED_BY(lattice_free) struct lattice once = {0}, twice = {0};
-    struct error error;
     struct relaxation_report report;
     clamp(&once, 5, -0.01, 0, true);
     clamp(&twice, 5, -0.01, 0, true);
@@ -497,7 +486,7 @@ TEST(frames_and_outcomes)
     NEAR_TO(album.last[7], lattice_field(&l, u, l.system.node_count - 1, 1), 0);
     /* Each is what a run to that load alone comes to. */
     for (int k = 1; k <= 7; k++) {
-        struct lattice alone;
+        FREED_BY(lattice_free) struct lattice alone = {0};
         double s = k / 7.0, factor = s * s * s * (10 - 15 * s + 6 * s * s);
         clamp(&alone, 5, -0.01 * factor, 0, true);
         memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
@@ -508,7 +497,6 @@ TEST(frames_and_outcomes)
                 1e-5 * 0.01 * factor);
         NEAR_TO(album.force[k], row_force[alone.system.rows.count - 1], 1e-4 * fabs(album.force[k]));
         assert_true(fabs(album.force[k]) > fabs(album.force[k - 1]));
-        lattice_free(&alone);
     }
     memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
     options = to(1e-12);

@@ -30,7 +30,6 @@ static void begin(struct held *held, int dim, int bodies, double from)
 
 static void hold(struct held *held, int32_t node, int axis)
 {
-    struct error error;
     static const double one = 1.0;
     double direction[3] = {0.0, 0.0, 0.0};
     direction[axis] = 1.0;
@@ -46,7 +45,6 @@ static void hold_all(struct held *held, int32_t node)
 
 static void expect(struct held *held, int64_t body, int translations, int turns, struct rigid_modes *moves)
 {
-    struct error error;
     struct rigid_modes all[4];
     GOOD(system_rigid_modes(&held->system, held->system.node_count / (held->system.dim == 2 ? 4 : 8),
                             held->body, all, &error));
@@ -136,7 +134,6 @@ TEST(several_bodies)
     expect(&held, 1, 2, 1, &moves);
     NEAR_TO(moves.centre[0], 0.4, 1e-12);
     assert_int_equal(moves.nodes, 4);
-    struct error error;
     static const int32_t both[2] = {1, 4};
     static const double half[2] = {0.5, 0.5}, along_x[2] = {1.0, 0.0};
     GOOD(constraint_rows_add(&held.system.rows, 2, both, half, along_x, 0.0, 0, 0, 1, &error));

@@ -11,7 +11,6 @@ enum { ROWS = 300, COLUMNS = 90, STRIDE = 4 };
  */
 static void make_table(struct sparse *table)
 {
-    struct error error;
     struct random random = {5};
     GOOD(sparse_new(ROWS, COLUMNS, ROWS * 12, table, &error));
     for (int64_t r = 0; r < ROWS; r++) {
@@ -37,7 +36,6 @@ static void expect(const struct sparse *transposed, const double *x, double *y)
 
 TEST(columns_are_summed_in_order)
 {
-    struct error error;
     FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
     double x[ROWS * STRIDE], y[COLUMNS * STRIDE], expected[COLUMNS];
     struct random random = {7};
@@ -49,7 +47,7 @@ TEST(columns_are_summed_in_order)
     GOOD(sparse_transpose(&table, &transposed, &error));
     expect(&transposed, x, expected);
     for (int threads = 1; threads < 2 * COLUMNS; threads = 2 * threads + 1) {
-        struct row_operator rows = {0};
+        FREED_BY(row_operator_free) struct row_operator rows = {0};
         make_table(&rows.matrix);
         GOOD(row_operator_finish(&rows, 0, COLUMNS, threads, &error));
         assert_int_equal(rows.stripe_count, threads);
@@ -59,13 +57,11 @@ TEST(columns_are_summed_in_order)
         for (int64_t c = 0; c < COLUMNS; c++) {
             assert_memory_equal(&y[c * STRIDE], &expected[c], sizeof *y);
         }
-        row_operator_free(&rows);
     }
 }
 
 TEST(some_columns_are_transposed)
 {
-    struct error error;
     FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
     struct sparse some;
     FREED_BY(row_operator_free) struct row_operator rows = {0};

@@ -24,14 +24,12 @@ static struct scattered_fit table(double *row, int64_t count, double (*field)(co
     }
     struct scattered_fit fit = {
         .dim = 2, .value_count = 2, .count = count, .row_size = 4, .row = row, .unit = 1e-3};
-    struct error error;
     GOOD(scattered_fit_build(&fit, &error));
     return fit;
 }
 
 static double worst(const struct scattered_fit *fit, double (*field)(const double *x, int v))
 {
-    struct error error;
     double largest = 0.0;
     for (int k = 0; k < 50; k++) {
         double mm[2] = {0.1 + 0.8 * fabs(sin(3.0 * k)), 0.1 + 0.8 * fabs(cos(5.0 * k))};
@@ -48,9 +46,8 @@ TEST(few_points_give_linear_fields)
 {
     double row[6 * 4] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5, 0.4, 0, 0, 0.2, 0.7, 0, 0};
     for (int64_t count = 3; count <= 6; count++) {
-        struct scattered_fit fit = table(row, count, linear);
+        FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, count, linear);
         AT_MOST(worst(&fit, linear), 1e-12);
-        scattered_fit_free(&fit);
     }
 }
 
@@ -61,9 +58,8 @@ TEST(enough_points_give_quadratic_fields)
         row[4 * i] = 0.25 * (i % 5) + 0.01 * sin(i);
         row[4 * i + 1] = 0.25 * (double)(i / 5) + 0.01 * cos(i);
     }
-    struct scattered_fit fit = table(row, 25, quadratic);
+    FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, 25, quadratic);
     AT_MOST(worst(&fit, quadratic), 1e-11);
-    scattered_fit_free(&fit);
 }
 
 /* On a line nothing is known of what changes across it. */
@@ -73,20 +69,17 @@ TEST(a_line_is_extended_across)
     for (int i = 0; i < 9; i++) {
         row[4 * i] = 0.125 * i;
     }
-    struct scattered_fit fit = table(row, 9, quadratic);
-    struct error error;
+    FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, 9, quadratic);
     double x[2] = {0.4e-3, 0.05e-3}, on[2] = {0.4, 0.0}, value[2], distance, spacing;
     GOOD(scattered_fit_evaluate(&fit, 0, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - quadratic(on, 0)), 1e-12);
     AT_MOST(fabs(value[1] * 1e3 - quadratic(on, 1)), 1e-12);
-    scattered_fit_free(&fit);
 }
 
 TEST(one_point_is_a_constant)
 {
     double row[4] = {0.3, 0.3, 0, 0};
     FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, 1, linear);
-    struct error error;
     double x[2] = {1e-3, 0}, value[2], distance, spacing;
     GOOD(scattered_fit_evaluate(&fit, 0, x, value, &distance, &spacing, &error));
     AT_MOST(fabs(value[0] * 1e3 - linear(row, 0)), 1e-15);
@@ -101,8 +94,7 @@ TEST(nearest_by_the_grid)
         row[4 * i] = 10.0 * fabs(sin(1.7 * i));
         row[4 * i + 1] = row[4 * i] * fabs(cos(2.3 * i)); /* unevenly */
     }
-    struct scattered_fit fit = table(row, COUNT, linear);
-    struct error error;
+    FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, COUNT, linear);
     for (int k = 0; k < 40; k++) {
         double mm[2] = {(k % 4 == 0 ? 1e4 : 12.0) * sin(k), 7.0 * cos(3.0 * k)}, nearest = INFINITY;
         double x[2] = {1e-3 * mm[0], 1e-3 * mm[1]}, value[2], distance, spacing;
@@ -112,7 +104,6 @@ TEST(nearest_by_the_grid)
         GOOD(scattered_fit_evaluate(&fit, 0, x, value, &distance, &spacing, &error));
         AT_MOST(fabs(distance * 1e3 / nearest - 1.0), 1e-12);
     }
-    scattered_fit_free(&fit);
 }
 
 RUN_TESTS(NULL, NULL)

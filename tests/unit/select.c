@@ -71,7 +71,6 @@ TEST(bodies_share_faces_and_are_numbered_by_size)
 {
     int32_t part[6];
     int32_t count;
-    struct error error;
     GOOD(cells_parts(&islands_cells, part, &count, &error));
     assert_int_equal(count, 3);
     const int32_t expected[] = {1, 1, 2, 2, 0, 0};
@@ -81,7 +80,6 @@ TEST(bodies_share_faces_and_are_numbered_by_size)
 TEST(sides_end_at_sharp_turns)
 {
     FREED_BY(faces_free) struct faces boundary = {0};
-    struct error error;
     int32_t part[12];
     int32_t count;
     GOOD(faces_build(&islands_cells, true, &boundary, &error));
@@ -100,7 +98,6 @@ TEST(rings_grow_and_shrink)
     const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5};
     bool items[5] = {false, false, true, false, false};
     bool nodes[6] = {true};
-    struct error error;
     GOOD(choice_grow(5, 2, chain, 6, 0, NULL, 1, true, items, &error));
     assert_true(!items[0] && items[1] && items[2] && items[3] && !items[4]);
     GOOD(choice_grow(5, 2, chain, 6, 0, NULL, -1, true, items, &error));
@@ -115,7 +112,6 @@ TEST(rings_shrink_from_the_edge)
 {
     const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5}, ends[] = {0, 5};
     bool items[5] = {true, true, true, true, true}, nodes[6] = {true, true, true, true, true, true};
-    struct error error;
     GOOD(choice_grow(5, 2, chain, 6, 2, ends, -1, true, items, &error));
     assert_true(!items[0] && items[1] && items[3] && !items[4]);
     GOOD(choice_grow(5, 2, chain, 6, 2, ends, -2, false, nodes, &error));

@@ -3,8 +3,6 @@
 
 #include "io/sections.h"
 
-#include "base/memory.h"
-
 #include <fcntl.h>
 
 TEST(round_trip)
@@ -12,18 +10,14 @@ TEST(round_trip)
     FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int variant = 0; variant < 4; variant++) {
         bool text = variant % 2 == 0, from_pipe = variant / 2 == 1;
-        struct stream copy;
-        struct error error;
+        FREED_BY(stream_free) struct stream copy = {0};
         size_t size, again_size;
-        char *bytes = written_bytes(&sample, text, &size);
+        SCRATCH char *bytes = written_bytes(&sample, text, &size);
         GOOD(read_bytes(bytes, size, from_pipe, &copy, &error));
         assert_same_stream(&sample, &copy);
-        char *again = written_bytes(&copy, text, &again_size);
+        SCRATCH char *again = written_bytes(&copy, text, &again_size);
         assert_int_equal(size, again_size);
         assert_memory_equal(bytes, again, size);
-        stream_free(&copy);
-        free(bytes);
-        free(again);
     }
 }
 
@@ -32,7 +26,6 @@ TEST(large_payload)
 {
     enum { ROWS = 300000, COLS = 3 };
     struct stream stream, copy;
-    struct error error;
     double *values = array_new(ROWS * COLS, sizeof *values);
     assert_non_null(values);
     for (int64_t i = 0; i < ROWS * COLS; i++) {
@@ -78,12 +71,11 @@ TEST(truncation_at_every_byte)
     FREED_BY(stream_free) struct stream sample = sample_stream();
     for (int text = 0; text < 2; text++) {
         size_t size;
-        char *bytes = written_bytes(&sample, text == 1, &size);
+        SCRATCH char *bytes = written_bytes(&sample, text == 1, &size);
         for (size_t length = 0; length < size; length++) {
             assert_refused(bytes, length, false);
             assert_refused(bytes, length, true);
         }
-        free(bytes);
     }
 }
 
@@ -193,7 +185,6 @@ TEST(tolerated_text)
     static const char bytes[] = "# mts 1\n# @ awk\n#  x  f8\t2 3 \tunit=m \n"
                                 " 1\t2.50  +.5e1 \n-inf NaN -nan\n \n\t\n# end 1\n";
     FREED_BY(stream_free) struct stream stream = {0};
-    struct error error;
     GOOD(read_bytes(bytes, strlen(bytes), true, &stream, &error));
     assert_int_equal(stream.section_count, 1);
     const double *x = stream.sections[0].data;
@@ -206,7 +197,6 @@ TEST(tolerated_text)
 TEST(sections_by_name)
 {
     FREED_BY(stream_free) struct stream stream = sample_stream();
-    struct error error;
     const struct section *section;
     const struct section *first = stream_find(&stream, "a.i4");
     char value[8];
@@ -219,11 +209,10 @@ TEST(sections_by_name)
 
     GOOD(stream_need(&stream, "D.f8", TYPE_F8, 2, "nodes", &section, &error));
     assert_ptr_equal(section->data, sample_f8);
-    assert_int_equal(stream_need(&stream, "shape.phi", TYPE_F8, 1, "shapefn", &section, &error),
-                     STATUS_INPUT);
-    assert_string_equal(error.text, "no section shape.phi: run shapefn");
-    assert_int_equal(stream_need(&stream, "D.f8", TYPE_I4, 2, "nodes", &section, &error), STATUS_INPUT);
-    assert_int_equal(stream_need(&stream, "D.f8", TYPE_F8, 3, "nodes", &section, &error), STATUS_INPUT);
+    FAILS_WITH(stream_need(&stream, "shape.phi", TYPE_F8, 1, "shapefn", &section, &error), STATUS_INPUT,
+               "no section shape.phi: run shapefn");
+    FAILS(stream_need(&stream, "D.f8", TYPE_I4, 2, "nodes", &section, &error), STATUS_INPUT, "");
+    FAILS(stream_need(&stream, "D.f8", TYPE_F8, 3, "nodes", &section, &error), STATUS_INPUT, "");
 
     /* Adding moves nothing; replacing keeps the place; data may be the section's own. */
     for (int i = 0; i < 300; i++) {
@@ -238,14 +227,12 @@ TEST(sections_by_name)
     assert_string_equal(section->attributes, "key=1");
     GOOD(stream_put(&stream, section->name, TYPE_I4, 1, 1, section->attributes, array_new(1, sizeof(int32_t)),
                     true, &error));
-    assert_int_equal(stream_put(&stream, "no/name", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error),
-                     STATUS_INPUT);
-    assert_int_equal(stream_put(&stream, "x", TYPE_I4, 1, 1, "enc=text", array_new(1, 4), true, &error),
-                     STATUS_INPUT);
-    assert_int_equal(stream_put(&stream, "x", TYPE_I4, 1, 1, "a=b\n# end 0", array_new(1, 4), true, &error),
-                     STATUS_INPUT);
-    assert_int_equal(stream_put(&stream, "end", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error),
-                     STATUS_INPUT);
+    FAILS(stream_put(&stream, "no/name", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error), STATUS_INPUT, "");
+    FAILS(stream_put(&stream, "x", TYPE_I4, 1, 1, "enc=text", array_new(1, 4), true, &error), STATUS_INPUT,
+          "");
+    FAILS(stream_put(&stream, "x", TYPE_I4, 1, 1, "a=b\n# end 0", array_new(1, 4), true, &error),
+          STATUS_INPUT, "");
+    FAILS(stream_put(&stream, "end", TYPE_I4, 1, 1, "", array_new(1, 4), true, &error), STATUS_INPUT, "");
     while (strncmp(stream.sections[stream.section_count - 1].name, "more.", 5) == 0) {
         stream_remove(&stream, stream.sections[stream.section_count - 1].name);
     }
@@ -265,11 +252,10 @@ TEST(provenance_is_quoted_for_a_shell)
 TEST(write_errors)
 {
     FREED_BY(stream_free) struct stream stream = sample_stream();
-    struct error error;
     int full = open("/dev/full", O_WRONLY);
     assert_true(full >= 0);
     FAILS(stream_write(&stream, full, true, &error), STATUS_SYSTEM, "No space left");
-    assert_int_equal(stream_write(&stream, -1, false, &error), STATUS_SYSTEM);
+    FAILS(stream_write(&stream, -1, false, &error), STATUS_SYSTEM, "");
     close(full);
 }
 
@@ -287,7 +273,6 @@ TEST(stages_of_sections)
         MADE_WITH_RESULTS, MADE_WITH_RESULTS, MADE_ELSEWHERE,    MADE_ELSEWHERE,   MADE_WITH_POINTS};
     enum { COUNT = sizeof names / sizeof *names };
     FREED_BY(stream_free) struct stream stream = {0};
-    struct error error;
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(section_stage(names[i]), stages[i]);
         GOOD(stream_put(&stream, names[i], TYPE_I4, 1, 1, "", array_new(1, 4), true, &error));

@@ -1,7 +1,6 @@
 /* A small stream with every type and the hard values of each, and reading from bytes, for the tests of the
  * stream. */
-#ifndef TESTS_STREAM_FIXTURE_H
-#define TESTS_STREAM_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -21,16 +20,13 @@ static double sample_f8[] = {0.1,  -0.0, DBL_MAX, DBL_MIN,   5e-324,   1.0 / 3.0
 static inline void put_sample(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                               int64_t cols, const char *attributes, void *data)
 {
-    struct error error;
     GOOD(stream_put(stream, name, type, rows, cols, attributes, data, false, &error));
 }
 
 static inline struct stream sample_stream(void)
 {
-    struct stream stream;
-    struct error error;
+    struct stream stream = {0};
     char *command[] = {"/usr/bin/nodes", "-u", "mm", "it's a file", "", "line\nend"};
-    stream_init(&stream);
     GOOD(stream_add_provenance(&stream, 6, command, &error));
     put_sample(&stream, "a.i4", TYPE_I4, 3, 2, "unit=m cols=x,y", sample_i4);
     put_sample(&stream, "empty", TYPE_F8, 0, 3, "", sample_f8);
@@ -43,7 +39,6 @@ static inline struct stream sample_stream(void)
 /* The bytes of a stream as they are written; free() them. */
 static inline char *written_bytes(const struct stream *stream, bool text, size_t *size)
 {
-    struct error error;
     int file = memfd_create("stream", 0);
     assert_true(file >= 0);
     GOOD(stream_write(stream, file, text, &error));
@@ -109,5 +104,3 @@ static inline void assert_same_stream(const struct stream *a, const struct strea
         assert_same_section(&a->sections[i], &b->sections[i]);
     }
 }
-
-#endif

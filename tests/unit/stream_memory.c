@@ -7,17 +7,14 @@
 #ifdef FAILING_ALLOCATOR
 #include "stream_fixture.h"
 
-#include "base/memory.h"
-
 static struct stream sample;
 static int descriptor; /* of the sample, written */
 static off_t begin;    /* where it begins: what does not begin its file is read, not mapped */
 
 static enum status try_read(struct error *error)
 {
-    struct stream stream;
+    FREED_BY(stream_free) struct stream stream = {0};
     enum status status = stream_read(&stream, descriptor, "input", error);
-    stream_free(&stream);
     lseek(descriptor, begin, SEEK_SET);
     return status;
 }
@@ -36,25 +33,20 @@ static enum status try_write(struct error *error)
 static enum status try_change(struct error *error)
 {
     static char *command[] = {"tool", "a b"};
-    struct stream stream;
-    enum status status = STATUS_OK;
-    stream_init(&stream);
-    TRY(stream_add_provenance(&stream, 2, command, error));
-    TRY(stream_add_provenance(&stream, 1, command, error));
-    TRY(stream_put(&stream, "x", TYPE_F8, 1, 1, "a=b", sample_f8, false, error));
+    FREED_BY(stream_free) struct stream stream = {0};
+    RETURN_IF_ERROR(stream_add_provenance(&stream, 2, command, error));
+    RETURN_IF_ERROR(stream_add_provenance(&stream, 1, command, error));
+    RETURN_IF_ERROR(stream_put(&stream, "x", TYPE_F8, 1, 1, "a=b", sample_f8, false, error));
     for (int i = 0; i < 2; i++) { /* put, then replaced */
         double *data = array_new(3, sizeof *data);
-        TRY(data == NULL ? fail_memory(error, "test") : STATUS_OK);
-        TRY(stream_put(&stream, "y", TYPE_F8, 3, 1, "", data, true, error));
+        RETURN_IF_ERROR(data == NULL ? fail_memory(error, "test") : STATUS_OK);
+        RETURN_IF_ERROR(stream_put(&stream, "y", TYPE_F8, 3, 1, "", data, true, error));
     }
-done:
-    stream_free(&stream);
-    return status;
+    return STATUS_OK;
 }
 
 TEST(read_text_and_binary)
 {
-    struct error error;
     for (int form = 0; form < 4; form++) {
         descriptor = memfd_create("stream", 0);
         begin = form / 2;

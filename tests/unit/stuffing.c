@@ -46,7 +46,6 @@ static int64_t count_astray(const struct labels *labels, const struct stuffing *
 {
     struct cells cells = cells_of(stuffing);
     FREED_BY(faces_free) struct faces faces = {0};
-    struct error error;
     int64_t count = 0;
     bool *seen = zeros(stuffing->node_count, sizeof *seen);
     GOOD(faces_build(&cells, false, &faces, &error));
@@ -72,10 +71,10 @@ TEST(smooth_shapes)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
         struct labels labels;
+        FREED_BY(stuffing_free)
         struct stuffing stuffing = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
         check_volumes(&labels, &shape, &stuffing, 0.01);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
-        stuffing_free(&stuffing);
         free(shape.label);
     }
 }
@@ -87,11 +86,11 @@ TEST(random_blobs)
         for (int h = 3; h <= 5; h += 2) {
             struct label_shape shape;
             struct labels labels;
+            FREED_BY(stuffing_free)
             struct stuffing stuffing = make_of_shape("blobs", seed, h, &shape, &labels);
             check_volumes(&labels, &shape, &stuffing, 0.01);
             assert_int_equal(count_astray(&labels, &stuffing), 0);
             assert_int_equal(stuffing.astray, 0);
-            stuffing_free(&stuffing);
             free(shape.label);
         }
     }
@@ -112,17 +111,14 @@ TEST(five_labels_at_a_node)
         }
         struct labels labels = labels_of(&shape);
         struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         check_cells(&stuffing);
         assert_int_equal(count_astray(&labels, &stuffing), 0);
-        struct stuffing_star star;
-        struct error error;
+        FREED_BY(star_free) struct stuffing_star star = {0};
         GOOD(star_make(&stuffing, NULL, NULL, &star, &error));
         for (int64_t n = 0; n < stuffing.node_count; n++) {
             most = star.labels[n] > most ? star.labels[n] : most;
         }
-        star_free(&star);
-        stuffing_free(&stuffing);
         free(shape.label);
     }
     assert_int_equal(most, 5);
@@ -250,7 +246,6 @@ TEST(by_sizes)
 {
     struct label_shape shape;
     struct sized_cube cube;
-    struct error error;
     assert_true(label_shape_make("sphere", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
@@ -276,10 +271,9 @@ TEST(by_sizes)
     }
     stuffing = make(&labels, &options);
     struct stuffing_options half = {.spacing = 4e-3, .keep = all_kept};
-    struct stuffing halved = make(&labels, &half);
+    FREED_BY(stuffing_free) struct stuffing halved = make(&labels, &half);
     assert_int_equal(stuffing.node_count, halved.node_count);
     assert_int_equal(stuffing.cell_count, halved.cell_count);
-    stuffing_free(&halved);
     stuffing_free(&stuffing);
 
     /* Finer to one side: mean edges about the sizes there. */
@@ -352,7 +346,6 @@ TEST(slices)
         assert_true(fabs(found[l] / area[l] - 1) < 0.01);
     }
     stuffing_free(&stuffing);
-    struct error error = {""};
     options.finest = 1e-3;
     FAILS(stuffing_make(&labels, &options, &stuffing, &error), STATUS_INPUT, "not for slices");
 }
@@ -422,7 +415,6 @@ TEST(what_is_lost)
     for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
         total += shape.label[v] == 2;
     }
-    struct error error;
     struct stuffing_options options = {.spacing = 8e-3, .keep = all_kept};
     struct stuffing stuffing = make(&labels, &options);
     GOOD(stuffing_lost(&labels, options.keep, &stuffing, lost, &error));
@@ -442,16 +434,14 @@ TEST(what_is_filled)
     struct label_shape shape;
     static const bool keep[3] = {false, true, false};
     int64_t lost[3];
-    struct error error;
     assert_true(label_shape_make("thin", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     for (int coarse = 0; coarse < 2; coarse++) {
         struct stuffing_options options = {.spacing = coarse ? 6e-3 : 2e-3, .keep = keep};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         GOOD(stuffing_lost(&labels, keep, &stuffing, lost, &error));
         assert_int_equal(lost[0], 0);
         assert_int_equal(lost[2] > 1000, coarse);
-        stuffing_free(&stuffing);
     }
     free(shape.label);
 }
@@ -460,7 +450,6 @@ TEST(refusals)
 {
     struct label_shape shape;
     struct stuffing stuffing;
-    struct error error;
     assert_true(label_shape_make("layer", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 1e-6, .keep = all_kept};

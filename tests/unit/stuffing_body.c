@@ -17,13 +17,13 @@ TEST(surface_over_labels)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct label_shape shape;
         struct labels labels;
+        FREED_BY(stuffing_free)
         struct stuffing stuffing = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
         for (int64_t k = 0; k < stuffing.facet_count * 3; k++) {
             const double *x = stuffing.x + 3 * (int64_t)stuffing.facet[k];
             double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
             assert_true(fabs(r - 24e-3) < 1e-3 * cases[i].most);
         }
-        stuffing_free(&stuffing);
         free(shape.label);
     }
 }
@@ -32,7 +32,6 @@ TEST(surface_over_labels)
 static int64_t count_hinges(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int64_t hinges = 0;
     int32_t *across = zeros(cells.count * 4, sizeof *across);
     SCRATCH int32_t *part =
@@ -72,11 +71,10 @@ TEST(parts_are_joined)
         assert_true(label_shape_make("blobs", seed, millimetre, &shape));
         struct labels labels = labels_of(&shape);
         struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept, .largest = true};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         check_cells(&stuffing);
         assert_int_equal(count_hinges(&stuffing), stuffing.hinges);
         hinges += stuffing.hinges;
-        stuffing_free(&stuffing);
         free(shape.label);
     }
     assert_true(hinges <= 2);
@@ -85,7 +83,6 @@ TEST(parts_are_joined)
 static int32_t count_bodies(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     GOOD(cells_parts(&cells, part, &count, &error));
     return count;
@@ -95,7 +92,6 @@ static int32_t count_bodies(const struct stuffing *stuffing)
 static void check_apart(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct error error;
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);
@@ -115,11 +111,10 @@ TEST(parts_that_hang_by_an_edge)
     struct labels labels = labels_of(&shape);
     for (int h = 2; h <= 6; h++) {
         struct stuffing_options options = {.spacing = 1e-3 * h, .keep = all_kept};
-        struct stuffing stuffing = make(&labels, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
         check_cells(&stuffing);
         check_apart(&stuffing);
         cut += stuffing.pinched;
-        stuffing_free(&stuffing);
     }
     assert_true(cut > 0);
     for (uint64_t seed = 1; seed <= 20; seed++) {
@@ -127,9 +122,8 @@ TEST(parts_that_hang_by_an_edge)
         assert_true(label_shape_make("blobs", seed, millimetre, &blobs));
         struct labels of_blobs = labels_of(&blobs);
         struct stuffing_options options = {.spacing = 5e-3, .keep = all_kept};
-        struct stuffing stuffing = make(&of_blobs, &options);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make(&of_blobs, &options);
         check_apart(&stuffing);
-        stuffing_free(&stuffing);
         free(blobs.label);
     }
     free(shape.label);
@@ -233,10 +227,9 @@ TEST(walls_stay_apart)
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct label_shape shape;
         struct labels labels;
-        struct stuffing stuffing = make_of_shape("waves", seed, 5, &shape, &labels);
+        FREED_BY(stuffing_free) struct stuffing stuffing = make_of_shape("waves", seed, 5, &shape, &labels);
         assert_true(stuffing.facet_count > 2000);
         assert_int_equal(count_crossings(&stuffing), 0);
-        stuffing_free(&stuffing);
         free(shape.label);
     }
 }
@@ -250,14 +243,13 @@ TEST(cavities)
     assert_true(label_shape_make("four", 1, millimetre, &shape));
     struct labels labels = labels_of(&shape);
     struct stuffing_options options = {.spacing = 5e-3, .keep = keep};
-    struct stuffing stuffing = make(&labels, &options);
+    FREED_BY(stuffing_free) struct stuffing stuffing = make(&labels, &options);
     check_cells(&stuffing);
     for (int64_t f = 0; f < stuffing.facet_count; f++) {
         assert_true(keep[stuffing.side[2 * f]] && !keep[stuffing.side[2 * f + 1]]);
         walls += stuffing.side[2 * f + 1] == 2;
     }
     assert_true(walls > 50);
-    stuffing_free(&stuffing);
     free(shape.label);
 }
 

@@ -1,6 +1,5 @@
 /* Cells made of label images, and what holds of all. */
-#ifndef STUFFING_FIXTURE_H
-#define STUFFING_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -31,10 +30,7 @@ static inline struct labels labels_of(const struct label_shape *shape)
 static inline struct stuffing make(const struct labels *labels, const struct stuffing_options *options)
 {
     struct stuffing stuffing;
-    struct error error = {""};
-    enum status status = stuffing_make(labels, options, &stuffing, &error);
-    assert_string_equal(error.text, "");
-    assert_int_equal(status, STATUS_OK);
+    GOOD(stuffing_make(labels, options, &stuffing, &error));
     return stuffing;
 }
 
@@ -49,8 +45,7 @@ static inline struct cells cells_of(const struct stuffing *stuffing)
 static inline void check_cells(const struct stuffing *stuffing)
 {
     struct cells cells = cells_of(stuffing);
-    struct faces faces;
-    struct error error = {""};
+    FREED_BY(faces_free) struct faces faces = {0};
     int dim = stuffing->dim;
     double volume = 0, flux = 0;
     assert_true(stuffing->cell_count > 0);
@@ -68,7 +63,6 @@ static inline void check_cells(const struct stuffing *stuffing)
     }
     GOOD(faces_build(&cells, true, &faces, &error));
     assert_int_equal(faces.count, stuffing->facet_count);
-    faces_free(&faces);
     for (int64_t f = 0; f < stuffing->facet_count; f++) {
         const int32_t *node = stuffing->facet + f * dim;
         double normal[3];
@@ -94,5 +88,3 @@ static inline struct stuffing make_of_shape(const char *name, uint64_t seed, dou
     check_cells(&stuffing);
     return stuffing;
 }
-
-#endif

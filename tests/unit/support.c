@@ -3,115 +3,103 @@
 #include "approx_fixture.h"
 
 #include "approx/cloud.h"
+#include "base/lists.h"
 
 /* Radii over three decades, two nodes at one place. */
-TEST(grid_against_brute_force)
+TEST_IN_EACH_DIM(grid_against_brute_force)
 {
     static const double factors[] = {1.0, 1.1, 2.5, 8.0};
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    assert_non_null(random);
-    for (int dim = 2; dim <= 3; dim++) {
-        enum { NODES = 400, POINTS = 150 };
-        double x[NODES * 3], radius[NODES], point[3];
-        for (int kind = 0; kind < 4;
-             kind++) { /* constant radii, graded radii; both with lists of what touches bins */
-            for (int i = 0; i < NODES * dim; i++) {
-                x[i] = 5.0 + gsl_rng_uniform(random);
-            }
-            memcpy(x + dim, x, (size_t)dim * sizeof *x);
-            for (int n = 0; n < NODES; n++) {
-                radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, gsl_rng_uniform(random));
-            }
-            struct point_grid grid;
-            struct index_list list = {0};
-            struct error error;
-            GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
-            if (kind >= 2) {
-                GOOD(point_grid_list_touching(&grid, &error));
-            }
-            for (int p = 0; p < POINTS; p++) {
-                for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
-                    point[a] = p < 20 ? x[p * dim + a] : 4.0 + 3.0 * gsl_rng_uniform(random);
-                }
-                double factor = factors[p % 4];
-                list.count = 0;
-                GOOD(point_grid_query(&grid, point, factor, &list, &error));
-                int64_t at = 0;
-                for (int n = 0; n < NODES; n++) {
-                    double sum = 0.0;
-                    for (int a = 0; a < dim; a++) {
-                        sum += (x[n * dim + a] - point[a]) * (x[n * dim + a] - point[a]);
-                    }
-                    if (sum < radius[n] * factor * radius[n] * factor) {
-                        assert_true(at < list.count);
-                        assert_int_equal(list.index[at], n);
-                        at++;
-                    }
-                }
-                assert_int_equal(at, list.count);
-            }
-            free(list.index);
-            point_grid_free(&grid);
+    struct random random = {1};
+    enum { NODES = 400, POINTS = 150 };
+    double x[NODES * 3], radius[NODES], point[3];
+    for (int kind = 0; kind < 4;
+         kind++) { /* constant radii, graded radii; both with lists of what touches bins */
+        for (int i = 0; i < NODES * dim; i++) {
+            x[i] = uniform(&random, 5.0, 6.0);
         }
+        memcpy(x + dim, x, (size_t)dim * sizeof *x);
+        for (int n = 0; n < NODES; n++) {
+            radius[n] = kind % 2 == 0 ? 0.15 : 0.001 * pow(500.0, uniform(&random, 0.0, 1.0));
+        }
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        struct index_list list = {0};
+        GOOD(point_grid_build(&grid, dim, NODES, x, radius, &error));
+        if (kind >= 2) {
+            GOOD(point_grid_list_touching(&grid, &error));
+        }
+        for (int p = 0; p < POINTS; p++) {
+            for (int a = 0; a < dim; a++) { /* within, at nodes, outside */
+                point[a] = p < 20 ? x[p * dim + a] : uniform(&random, 4.0, 7.0);
+            }
+            double factor = factors[p % 4];
+            list.count = 0;
+            GOOD(point_grid_query(&grid, point, factor, &list, &error));
+            int64_t at = 0;
+            for (int n = 0; n < NODES; n++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    sum += (x[n * dim + a] - point[a]) * (x[n * dim + a] - point[a]);
+                }
+                if (sum < radius[n] * factor * radius[n] * factor) {
+                    assert_true(at < list.count);
+                    assert_int_equal(list.index[at], n);
+                    at++;
+                }
+            }
+            assert_int_equal(at, list.count);
+        }
+        free(list.index);
     }
-    gsl_rng_free(random);
 }
 
 /* Lists of points in rows, which share their search in groups, and of points all over the place, where radii
  * are constant or graded. */
-TEST(lists_against_brute_force)
+TEST_IN_EACH_DIM(lists_against_brute_force)
 {
     enum { POINTS = 700 };
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    assert_non_null(random);
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
-            struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
-            struct support_options options = support_defaults(dim);
-            struct point_grid grid;
-            struct support_lists lists;
-            struct error error;
-            double *radius = zeros(cloud.count, sizeof *radius);
-            options.widen = false;
-            for (int64_t n = 0; n < cloud.count; n++) {
-                radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, gsl_rng_uniform(random)) : 2.1);
-            }
-            for (int64_t p = 0; p < POINTS && (kind & 2) == 0; p++) {
-                for (int a = 0; a < dim; a++) {
-                    int64_t step = a == 0 ? p % 70 : p / 70;
-                    cloud.points[p * dim + a] =
-                        1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * gsl_rng_uniform(random));
-                }
-            }
-            GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
-            GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
-            int64_t fewest = cloud.count, most = 0;
-            for (int64_t p = 0; p < POINTS; p++) {
-                int64_t at = lists.ptr[p];
-                for (int64_t n = 0; n < cloud.count; n++) {
-                    double sum = 0.0;
-                    for (int a = 0; a < dim; a++) {
-                        double d = cloud.x[n * dim + a] - cloud.points[p * dim + a];
-                        sum += d * d;
-                    }
-                    if (sum < radius[n] * radius[n]) {
-                        assert_true(at < lists.ptr[p + 1]);
-                        assert_int_equal(lists.idx[at], n);
-                        at++;
-                    }
-                }
-                assert_int_equal(at, lists.ptr[p + 1]);
-                fewest = at - lists.ptr[p] < fewest ? at - lists.ptr[p] : fewest;
-                most = at - lists.ptr[p] > most ? at - lists.ptr[p] : most;
-            }
-            assert_int_equal(lists.fewest, fewest);
-            assert_int_equal(lists.most, most);
-            support_free(&lists);
-            point_grid_free(&grid);
-            scattered_free(&cloud);
+    struct random random = {1};
+    for (int kind = 0; kind < 4; kind++) { /* graded: kind & 1; all over the place: kind & 2 */
+        FREED_BY(scattered_free)
+        struct scattered cloud = scatter(dim, dim == 2 ? 20 : 8, POINTS, &places[2], 0.4, 17);
+        struct support_options options = support_defaults(dim);
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
+        double *radius = zeros(cloud.count, sizeof *radius);
+        options.widen = false;
+        for (int64_t n = 0; n < cloud.count; n++) {
+            radius[n] = cloud.spacing * ((kind & 1) ? 0.2 * pow(20.0, uniform(&random, 0.0, 1.0)) : 2.1);
         }
+        for (int64_t p = 0; p < POINTS && (kind & 2) == 0; p++) {
+            for (int a = 0; a < dim; a++) {
+                int64_t step = a == 0 ? p % 70 : p / 70;
+                cloud.points[p * dim + a] =
+                    1.0 + cloud.spacing * ((double)step / 7.0 + 0.01 * uniform(&random, 0.0, 1.0));
+            }
+        }
+        GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
+        GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
+        int64_t fewest = cloud.count, most = 0;
+        for (int64_t p = 0; p < POINTS; p++) {
+            int64_t at = lists.ptr[p];
+            for (int64_t n = 0; n < cloud.count; n++) {
+                double sum = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    double d = cloud.x[n * dim + a] - cloud.points[p * dim + a];
+                    sum += d * d;
+                }
+                if (sum < radius[n] * radius[n]) {
+                    assert_true(at < lists.ptr[p + 1]);
+                    assert_int_equal(lists.idx[at], n);
+                    at++;
+                }
+            }
+            assert_int_equal(at, lists.ptr[p + 1]);
+            fewest = at - lists.ptr[p] < fewest ? at - lists.ptr[p] : fewest;
+            most = at - lists.ptr[p] > most ? at - lists.ptr[p] : most;
+        }
+        assert_int_equal(lists.fewest, fewest);
+        assert_int_equal(lists.most, most);
     }
-    gsl_rng_free(random);
 }
 
 /* Queries append; nodes all at one place, or on a line, need no special care; wrong radii are refused. */
@@ -120,7 +108,6 @@ TEST(grid_odd_clouds)
     double x[6] = {1.0, 2.0, 1.0, 2.0, 1.0, 2.0}, radius[3] = {0.5, 1e9, 1e-9}, at[2] = {1.1, 2.0};
     struct point_grid grid;
     struct index_list list = {0};
-    struct error error;
     GOOD(point_grid_build(&grid, 2, 3, x, radius, &error));
     GOOD(point_grid_query(&grid, at, 1.0, &list, &error));
     GOOD(point_grid_query(&grid, x, 1.0, &list, &error));
@@ -137,38 +124,29 @@ TEST(grid_odd_clouds)
     }
 }
 
-static int compare_doubles(const void *a, const void *b)
+TEST_IN_EACH_DIM(spacing_against_brute_force)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-TEST(spacing_against_brute_force)
-{
-    for (int dim = 2; dim <= 3; dim++) {
-        struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
-        double *spacing = zeros(cloud.count, sizeof *spacing);
-        double *distance = zeros(cloud.count, sizeof *distance);
-        struct error error;
-        cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
-        GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
-        for (int64_t n = 0; n < cloud.count; n++) {
-            double mean = 0.0;
-            for (int64_t i = 0; i < cloud.count; i++) {
-                double sum = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    double d = cloud.x[n * dim + a] - cloud.x[i * dim + a];
-                    sum += d * d;
-                }
-                distance[i] = sqrt(sum);
+    FREED_BY(scattered_free)
+    struct scattered cloud = scatter(dim, dim == 2 ? 15 : 6, 1, &places[2], 0.4, 2);
+    double *spacing = zeros(cloud.count, sizeof *spacing);
+    double *distance = zeros(cloud.count, sizeof *distance);
+    cloud.x[0] -= 3.0 * cloud.size; /* one node far from the others */
+    GOOD(nodes_spacing(dim, cloud.count, cloud.x, spacing, &error));
+    for (int64_t n = 0; n < cloud.count; n++) {
+        double mean = 0.0;
+        for (int64_t i = 0; i < cloud.count; i++) {
+            double sum = 0.0;
+            for (int a = 0; a < dim; a++) {
+                double d = cloud.x[n * dim + a] - cloud.x[i * dim + a];
+                sum += d * d;
             }
-            qsort(distance, (size_t)cloud.count, sizeof *distance, compare_doubles);
-            for (int k = 1; k <= 2 * dim; k++) {
-                mean += distance[k] / (2 * dim);
-            }
-            at_most(fabs(spacing[n] / mean - 1.0), 1e-12, "spacing");
+            distance[i] = sqrt(sum);
         }
-        scattered_free(&cloud);
+        qsort(distance, (size_t)cloud.count, sizeof *distance, compare_double);
+        for (int k = 1; k <= 2 * dim; k++) {
+            mean += distance[k] / (2 * dim);
+        }
+        AT_MOST(fabs(spacing[n] / mean - 1.0), 1e-12);
     }
 }
 
@@ -186,17 +164,14 @@ TEST(nearest_with_ties)
     static const int64_t most[] = {1, 4, 5, 7};
     for (int i = 0; i < 4; i++) {
         struct support_options options = {.radius = 2.1, .most = most[i], .mls = mls_default(2)};
-        struct point_grid grid;
-        struct support_lists lists;
-        struct error error;
+        FREED_BY(point_grid_free) struct point_grid grid = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
         GOOD(point_grid_build(&grid, 2, 25, x, radius, &error));
         GOOD(support_build(&options, &grid, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));
-        support_free(&lists);
-        point_grid_free(&grid);
     }
 }
 
@@ -206,7 +181,6 @@ TEST(least_neighbours)
     struct support_options options = support_defaults(2);
     options.least = 15;
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     GOOD(tabulate(&options, cloud.count, cloud.x, 200, cloud.points, &table, &error));
     int64_t widened = 0;
     double widest = 1.0;
@@ -231,7 +205,7 @@ TEST(threads)
     FREED_BY(scattered_free) struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
     struct support_options options = support_defaults(3);
     struct table tables[3];
-    struct error error, errors[3];
+    struct error errors[3];
     int before = omp_get_max_threads();
     for (int i = 0; i < 3; i++) {
         omp_set_num_threads(numbers[i]);
@@ -267,7 +241,6 @@ TEST(not_finite)
     FREED_BY(scattered_free) struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
     struct support_options options = support_defaults(2);
     struct table table;
-    struct error error;
     static const double wrong[] = {NAN, INFINITY};
     for (int i = 0; i < 2; i++) {
         cloud.points[9] = wrong[i];
@@ -313,10 +286,10 @@ static enum status spring(const struct trap *trap, enum basis basis, bool widen)
     if (status == STATUS_OK) {
         double length = 1.0;
         struct defects worst = table_defects(&table, trap->dim, trap->x, points, length);
-        at_most(worst.unity, 1e-10, trap->name);
-        at_most(worst.position, 1e-10, trap->name);
-        at_most(worst.gradient_sum, 1e-10, trap->name);
-        at_most(worst.gradient_position, 1e-10, trap->name);
+        AT_MOST(worst.unity, 1e-10);
+        AT_MOST(worst.position, 1e-10);
+        AT_MOST(worst.gradient_sum, 1e-10);
+        AT_MOST(worst.gradient_position, 1e-10);
     } else {
         assert_true(status == STATUS_VERDICT || status == STATUS_INPUT);
         if (strstr(error.text, "row ") == NULL || strchr(error.text, '(') == NULL) {
@@ -347,17 +320,16 @@ TEST(trap_sphere)
         for (double at = 0.0; at <= 1.0; at += 0.125) {
             struct support_options options = {.radius = 3.0, .mls = mls_default(3)};
             double point[3] = {at * 0.6, at * 0.0, at * 0.8};
-            struct table table;
+            FREED_BY(table_free) struct table table = {0};
             struct error error;
             options.mls.basis = (enum basis)b;
             enum status status = tabulate(&options, 50, trap.x, 1, point, &table, &error);
             assert_int_equal(status, b == BASIS_QUADRATIC ? STATUS_VERDICT : STATUS_OK);
             if (status == STATUS_OK) {
                 struct defects worst = table_defects(&table, 3, trap.x, point, 1.0);
-                at_most(worst.position, 1e-10, "sphere");
-                at_most(worst.gradient_position, 1e-10, "sphere");
+                AT_MOST(worst.position, 1e-10);
+                AT_MOST(worst.gradient_position, 1e-10);
             }
-            table_free(&table);
         }
     }
 }
@@ -436,70 +408,60 @@ TEST(trap_coincident)
     }
     struct support_options options = support_defaults(2);
     FREED_BY(table_free) struct table table = {0};
-    struct error error;
     FAILS(tabulate(&options, heap.count, heap.x, heap.count, heap.x, &table, &error), STATUS_INPUT,
           "nodes.x: row 31");
 }
 
 /* One node six spacings from the others: it and the points beside it either see enough of the others or are
  * named. */
-TEST(trap_isolated)
+TEST_IN_EACH_DIM(trap_isolated)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        static struct trap trap = {.name = "one isolated node"};
-        regular_trap(&trap, dim, dim == 2 ? 8 : 5);
-        for (int a = 0; a < dim; a++) {
-            trap.x[trap.count * dim + a] = 13.0 - 4.0 * a;
-        }
-        trap.count++;
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            spring(&trap, (enum basis)b, true);
-            spring(&trap, (enum basis)b, false);
-        }
-        trap.x[(trap.count - 1) * dim] = 1e4;
-        assert_int_not_equal(spring(&trap, BASIS_LINEAR, false), STATUS_OK);
-        spring(&trap, BASIS_MODIFIED, true); /* names the stray node by its radius */
+    static struct trap trap = {.name = "one isolated node"};
+    regular_trap(&trap, dim, dim == 2 ? 8 : 5);
+    for (int a = 0; a < dim; a++) {
+        trap.x[trap.count * dim + a] = 13.0 - 4.0 * a;
     }
+    trap.count++;
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        spring(&trap, (enum basis)b, true);
+        spring(&trap, (enum basis)b, false);
+    }
+    trap.x[(trap.count - 1) * dim] = 1e4;
+    assert_int_not_equal(spring(&trap, BASIS_LINEAR, false), STATUS_OK);
+    spring(&trap, BASIS_MODIFIED, true); /* names the stray node by its radius */
 }
 
-TEST(trap_graded)
+TEST_IN_EACH_DIM(trap_graded)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        static struct trap trap = {.name = "cloud graded 20:1"};
-        struct cloud_options graded = {
-            .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
-        struct cloud cloud;
-        struct error error;
-        GOOD(cloud_make(&graded, &cloud, &error));
-        trap.dim = dim;
-        trap.count = cloud.node_count;
-        assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
-        memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
-        cloud_free(&cloud);
-        for (int b = 0; b < BASIS_COUNT; b++) {
-            assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
-        }
+    static struct trap trap = {.name = "cloud graded 20:1"};
+    struct cloud_options graded = {
+        .kind = CLOUD_GRADED, .dim = dim, .high = {1, 1, 1}, .ratio = 20.0, .count = {10, 10, 10}};
+    FREED_BY(cloud_free) struct cloud cloud = {0};
+    GOOD(cloud_make(&graded, &cloud, &error));
+    trap.dim = dim;
+    trap.count = cloud.node_count;
+    assert_true((size_t)(trap.count * dim) <= sizeof trap.x / sizeof *trap.x);
+    memcpy(trap.x, cloud.x, (size_t)(trap.count * dim) * sizeof(double));
+    for (int b = 0; b < BASIS_COUNT; b++) {
+        assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_OK);
     }
 }
 
 /* Fewer nodes than any basis needs, down to one. */
-TEST(trap_few)
+TEST_IN_EACH_DIM(trap_few)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        for (int64_t count = 1; count <= dim + 1; count++) {
-            double x[4 * 3] = {0.0};
-            struct support_options options = support_defaults(dim);
-            struct table table;
-            struct error error;
-            for (int64_t n = 1; n < count; n++) {
-                x[n * dim + n - 1] = 1.0;
-            }
-            enum status status = tabulate(&options, count, x, 1, x, &table, &error);
-            assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
-            if (status == STATUS_OK) {
-                at_most(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10, "simplex");
-            }
-            table_free(&table);
+    for (int64_t count = 1; count <= dim + 1; count++) {
+        double x[4 * 3] = {0.0};
+        struct support_options options = support_defaults(dim);
+        FREED_BY(table_free) struct table table = {0};
+        struct error error;
+        for (int64_t n = 1; n < count; n++) {
+            x[n * dim + n - 1] = 1.0;
+        }
+        enum status status = tabulate(&options, count, x, 1, x, &table, &error);
+        assert_int_equal(status, count == 1 ? STATUS_INPUT : count <= dim ? STATUS_VERDICT : STATUS_OK);
+        if (status == STATUS_OK) {
+            AT_MOST(table_defects(&table, dim, x, x, 1.0).gradient_position, 1e-10);
         }
     }
 }

@@ -18,7 +18,6 @@ static struct halves make_halves(int dim, const struct support_options *options)
     struct cloud_options wanted = {
         .kind = CLOUD_REGULAR, .dim = dim, .count = {9, dim == 2 ? 9 : 5, 5}, .high = {1.0, 1.0, 1.0}};
     struct halves halves = {0};
-    struct error error;
     GOOD(cloud_make(&wanted, &halves.cloud, &error));
     struct cloud *cloud = &halves.cloud;
     halves.cells = (struct cells){dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
@@ -47,128 +46,110 @@ static void halves_free(struct halves *halves)
 static double *scatter_points(int dim, int64_t count)
 {
     double *x = calloc((size_t)(count * dim), sizeof *x);
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    struct random random = {.state = 1};
     assert_non_null(x);
     for (int64_t i = 0; i < count * dim; i++) {
-        x[i] = i % (3 * dim) == 0 ? 0.5 : gsl_rng_uniform(random);
+        x[i] = i % (3 * dim) == 0 ? 0.5 : uniform(&random, 0.0, 1.0);
     }
-    gsl_rng_free(random);
     return x;
 }
 
 /* Each list holds nodes of its side only, those of the interface among them, and all that are within reach
  * there: the body is convex on either side. */
-TEST(lists_stop_at_the_interface)
+TEST_IN_EACH_DIM(lists_stop_at_the_interface)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        enum { COUNT = 300 };
-        struct support_options options = support_defaults(dim);
-        options.widen = false;
-        struct halves halves = make_halves(dim, &options);
-        struct support_space space;
-        struct support_lists lists;
-        struct error error;
-        double *x = scatter_points(dim, COUNT);
-        int64_t crossing = 0;
-        options.side = halves.side;
-        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-        assert_int_equal(space.side_count, 2);
-        GOOD(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error));
-        for (int64_t p = 0; p < COUNT; p++) {
-            int64_t at = lists.ptr[p];
-            for (int32_t n = 0; n < halves.cells.node_count; n++) {
-                double distance2 = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    double d = x[p * dim + a] - halves.cells.x[(int64_t)n * dim + a];
-                    distance2 += d * d;
-                }
-                bool near = distance2 < halves.radius[n] * halves.radius[n];
-                double node = halves.cells.x[(int64_t)n * dim];
-                bool same = x[p * dim] <= 0.5 ? node <= 0.5 : node >= 0.5;
-                bool listed = at < lists.ptr[p + 1] && lists.idx[at] == n;
-                assert_int_equal(listed, near && same);
-                crossing += near && !same;
-                at += listed;
+    enum { COUNT = 300 };
+    struct support_options options = support_defaults(dim);
+    options.widen = false;
+    FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
+    FREED_BY(support_space_free) struct support_space space = {0};
+    FREED_BY(support_free) struct support_lists lists = {0};
+    SCRATCH double *x = scatter_points(dim, COUNT);
+    int64_t crossing = 0;
+    options.side = halves.side;
+    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+    assert_int_equal(space.side_count, 2);
+    GOOD(support_space_lists(&options, &space, NULL, COUNT, x, "points", &lists, &error));
+    for (int64_t p = 0; p < COUNT; p++) {
+        int64_t at = lists.ptr[p];
+        for (int32_t n = 0; n < halves.cells.node_count; n++) {
+            double distance2 = 0.0;
+            for (int a = 0; a < dim; a++) {
+                double d = x[p * dim + a] - halves.cells.x[(int64_t)n * dim + a];
+                distance2 += d * d;
             }
-            assert_int_equal(at, lists.ptr[p + 1]);
+            bool near = distance2 < halves.radius[n] * halves.radius[n];
+            double node = halves.cells.x[(int64_t)n * dim];
+            bool same = x[p * dim] <= 0.5 ? node <= 0.5 : node >= 0.5;
+            bool listed = at < lists.ptr[p + 1] && lists.idx[at] == n;
+            assert_int_equal(listed, near && same);
+            crossing += near && !same;
+            at += listed;
         }
-        assert_true(crossing > 100);
-        assert_int_equal(lists.around_count, 0);
-        support_free(&lists);
-        support_space_free(&space);
-        halves_free(&halves);
-        free(x);
+        assert_int_equal(at, lists.ptr[p + 1]);
     }
+    assert_true(crossing > 100);
+    assert_int_equal(lists.around_count, 0);
 }
 
 /* What is known of the points' cells changes nothing, nor that points are nodes. */
-TEST(places_tell_the_side)
+TEST_IN_EACH_DIM(places_tell_the_side)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        struct support_options options = support_defaults(dim);
-        struct halves halves = make_halves(dim, &options);
-        struct support_space space;
-        struct support_lists found, given;
-        struct error error;
-        int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
-        double *middle = zeros(cells * dim, sizeof *middle);
-        int32_t *cell = zeros(cells, sizeof *cell);
-        assert_true(middle != NULL && cell != NULL);
-        options.side = halves.side;
-        GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-        struct reach_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
-        for (int64_t c = 0; c < cells; c++) {
-            cell_centroid(&halves.cells, c, middle + c * dim);
-            cell[c] = (int32_t)c;
-        }
-        for (int kind = 0; kind < 2; kind++) {
-            int64_t count = kind == 0 ? nodes : cells;
-            const double *x = kind == 0 ? halves.cells.x : middle;
-            const struct reach_places *known = kind == 0 ? &at_nodes : &in_cells;
-            GOOD(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error));
-            GOOD(support_space_lists(&options, &space, known, count, x, "points", &given, &error));
-            assert_memory_equal(found.ptr, given.ptr, (size_t)(count + 1) * sizeof *found.ptr);
-            assert_memory_equal(found.idx, given.idx, (size_t)found.ptr[count] * sizeof *found.idx);
-            assert_memory_equal(found.widen, given.widen, (size_t)count * sizeof *found.widen);
-            support_free(&found);
-            support_free(&given);
-        }
-        support_space_free(&space);
-        halves_free(&halves);
+    struct support_options options = support_defaults(dim);
+    FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
+    FREED_BY(support_space_free) struct support_space space = {0};
+    struct support_lists found, given;
+    int64_t nodes = halves.cells.node_count, cells = halves.cells.count;
+    double *middle = zeros(cells * dim, sizeof *middle);
+    int32_t *cell = zeros(cells, sizeof *cell);
+    assert_true(middle != NULL && cell != NULL);
+    options.side = halves.side;
+    GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
+    struct reach_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
+    for (int64_t c = 0; c < cells; c++) {
+        cell_centroid(&halves.cells, c, middle + c * dim);
+        cell[c] = (int32_t)c;
+    }
+    for (int kind = 0; kind < 2; kind++) {
+        int64_t count = kind == 0 ? nodes : cells;
+        const double *x = kind == 0 ? halves.cells.x : middle;
+        const struct reach_places *known = kind == 0 ? &at_nodes : &in_cells;
+        GOOD(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error));
+        GOOD(support_space_lists(&options, &space, known, count, x, "points", &given, &error));
+        assert_memory_equal(found.ptr, given.ptr, (size_t)(count + 1) * sizeof *found.ptr);
+        assert_memory_equal(found.idx, given.idx, (size_t)found.ptr[count] * sizeof *found.idx);
+        assert_memory_equal(found.widen, given.widen, (size_t)count * sizeof *found.widen);
+        support_free(&found);
+        support_free(&given);
     }
 }
 
 /* A field that is linear on either side, with a kink at the interface, is exact; across it, it is not. */
-TEST(kinks_are_exact)
+TEST_IN_EACH_DIM(kinks_are_exact)
 {
-    for (int dim = 2; dim <= 3; dim++) {
-        enum { COUNT = 300 };
-        struct support_options options = support_defaults(dim);
-        struct halves halves = make_halves(dim, &options);
-        struct error error;
-        double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
-        double *field = zeros(halves.cells.node_count, sizeof *field);
-        for (int64_t n = 0; n < halves.cells.node_count; n++) {
-            const double *at = halves.cells.x + n * dim;
-            field[n] = fabs(at[0] - 0.5) + 0.3 * at[dim - 1];
-        }
-        for (int stops = 0; stops < 2; stops++) {
-            struct field_table table;
-            options.side = stops ? halves.side : NULL;
-            GOOD(field_table_build(&options, NULL, &halves.cells, halves.radius, COUNT, x, "points", &table,
-                                   &error));
-            field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
-            for (int64_t p = 0; p < COUNT; p++) {
-                double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];
-                worst[stops] = worse(worst[stops], got[p] - exact);
-            }
-            field_table_free(&table);
-        }
-        at_most(worst[1], 1e-12, "a kink at the interface");
-        assert_true(worst[0] > 1e-2);
-        halves_free(&halves);
-        free(x);
+    enum { COUNT = 300 };
+    struct support_options options = support_defaults(dim);
+    FREED_BY(halves_free) struct halves halves = make_halves(dim, &options);
+    double *x = scatter_points(dim, COUNT), got[COUNT], worst[2] = {0.0, 0.0};
+    double *field = zeros(halves.cells.node_count, sizeof *field);
+    for (int64_t n = 0; n < halves.cells.node_count; n++) {
+        const double *at = halves.cells.x + n * dim;
+        field[n] = fabs(at[0] - 0.5) + 0.3 * at[dim - 1];
     }
+    for (int stops = 0; stops < 2; stops++) {
+        FREED_BY(field_table_free) struct field_table table = {0};
+        options.side = stops ? halves.side : NULL;
+        GOOD(field_table_build(&options, NULL, &halves.cells, halves.radius, COUNT, x, "points", &table,
+                               &error));
+        field_evaluate(COUNT, table.lists.ptr, table.lists.idx, table.phi, 1, field, got);
+        for (int64_t p = 0; p < COUNT; p++) {
+            double exact = fabs(x[p * dim] - 0.5) + 0.3 * x[p * dim + dim - 1];
+            worst[stops] = worse(worst[stops], got[p] - exact);
+        }
+    }
+    AT_MOST(worst[1], 1e-12);
+    assert_true(worst[0] > 1e-2);
+    free(x);
 }
 
 /* A region round which the supports of the rest must bend, and one that is a single cell. */
@@ -176,11 +157,10 @@ TEST(inclusions)
 {
     struct support_options options = support_defaults(2);
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
-    struct error error;
     struct reach_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
-        struct support_space space;
-        struct support_lists lists;
+        FREED_BY(support_space_free) struct support_space space = {0};
+        FREED_BY(support_free) struct support_lists lists = {0};
         for (int64_t c = 0; c < halves.cells.count; c++) {
             double middle[2];
             cell_centroid(&halves.cells, c, middle);
@@ -195,8 +175,6 @@ TEST(inclusions)
         for (int64_t i = 1; i < lists.around_count; i++) {
             assert_true(lists.around_pair[i] > lists.around_pair[i - 1]);
         }
-        support_free(&lists);
-        support_space_free(&space);
     }
 }
 
@@ -207,13 +185,11 @@ TEST(failures_name_the_row)
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
     FREED_BY(support_space_free) struct support_space space = {0};
     struct support_lists lists;
-    struct error error;
     static const double x[] = {0.2, 0.2, 0.8, 0.8, NAN, 0.8, 0.7, 0.7};
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    assert_int_equal(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error),
-                     STATUS_INPUT);
-    assert_string_equal(error.text, "points.x: row 2: not a finite coordinate");
+    FAILS_WITH(support_space_lists(&options, &space, NULL, 4, x, "points.x", &lists, &error), STATUS_INPUT,
+               "points.x: row 2: not a finite coordinate");
     options.least = 1000;
     static const double inside[] = {0.8, 0.8, 0.2, 0.2};
     FAILS(support_space_lists(&options, &space, NULL, 2, inside, "points.x", &lists, &error), STATUS_VERDICT,

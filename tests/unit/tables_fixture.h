@@ -1,6 +1,5 @@
 /* Tables of shape functions on a lattice of nodes in a box, made by the stages as the tools make them. */
-#ifndef TESTS_TABLES_FIXTURE_H
-#define TESTS_TABLES_FIXTURE_H
+#pragma once
 
 #include "unit.h"
 
@@ -13,7 +12,6 @@
 static inline void make_tables_of(const struct cloud *cloud, int gauss_points, double factor,
                                   struct stream *stream, struct assembly *assembly)
 {
-    struct error error;
     int64_t unresolved;
     struct ipoints_options points = {.smoothed = gauss_points == 0, .gauss_points = gauss_points};
     struct support_options support = support_defaults(cloud->dim);
@@ -34,10 +32,7 @@ static inline void make_tables_of(const struct cloud *cloud, int gauss_points, d
 static inline void make_tables(const struct cloud_options *options, int gauss_points, double factor,
                                struct cloud *cloud, struct stream *stream, struct assembly *assembly)
 {
-    struct error error;
     GOOD(cloud_make(options, cloud, &error));
     assert_true(cloud->cell_count > 0);
     make_tables_of(cloud, gauss_points, factor, stream, assembly);
 }
-
-#endif

@@ -49,7 +49,6 @@ static struct thin_report thin(const struct shape *shape, double bound)
 {
     struct cells cells = {shape->dim, shape->nodes, shape->x, shape->cells, shape->cell};
     struct thin_report report;
-    struct error error;
     GOOD(cells_check(&cells, &error));
     GOOD(cells_find_thin(&cells, bound, &report, &error));
     return report;

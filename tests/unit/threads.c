@@ -2,10 +2,7 @@
 #include "unit.h"
 
 #include "base/envelope.h"
-#include "base/memory.h"
 #include "base/sparse.h"
-
-#include <string.h>
 
 enum { ROWS = 60000, BLOCKS = 3, MOST_THREADS = 5 };
 
@@ -24,7 +21,6 @@ static int64_t row_of_chains(int64_t i, int64_t *column, double *value)
 
 static void make_chains(struct envelope *factor)
 {
-    struct error error;
     int64_t *ptr = zeros(ROWS + 1, sizeof *ptr), *column = zeros(3 * ROWS, sizeof *column);
     double *value = zeros(3 * ROWS, sizeof *value);
     for (int64_t i = 0; i < ROWS; i++) {
@@ -39,7 +35,7 @@ TEST(blocks)
     int before = omp_get_max_threads();
     int64_t column[3];
     for (int threads = 1; threads <= MOST_THREADS; threads++) {
-        struct envelope factor;
+        FREED_BY(envelope_free) struct envelope factor = {0};
         omp_set_num_threads(threads);
         make_chains(&factor);
         assert_int_equal(factor.block_count, BLOCKS);
@@ -47,7 +43,6 @@ TEST(blocks)
             x[i] = 1.0 / (1.0 + (double)i);
         }
         envelope_solve(&factor, x);
-        envelope_free(&factor);
         if (threads == 1) {
             memcpy(alone, x, ROWS * sizeof *x);
         }
@@ -67,7 +62,6 @@ TEST(blocks)
 /* Rows of all lengths, most entries in the first ones, some without any; twice, y = A x and y += A x. */
 TEST(rows)
 {
-    struct error error;
     struct sparse matrix;
     struct random random = {3};
     int before = omp_get_max_threads();

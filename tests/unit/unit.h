@@ -1,6 +1,5 @@
 /* What all unit tests share: tests that list themselves, checks, and pseudo-random numbers. */
-#ifndef TESTS_UNIT_H
-#define TESTS_UNIT_H
+#pragma once
 
 #include "base/memory.h"
 
@@ -57,6 +56,19 @@ static inline void unit_list(struct CMUnitTest test)
     }                                                                                                        \
     static void name(__attribute__((unused)) void **state)
 
+/* The same in two dimensions, and in three: TEST_IN_EACH_DIM(name) { ... dim ... }. */
+#define TEST_IN_EACH_DIM(name)                                                                               \
+    static void name(int dim);                                                                               \
+    TEST(name##_2d)                                                                                          \
+    {                                                                                                        \
+        name(2);                                                                                             \
+    }                                                                                                        \
+    TEST(name##_3d)                                                                                          \
+    {                                                                                                        \
+        name(3);                                                                                             \
+    }                                                                                                        \
+    static void name(int dim)
+
 /* A setup: small bodies gain nothing by threads, and the machine may be busy. */
 static inline int one_thread(__attribute__((unused)) void **state)
 {
@@ -94,6 +106,18 @@ static inline void near_to(double value, double expected, double tolerance, cons
     }
 }
 
+/* The same of each of values[count] and expected[count]; NULL: zeros. */
+#define ALL_NEAR(count, values, expected, tolerance)                                                         \
+    all_near((count), (values), (expected), (tolerance), __func__, __LINE__)
+
+static inline void all_near(int64_t count, const double *values, const double *expected, double tolerance,
+                            const char *where, int line)
+{
+    for (int64_t i = 0; i < count; i++) {
+        near_to(values[i], expected != NULL ? expected[i] : 0.0, tolerance, where, line);
+    }
+}
+
 /* value <= bound; NaN fails. */
 #define AT_MOST(value, bound)                                                                                \
     do {                                                                                                     \
@@ -104,24 +128,32 @@ static inline void near_to(double value, double expected, double tolerance, cons
         }                                                                                                    \
     } while (0)
 
-/* An expression with &error in it has the status STATUS_OK. */
+/* An expression with &error in it, which is the check's own, has the status STATUS_OK. */
 #define GOOD(expression)                                                                                     \
     do {                                                                                                     \
-        struct error *good_error = &error;                                                                   \
+        struct error error = {""};                                                                           \
         enum status good_status = (expression);                                                              \
         if (good_status != STATUS_OK) {                                                                      \
-            fail_msg("%s:%d: status %d: %s", __func__, __LINE__, (int)good_status, good_error->text);        \
+            fail_msg("%s:%d: status %d: %s", __func__, __LINE__, (int)good_status, error.text);              \
         }                                                                                                    \
     } while (0)
 
-/* An expression with &error in it fails with this status, and a message that has this text in it. */
+/* Such an expression fails with this status, and a message that has this text in it. */
 #define FAILS(expression, status, message)                                                                   \
     do {                                                                                                     \
-        struct error *fails_error = &error;                                                                  \
+        struct error error = {""};                                                                           \
         assert_int_equal((expression), (status));                                                            \
-        if (strstr(fails_error->text, (message)) == NULL) {                                                  \
-            fail_msg("%s:%d: '%s' does not say '%s'", __func__, __LINE__, fails_error->text, (message));     \
+        if (strstr(error.text, (message)) == NULL) {                                                         \
+            fail_msg("%s:%d: '%s' does not say '%s'", __func__, __LINE__, error.text, (message));            \
         }                                                                                                    \
+    } while (0)
+
+/* The same, and the message is this text. */
+#define FAILS_WITH(expression, status, message)                                                              \
+    do {                                                                                                     \
+        struct error error = {""};                                                                           \
+        assert_int_equal((expression), (status));                                                            \
+        assert_string_equal(error.text, (message));                                                          \
     } while (0)
 
 /* ---- memory and random numbers ---- */
@@ -155,5 +187,3 @@ static inline double uniform(struct random *random, double low, double high)
     random->state = random->state * 6364136223846793005u + 1442695040888963407u;
     return low + (high - low) * (double)(random->state >> 11) * 0x1p-53;
 }
-
-#endif

@@ -3,17 +3,11 @@
 #include "approx/parts.h"
 #include "approx/support.h"
 #include "approx/thin.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-
-static int compare_values(const void *left, const void *right)
-{
-    double a = *(const double *)left;
-    double b = *(const double *)right;
-    return (a > b) - (a < b);
-}
 
 enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
                              struct error *error)
@@ -30,7 +24,7 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
         quality[c] = cell_quality(cells, c);
         report->volume += cell_volume(cells, c);
     }
-    qsort(quality, (size_t)cells->count, sizeof *quality, compare_values);
+    qsort(quality, (size_t)cells->count, sizeof *quality, compare_double);
     report->least_median[0] = cells->count > 0 ? quality[0] : 0;
     report->least_median[1] = cells->count > 0 ? quality[cells->count / 2] : 0;
     report->poor = cells_poorest(cells, bound, CELL_REPORT_MOST, report->poorest);

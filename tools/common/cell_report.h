@@ -1,6 +1,5 @@
 /* Report on the background cells of a body: connected bodies and poor cells. */
-#ifndef TOOLS_CELL_REPORT_H
-#define TOOLS_CELL_REPORT_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/quality.h"
@@ -32,5 +31,3 @@ const char *cell_report_box(const struct box *box, char text[128]);
 /* Note where a tenth of the boundary or more is on parts about one cell thick. Exits with a message where
  * memory fails. */
 void tool_note_thin(const struct tool *tool, const struct cells *cells);
-
-#endif

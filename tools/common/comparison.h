@@ -1,7 +1,6 @@
 /* Two streams with a nodal field each, what the fields differ by, and the lines that tell of it: what
  * fieldcmp and fielderr share. */
-#ifndef TOOLS_COMPARISON_H
-#define TOOLS_COMPARISON_H
+#pragma once
 
 #include "stages/solved.h"
 #include "tool.h"
@@ -73,5 +72,3 @@ double iteration_error(const struct side *side);
  * beyond its tolerance, with a note. */
 int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
                    struct side *b, struct findings *findings, const char *name);
-
-#endif

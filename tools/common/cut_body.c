@@ -183,7 +183,7 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body)
 {
     int32_t *place, *owner;
-    bool *has_cell;
+    SCRATCH bool *has_cell = NULL;
     char attributes[192];
     TOOL_TRY(whole->tool, NEW_ARRAY(&place, whole->cells.node_count, &error));
     TOOL_TRY(whole->tool, NEW_ARRAY(&has_cell, whole->cells.count, &error));
@@ -216,7 +216,7 @@ void cut_body_make_part(const struct cut_body *whole, int32_t number, const stru
     put_numbers(whole, "part.cell", "", body->cell, body->cell_count);
     put_facets(whole, place, has_cell);
     put_sets(whole, place);
-    FREE_ALL(place, has_cell);
+    free(place);
 }
 
 void cut_body_free(struct cut_body *whole)

@@ -1,6 +1,5 @@
 /* A body cut into parts (see part): the stream of the whole becomes that of each part in turn. */
-#ifndef TOOLS_CUT_BODY_H
-#define TOOLS_CUT_BODY_H
+#pragma once
 
 #include "tool.h"
 
@@ -33,5 +32,3 @@ void cut_body_keep_sections(struct cut_body *whole);
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body);
 
 void cut_body_free(struct cut_body *whole);
-
-#endif

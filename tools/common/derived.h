@@ -1,6 +1,5 @@
 /* Fields derived from the sections of a stream, for viewing. */
-#ifndef TOOLS_DERIVED_H
-#define TOOLS_DERIVED_H
+#pragma once
 
 #include "stages/views.h"
 
@@ -27,5 +26,3 @@ MUST_CHECK enum status derived_add_groups(const struct stream *stream, const str
                                           struct derived *derived, struct error *error);
 
 void derived_free(struct derived *derived);
-
-#endif

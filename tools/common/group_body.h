@@ -1,6 +1,5 @@
 /* The groups of a stream as lists that can be changed: facet groups, node sets, regions. */
-#ifndef TOOLS_GROUP_BODY_H
-#define TOOLS_GROUP_BODY_H
+#pragma once
 
 #include "approx/cells.h"
 #include "approx/select.h"
@@ -55,5 +54,3 @@ MUST_CHECK enum status group_check_name(const char *name, struct error *error);
 /* Put the lists that were changed back into the stream. STATUS_INPUT when cells belong to no region. */
 MUST_CHECK enum status group_body_write(const struct group_body *body, struct stream *stream,
                                         struct error *error);
-
-#endif

@@ -10,7 +10,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Points on the boundary of a shape belong to it, whatever the round-off: this part of the body's diagonal.

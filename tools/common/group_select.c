@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "base/options.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum joint { JOIN_OR, JOIN_AND, JOIN_WITHOUT, JOINTS };

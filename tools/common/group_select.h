@@ -1,7 +1,6 @@
 /* Expressions that choose facets, nodes or cells, as the program groups takes them (its usage text has the
  * grammar). */
-#ifndef TOOLS_GROUP_SELECT_H
-#define TOOLS_GROUP_SELECT_H
+#pragma once
 
 #include "group_body.h"
 
@@ -13,5 +12,3 @@ MUST_CHECK enum status group_select(const struct group_body *body, enum group_ki
 /* The same of one term, KIND:ARGUMENTS. */
 MUST_CHECK enum status group_term(const struct group_body *body, enum group_kind kind, const char *term,
                                   double unit, bool *chosen, struct error *error);
-
-#endif

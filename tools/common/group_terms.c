@@ -5,7 +5,6 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- items of one kind by those of another ---- */

@@ -1,6 +1,5 @@
 /* Terms of expressions: private to group_terms.c and group_places.c. */
-#ifndef TOOLS_GROUP_TERMS_H
-#define TOOLS_GROUP_TERMS_H
+#pragma once
 
 #include "group_select.h"
 
@@ -29,5 +28,3 @@ MUST_CHECK enum status term_ball(const struct term *term);
 MUST_CHECK enum status term_plane(const struct term *term);
 MUST_CHECK enum status term_end(const struct term *term);
 MUST_CHECK enum status term_near(const struct term *term);
-
-#endif

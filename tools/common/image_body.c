@@ -2,6 +2,7 @@
 
 #include "approx/raster.h"
 #include "base/box.h"
+#include "base/lists.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -162,7 +163,7 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
                   "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
                   box_text(&box, grid_text), box_text(&body, body_text));
     }
-    double *place = nodes_in_voxels(tool, grid, cells, x);
+    SCRATCH double *place = nodes_in_voxels(tool, grid, cells, x);
     int64_t outside = 0;
     for (int64_t n = 0; n < cells->node_count; n++) {
         bool within = true;
@@ -172,7 +173,6 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
         }
         outside += within ? 0 : 1;
     }
-    free(place);
     if (outside > 0) {
         tool_note(tool,
                   "%lld of %lld nodes of the body lie more than half a voxel outside of the image: is an "
@@ -208,12 +208,6 @@ static bool count_labels(const struct image *image, int which, struct label *lab
     return true;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    double first = ((const struct label *)a)->value, second = ((const struct label *)b)->value;
-    return (first > second) - (first < second);
-}
-
 void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
                         int dim)
 {
@@ -225,7 +219,7 @@ void tell_label_volumes(const struct tool *tool, const struct image *before, con
         !count_labels(after, 1, labels, &count)) {
         return;
     }
-    qsort(labels, (size_t)count, sizeof *labels, by_value);
+    qsort(labels, (size_t)count, sizeof *labels, compare_double);
     for (int l = 0; l < count; l++) {
         tool_note(tool, "label %.0f: %.6g %s before, %.6g %s after", labels[l].value,
                   in_unit * voxel_volume(before, dim) * (double)labels[l].voxels[0], unit,

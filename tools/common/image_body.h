@@ -1,6 +1,5 @@
 /* A body and the voxels of an image. */
-#ifndef TOOLS_IMAGE_BODY_H
-#define TOOLS_IMAGE_BODY_H
+#pragma once
 
 #include "tool.h"
 
@@ -40,5 +39,3 @@ double least_step(const struct image *image, int dim);
  * many. */
 void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
                         int dim);
-
-#endif

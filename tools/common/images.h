@@ -1,6 +1,5 @@
 /* Reading and writing images by tools. */
-#ifndef TOOLS_IMAGES_H
-#define TOOLS_IMAGES_H
+#pragma once
 
 #include "tool.h"
 
@@ -22,5 +21,3 @@ void tool_write_image(const struct tool *tool, const struct image *image);
 
 /* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
 const char *image_text(const struct image *image, char text[128]);
-
-#endif

@@ -328,7 +328,7 @@ static void note_border(const struct tool *tool, const struct label_image *image
 void label_image_read(const struct tool *tool, const char *file, const struct label_image_options *options,
                       struct label_image *image)
 {
-    struct image source;
+    FREED_BY(image_free) struct image source = {0};
     *image = (struct label_image){0};
     if (options->table != NULL) {
         TOOL_TRY(tool, label_table_read(options->table, &image->table, &error));
@@ -345,7 +345,6 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
     }
     set_space(tool, &source, image);
     set_labels(tool, &source, image, options->table);
-    image_free(&source);
     check_size(tool, image, options->unit > 0);
     note_border(tool, image);
 }

@@ -1,6 +1,5 @@
 /* A label image as the library's labels: its values named, merged and left out by a table. */
-#ifndef TOOLS_LABEL_IMAGE_H
-#define TOOLS_LABEL_IMAGE_H
+#pragma once
 
 #include "tool.h"
 
@@ -40,5 +39,3 @@ const char *label_image_name(const struct label_image *image, int32_t label);
 
 /* The label of that name; -1: none. */
 int32_t label_image_find(const struct label_image *image, const char *name);
-
-#endif

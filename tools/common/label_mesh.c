@@ -31,8 +31,7 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
     if (asprintf(&joined, "%s|%s", first, second) < 0) {
         return fail_memory(error, "a name");
     }
-    enum status status = mesh_add_name(names, joined, error);
-    return status;
+    return mesh_add_name(names, joined, error);
 }
 
 static enum status make_regions(const struct label_image *image, const struct stuffing *stuffing,

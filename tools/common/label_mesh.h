@@ -1,6 +1,5 @@
 /* Cells made of labels, as the mesh that goes into a stream. */
-#ifndef TOOLS_LABEL_MESH_H
-#define TOOLS_LABEL_MESH_H
+#pragma once
 
 #include "label_image.h"
 
@@ -14,5 +13,3 @@
 MUST_CHECK enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
                                        struct mesh *mesh, struct error *error);
 void label_mesh_free(struct mesh *mesh);
-
-#endif

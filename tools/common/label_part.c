@@ -2,7 +2,6 @@
 
 #include "images.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

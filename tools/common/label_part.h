@@ -1,6 +1,5 @@
 /* Parts of the labels of an image by place: their boundary is a group of its own. */
-#ifndef TOOLS_LABEL_PART_H
-#define TOOLS_LABEL_PART_H
+#pragma once
 
 #include "label_image.h"
 
@@ -9,5 +8,3 @@
  * same region. Of two that overlap the later one takes all. Exits on failure: other expressions, a name that
  * is taken, a part without a voxel of a label that is kept. */
 void label_parts_make(const struct tool *tool, struct label_image *image);
-
-#endif

@@ -38,7 +38,6 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
 {
     const struct section *section;
     *sizes = (struct label_sizes){0};
-    stream_init(&sizes->stream);
     if (file == NULL) {
         return;
     }

@@ -1,6 +1,5 @@
 /* Where the cells of a label image are to be smaller: at interfaces, and by sizes of a solution. */
-#ifndef TOOLS_LABEL_SIZES_H
-#define TOOLS_LABEL_SIZES_H
+#pragma once
 
 #include "label_image.h"
 
@@ -23,5 +22,3 @@ struct label_sizes {
 void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
                       struct label_sizes *sizes);
 void label_sizes_free(struct label_sizes *sizes);
-
-#endif

@@ -3,9 +3,9 @@
 #include "output.h"
 
 #include "approx/cells.h"
+#include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */
@@ -35,13 +35,10 @@ static bool is_chosen(const struct stuffing *stuffing, const struct label_surfac
 static void unit_normal(const struct stuffing *stuffing, int64_t facet, double normal[3])
 {
     int dim = stuffing->dim;
-    double square = 0;
     face_area_vector(dim, stuffing->x, stuffing->facet + facet * dim, normal);
+    double area = vector_length(dim, normal);
     for (int d = 0; d < dim; d++) {
-        square += normal[d] * normal[d];
-    }
-    for (int d = 0; d < dim; d++) {
-        normal[d] /= sqrt(square);
+        normal[d] /= area;
     }
 }
 
@@ -55,29 +52,21 @@ static void move_outward(const struct stuffing *stuffing, const struct label_sur
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         if (is_chosen(stuffing, options, i / dim)) {
             unit_normal(stuffing, i / dim, normal);
-            for (int d = 0; d < dim; d++) {
-                mean[(int64_t)stuffing->facet[i] * dim + d] += normal[d];
-            }
+            add_scaled(dim, 1.0, normal, mean + (int64_t)stuffing->facet[i] * dim);
         }
     }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
-        double square = 0;
-        for (int d = 0; d < dim; d++) {
-            square += mean[n * dim + d] * mean[n * dim + d];
-        }
-        for (int d = 0; d < dim && square > 0; d++) {
-            mean[n * dim + d] /= sqrt(square);
+        double length = vector_length(dim, mean + n * dim);
+        for (int d = 0; d < dim && length > 0; d++) {
+            mean[n * dim + d] /= length;
         }
         least[n] = 1;
     }
     for (int64_t i = 0; i < stuffing->facet_count * dim; i++) {
         int64_t n = stuffing->facet[i];
-        double cosine = 0;
         if (is_chosen(stuffing, options, i / dim)) {
             unit_normal(stuffing, i / dim, normal);
-            for (int d = 0; d < dim; d++) {
-                cosine += normal[d] * mean[n * dim + d];
-            }
+            double cosine = vector_dot(dim, normal, mean + n * dim);
             least[n] = fmax(fmin(least[n], cosine), 1 / most_stretch);
         }
     }

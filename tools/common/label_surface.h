@@ -1,6 +1,5 @@
 /* The surface of labels as a table for the rigid bodies of scenes. */
-#ifndef TOOLS_LABEL_SURFACE_H
-#define TOOLS_LABEL_SURFACE_H
+#pragma once
 
 #include "label_image.h"
 
@@ -21,5 +20,3 @@ void label_surface_parse(const struct tool *tool, const struct label_image *imag
  * output; exits on failure, also when there is no such facet. */
 void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,
                          const struct label_surface_options *options);
-
-#endif

@@ -1,6 +1,5 @@
 /* Joins a stream (cloud, table of shape functions) and a scene into a system ready to be stepped. */
-#ifndef TOOLS_MODEL_H
-#define TOOLS_MODEL_H
+#pragma once
 
 #include "stages/tables.h"
 #include "stages/views.h"
@@ -77,5 +76,3 @@ MUST_CHECK enum status model_initial(const struct model *model, double *u, doubl
  * share of the body's extent; rows that belong to x are no further away than MODEL_SAME_PLACE. */
 double model_away(const struct model *model, const double *row, double unit, const double *x);
 #define MODEL_SAME_PLACE 1e-5
-
-#endif

@@ -3,7 +3,6 @@
 
 #include "base/vector.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Mean width of a list's facets, m. */

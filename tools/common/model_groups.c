@@ -1,6 +1,5 @@
 #include "model.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* wanted[present->count]: whether each of the groups, which are `what`, is among the names. */

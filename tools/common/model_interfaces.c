@@ -2,7 +2,6 @@
 #include "model.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 /* Above such a jump forces, too, may be off: on layers of three cells by 10 % at 20 : 1, 16 % at 100 : 1. */
 static const double large_jump = 20.0;

@@ -2,8 +2,6 @@
 
 #include "io/table.h"
 
-#include <stdlib.h>
-
 static void set_material(const struct scene_material *section, struct material *material)
 {
     static const enum material_model models[] = {[SCENE_NEO_HOOKEAN] = MATERIAL_NEO_HOOKEAN,

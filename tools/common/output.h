@@ -1,6 +1,5 @@
 /* An output file that appears under its name only when it is whole. */
-#ifndef TOOLS_OUTPUT_H
-#define TOOLS_OUTPUT_H
+#pragma once
 
 #include "tool.h"
 
@@ -39,5 +38,3 @@ void target_close(const struct tool *tool, struct target *target, enum status st
 
 /* The same where printing itself does not fail. */
 void target_end(const struct tool *tool, struct target *target);
-
-#endif

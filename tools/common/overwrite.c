@@ -16,8 +16,7 @@ static bool stat_folder(const char *name, struct stat *folder)
 {
     const char *slash = strrchr(name, '/');
     SCRATCH char *path = slash == NULL ? strdup(".") : strndup(name, (size_t)(slash - name + 1));
-    bool found = path != NULL && stat(path, folder) == 0;
-    return found;
+    return path != NULL && stat(path, folder) == 0;
 }
 
 static const char *within_folder(const char *name)

@@ -1,6 +1,5 @@
 /* Outputs that would replace an input of the same run. */
-#ifndef TOOLS_OVERWRITE_H
-#define TOOLS_OVERWRITE_H
+#pragma once
 
 #include "tool.h"
 
@@ -10,5 +9,3 @@ bool overwrite_is_same(const char *name, const char *other);
 /* Exits where the file that `option` names, with `suffix` appended, is an operand, or the value of another
  * option but -o. A stream that is the only file among the operands may be replaced by what is made of it. */
 void overwrite_refuse(const struct tool *tool, const char *option, const char *suffix);
-
-#endif

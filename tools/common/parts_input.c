@@ -75,11 +75,10 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
     const struct ranks *ranks = process_ranks();
     int64_t count = 0;
     if (ranks_rank(ranks) == 0) {
-        char *file = tool_numbered(tool, "", operand, 0);
+        SCRATCH char *file = tool_numbered(tool, "", operand, 0);
         status = read_file(file, 0, 0, stream, &error);
         status = status == STATUS_OK ? count_parts(file, stream, &count, &error) : status;
         status = status == STATUS_OK ? look_for_last(tool, operand, count, &error) : status;
-        free(file);
     }
     tool_check(tool, ranks_agree(ranks, status, &error), &error);
     count = ranks_most(ranks, count);
@@ -145,13 +144,12 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
 {
     const struct ranks *ranks = process_ranks();
     FREED_BY(rejoin_free) struct rejoin rejoin = {.tool = tool};
-    struct stream start;
+    struct stream start = {0};
     SCRATCH int64_t *first = NULL;
     SCRATCH void *packed = NULL;
     *parts = (struct parts_input){.given = true};
     tool_names_input(operand);
     stream_init(stream);
-    stream_init(&start);
     rejoin.part_count = begin(tool, operand, &start);
     TOOL_TRY(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error));
     TOOL_TRY(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error));

@@ -1,7 +1,6 @@
 /* The parts of a body as the input of mtled: each process reads the files of some parts, and its rows of the
  * large tables; what is small of all parts goes to all. */
-#ifndef TOOLS_PARTS_INPUT_H
-#define TOOLS_PARTS_INPUT_H
+#pragma once
 
 #include "tool.h"
 
@@ -20,5 +19,3 @@ bool parts_are_named(const char *operand);
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts);
 void parts_free(struct parts_input *parts);
-
-#endif

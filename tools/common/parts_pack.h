@@ -1,6 +1,5 @@
 /* What is small of the parts that processes have read, given to all. */
-#ifndef TOOLS_PARTS_PACK_H
-#define TOOLS_PARTS_PACK_H
+#pragma once
 
 #include "rejoin.h"
 
@@ -9,5 +8,3 @@
  * *packed holds what they consist of: to be freed behind them. One process: nothing, and NULL. */
 MUST_CHECK enum status parts_share_small(struct rejoin *rejoin, const int64_t *first, void **packed,
                                          struct error *error);
-
-#endif

@@ -1,5 +1,6 @@
 #include "plot.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/options.h"
 
@@ -96,13 +97,6 @@ void plot_choose_fields(struct plot *plot, int64_t frame)
     }
 }
 
-static int compare_frames(const void *a, const void *b)
-{
-    int64_t left = *(const int64_t *)a;
-    int64_t right = *(const int64_t *)b;
-    return (left > right) - (left < right);
-}
-
 static enum status find_frames(struct plot *plot, struct error *error)
 {
     int64_t count = 0;
@@ -114,7 +108,7 @@ static enum status find_frames(struct plot *plot, struct error *error)
             plot->frames[count++] = frame;
         }
     }
-    qsort(plot->frames, (size_t)count, sizeof *plot->frames, compare_frames);
+    qsort(plot->frames, (size_t)count, sizeof *plot->frames, compare_int64);
     for (int64_t i = 0; i < count; i++) {
         if (i == 0 || plot->frames[i] != plot->frames[i - 1]) {
             plot->frames[plot->frame_count++] = plot->frames[i];
@@ -160,10 +154,9 @@ static enum status find_mesh(struct plot *plot, struct error *error)
 /* Fields: those of the stream, what follows from them, and the groups. */
 static enum status find_fields(struct plot *plot, struct error *error)
 {
-    int64_t most;
     RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));
     RETURN_IF_ERROR(derived_add_groups(&plot->stream, &plot->cells, &plot->derived, error));
-    most = plot->stream.section_count + plot->derived.count;
+    int64_t most = plot->stream.section_count + plot->derived.count;
     RETURN_IF_ERROR(NEW_ARRAY(&plot->fields, most, error));
     return NEW_ARRAY(&plot->labels, most, error);
 }

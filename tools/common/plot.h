@@ -1,6 +1,5 @@
 /* What tovtk writes of a stream: a mesh, fields and frames. */
-#ifndef TOOLS_PLOT_H
-#define TOOLS_PLOT_H
+#pragma once
 
 #include "derived.h"
 #include "io/sections.h"
@@ -39,5 +38,3 @@ void plot_choose_fields(struct plot *plot, int64_t frame);
 
 /* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
 MUST_CHECK enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error);
-
-#endif

@@ -2,8 +2,7 @@
  * one alone writes and says what is to be said. tools/common/process.c is of one process, and costs nothing;
  * tools/mpi/process.c stands in its place in mtled-mpi, which mtled calls where mpirun has started several.
  */
-#ifndef TOOLS_PROCESS_H
-#define TOOLS_PROCESS_H
+#pragma once
 
 #include "base/ranks.h"
 
@@ -28,5 +27,3 @@ void process_end(void);
 
 /* A report on standard error of what was sent, by so many evaluations; by all together. */
 void process_report(int64_t evaluations);
-
-#endif

@@ -232,7 +232,7 @@ static void find_edges(struct rejoin *rejoin)
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        int32_t *here;
+        SCRATCH int32_t *here = NULL;
         TOOL_TRY(rejoin->tool, NEW_ARRAY(&here, part->cells.node_count, &error));
         TOOL_TRY(rejoin->tool, NEW_ARRAY(&part->at_edge, part->cells.node_count, &error));
         for (int64_t i = 0; i < part->cells.count * vertices; i++) {
@@ -241,7 +241,6 @@ static void find_edges(struct rejoin *rejoin)
         for (int64_t i = 0; i < part->cells.node_count; i++) {
             part->at_edge[i] = here[i] < degree[part->node[i]];
         }
-        free(here);
     }
 }
 

@@ -1,7 +1,6 @@
 /* Putting the parts of a body (see part) together again: which rows of each part's sections are its own, and
  * where they stand in the sections of the whole. */
-#ifndef TOOLS_REJOIN_H
-#define TOOLS_REJOIN_H
+#pragma once
 
 #include "tool.h"
 #include "stages/views.h"
@@ -81,5 +80,3 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
 
 /* The faces, the rows that they are averaged over, and the points of these. */
 void rejoin_map_faces(struct rejoin *rejoin);
-
-#endif

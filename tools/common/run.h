@@ -1,6 +1,5 @@
 /* Running a model: what mtled does between reading and writing. */
-#ifndef TOOLS_RUN_H
-#define TOOLS_RUN_H
+#pragma once
 
 #include "model.h"
 #include "parts_input.h"
@@ -134,5 +133,3 @@ void run_put_supports(const struct run *run);
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
  * in a quasi-static run its energy. */
 void run_put_results(struct run *run);
-
-#endif

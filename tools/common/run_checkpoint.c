@@ -3,7 +3,6 @@
 #include "base/processor.h"
 
 #include <string.h>
-#include <unistd.h>
 
 /* ---- signals: a run that is asked to end finishes its step ---- */
 
@@ -120,7 +119,6 @@ static void resume(struct run *run)
 void run_checkpoint_begin(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    stream_init(&checkpoint->restored);
     if (checkpoint->file != NULL || process_ranks() != NULL) {
         TOOL_TRY(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error));
         if (run->parts->given) {
@@ -180,9 +178,8 @@ static enum status visit_whole(void *owner, const struct state *state, struct er
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    struct stream stream;
+    struct stream stream = {0};
     enum status status;
-    stream_init(&stream);
     put_view(run, progress, &stream);
     struct whole_state whole = {run, progress};
     TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));

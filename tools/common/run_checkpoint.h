@@ -1,7 +1,6 @@
 /* What a run puts away while it lasts, and takes up again: checkpoints, on an interval and when interrupted.
  */
-#ifndef TOOLS_RUN_CHECKPOINT_H
-#define TOOLS_RUN_CHECKPOINT_H
+#pragma once
 
 #include "io/checkpoint.h"
 
@@ -42,5 +41,3 @@ _Noreturn void run_checkpoint_stop(struct run *run, int64_t steps);
 
 /* The results are whole: the checkpoints have served. */
 void run_checkpoint_remove(struct run *run);
-
-#endif

@@ -1,6 +1,5 @@
 /* Folds of a run (see solid/folds.h): searched for while it lasts, reported at its end. */
-#ifndef TOOLS_RUN_FOLDS_H
-#define TOOLS_RUN_FOLDS_H
+#pragma once
 
 #include "base/state.h"
 #include "solid/folds.h"
@@ -63,5 +62,3 @@ bool run_folds_let_touch(struct run *run);
 /* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
  * be noted is. */
 void run_folds_judge(struct run *run);
-
-#endif

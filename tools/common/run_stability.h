@@ -1,8 +1,7 @@
 /* Whether the equilibria of a quasi-static run are stable: a body that is compressed far enough buckles,
  * wrinkles or creases. Then either the state that was found is unstable, or the body has gone over to another
  * state. Checked while the run lasts, reported at its end. */
-#ifndef TOOLS_RUN_STABILITY_H
-#define TOOLS_RUN_STABILITY_H
+#pragma once
 
 #include "base/state.h"
 #include "solid/progress.h"
@@ -42,5 +41,3 @@ MUST_CHECK enum status run_stability_state(struct run *run, const struct state *
 
 /* What was seen up to the final state run->u, into text[size]; empty when all is stable. */
 void run_stability_describe(const struct run *run, char *text, size_t size);
-
-#endif

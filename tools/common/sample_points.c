@@ -11,12 +11,11 @@
 
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows)
 {
-    struct table table;
+    FREED_BY(table_free) struct table table = {0};
     TOOL_TRY(tool, table_read(file, 2, 3, &table, &error));
     *rows =
         (struct sample_points){.what = file, .dim = (int)table.cols, .count = table.rows, .x = table.values};
     table.values = NULL;
-    table_free(&table);
     for (int64_t i = 0; i < rows->count * rows->dim; i++) {
         rows->x[i] *= unit;
     }
@@ -75,8 +74,7 @@ void sample_points_section(const struct tool *tool, const char *file, const char
     TOOL_TRY(tool, NEW_ARRAY(&rows->x, at->rows * at->cols, &error));
     memcpy(rows->x, at->data, (size_t)(at->rows * at->cols) * sizeof *rows->x);
     if (regions != NULL) {
-        char *list = tool_memory(tool, strdup(regions));
+        SCRATCH char *list = tool_memory(tool, strdup(regions));
         choose_regions(tool, stream, list, rows);
-        free(list);
     }
 }

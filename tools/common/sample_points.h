@@ -1,6 +1,5 @@
 /* Where images are sampled: the points of a table or of a stream. */
-#ifndef TOOLS_SAMPLE_POINTS_H
-#define TOOLS_SAMPLE_POINTS_H
+#pragma once
 
 #include "tool.h"
 
@@ -21,5 +20,3 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
  * in cells of these, names with commas between, NULL: all. Exits on failure. */
 void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,
                            struct stream *stream, struct sample_points *rows);
-
-#endif

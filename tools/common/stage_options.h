@@ -1,7 +1,6 @@
 /* What tools share that run stages: the options of basis and supports, -b, -w, --mu, --mu-unit, -k, -R; and
  * the stages that run with their defaults where their sections are missing. */
-#ifndef TOOLS_STAGE_OPTIONS_H
-#define TOOLS_STAGE_OPTIONS_H
+#pragma once
 
 #include "approx/mls.h"
 #include "approx/support.h"
@@ -21,5 +20,3 @@ void radius_parse(const struct tool *tool, struct support_options *support);
  * and adding the provenance of the stages run. `upto` is "ipoints", "support" or "shapefn". Exits on failure.
  */
 void stage_fill(const struct tool *tool, struct stream *stream, const char *upto);
-
-#endif

@@ -1,7 +1,6 @@
 /* Young's modulus and Poisson's ratio from the values of images: from an intensity by a table, or from the
  * probabilities of tissues. */
-#ifndef TOOLS_TISSUE_H
-#define TOOLS_TISSUE_H
+#pragma once
 
 #include "base/options.h"
 #include "base/status.h"
@@ -27,5 +26,3 @@ MUST_CHECK enum status tissue_parse(int count, const char *const text[], struct 
 bool tissue_moduli(const struct tissue *tissue, const double *value, double moduli[2], int64_t *beyond);
 
 void tissue_free(struct tissue *tissue);
-
-#endif

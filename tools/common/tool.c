@@ -337,8 +337,7 @@ static int open_part(const char *output)
         asprintf(&name, "%s.part", output) < 0) {
         return -1;
     }
-    int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    return descriptor;
+    return open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
 void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text)

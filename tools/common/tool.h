@@ -1,6 +1,5 @@
 /* What every tool's main needs: usage, messages, opening and closing. Tools talk; lib/ does not. */
-#ifndef TOOLS_TOOL_H
-#define TOOLS_TOOL_H
+#pragma once
 
 #include "base/memory.h"
 #include "base/options.h"
@@ -115,5 +114,3 @@ void tool_write_stopped(const struct tool *tool, struct stream *stream, const ch
 /* Close standard output, reporting delayed write errors; for tools that print tables with stdio. Returns the
  * exit status STATUS_OK or exits 3. */
 int tool_end(const struct tool *tool);
-
-#endif

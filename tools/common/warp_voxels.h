@@ -1,6 +1,5 @@
 /* The loop over the voxels of a moved image, or of the field as an image. */
-#ifndef TOOLS_WARP_VOXELS_H
-#define TOOLS_WARP_VOXELS_H
+#pragma once
 
 #include "image_body.h"
 
@@ -38,5 +37,3 @@ struct warp_job {
 
 /* Find the value of each voxel of the result, and count. */
 void warp_voxels(const struct warp_job *job, struct warp_report *report);
-
-#endif
