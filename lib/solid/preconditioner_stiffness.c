@@ -13,7 +13,7 @@ static const double share = 0.25;
 /* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
  */
 static const double kept = 1e-4;
-enum { most_attempts = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
+enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
 /* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
 static const double least_free = 0.01;
 static const double strain = 1e-6; /* of the differences that stiffness is measured with */
@@ -32,7 +32,8 @@ static double free_part(const struct preconditioner *p)
 double preconditioner_factorise(const struct preconditioner *p, double *matrix)
 {
     double keep = kept;
-    for (int attempt = 0; attempt < most_attempts; attempt++) { /* an unstable body's stiffness is indefinite */
+    for (int attempt = 0; attempt < MOST_ATTEMPTS;
+         attempt++) { /* an unstable body's stiffness is indefinite */
         for (int64_t i = 0; i < p->size * p->size; i++) {
             matrix[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i];
         }
