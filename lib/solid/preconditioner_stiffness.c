@@ -32,8 +32,8 @@ static double free_part(const struct preconditioner *p)
 double preconditioner_factorise(const struct preconditioner *p, double *matrix)
 {
     double keep = kept;
-    for (int attempt = 0; attempt < MOST_ATTEMPTS;
-         attempt++) { /* an unstable body's stiffness is indefinite */
+    /* Of an unstable body the stiffness is indefinite. */
+    for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
         for (int64_t i = 0; i < p->size * p->size; i++) {
             matrix[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i];
         }
