@@ -25,13 +25,11 @@ static const double *at(const struct folds *folds, int32_t node)
     return folds->y + (int64_t)node * folds->input.dim;
 }
 
-/* Take `facet` for the first one found, with its middle. */
-static void name_facets(const struct folds *folds, int64_t facet, int64_t other, struct fold *fold)
+void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
 {
-    int dim = folds->input.dim;
     fold->facet[0] = facet;
     fold->facet[1] = other;
-    vector_middle(dim, folds->input.x, dim, folds->input.facet + facet * dim, fold->place);
+    vector_middle(input->dim, input->x, input->dim, input->facet + facet * input->dim, fold->place);
 }
 
 /* What there is in shares in turn: the gravest kind, its first one, and how many there are. */
@@ -174,7 +172,7 @@ static struct fold look_at_rings(const struct folds *folds, int64_t begin, int64
             sum += angle_around(folds, folds->ring_cell + i * corners);
         }
         if (sum > most_angle(folds, &folds->rings[r]) && fold.count++ == 0) {
-            name_facets(folds, folds->rings[r].facet, -1, &fold);
+            fold_name_facets(&folds->input, folds->rings[r].facet, -1, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_CREASE : FOLD_NONE;
@@ -330,7 +328,7 @@ static struct fold look_at_boxes(const struct folds *folds, int64_t begin, int64
                 continue;
             }
             if (fold.count++ == 0) {
-                name_facets(folds, f < g ? f : g, f < g ? g : f, &fold);
+                fold_name_facets(&folds->input, f < g ? f : g, f < g ? g : f, &fold);
             }
         }
     }
@@ -353,7 +351,7 @@ static struct fold look_at_sliding(const struct folds *folds, int64_t begin, int
         fold_area_vector(dim, folds->y, input->facet + f * dim, now);
         fold_area_vector(dim, input->x, input->facet + f * dim, rest);
         if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
-            name_facets(folds, f, -1, &fold);
+            fold_name_facets(&folds->input, f, -1, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_REVERSED : FOLD_NONE;
@@ -436,7 +434,7 @@ struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *
         double reach, depth = folds_rim_beyond(folds, rim, folds->y, &reach);
         if (!stopped[rim->node] && depth > fmax(beyond_body * folds->extent, beyond_facet * reach) &&
             fold.count++ == 0) {
-            name_facets(folds, rim->facet, rim->support_facet, &fold);
+            fold_name_facets(&folds->input, rim->facet, rim->support_facet, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;

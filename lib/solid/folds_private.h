@@ -7,6 +7,10 @@
 /* Normals whose cosine is below this, that of 120 degrees, face opposite ways. */
 #define FOLD_REVERSING (-0.5)
 
+/* What a fold names: two facets, the other one -1 where there is none, and as its place the middle of the
+ * first at rest. */
+void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold);
+
 static inline double fold_cosine(int dim, const double *one, const double *other)
 {
     return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));

@@ -19,13 +19,6 @@ static double cosine_of_normals(const struct fold_input *input, const double *y,
     return fold_cosine(input->dim, one, other);
 }
 
-static void name_facets(const struct fold_input *input, int64_t f, int64_t g, struct fold *fold)
-{
-    fold->facet[0] = f;
-    fold->facet[1] = g;
-    vector_middle(input->dim, input->x, input->dim, input->facet + f * input->dim, fold->place);
-}
-
 struct fold folds_find_closed(struct folds *folds, const double *u)
 {
     struct fold fold = none;
@@ -35,7 +28,7 @@ struct fold folds_find_closed(struct folds *folds, const double *u)
         int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
         if (g >= 0 && cosine_of_normals(input, folds->y, f, g) < FOLD_REVERSING &&
             cosine_of_normals(input, input->x, f, g) > alike && fold.count++ == 0) {
-            name_facets(input, f, g, &fold);
+            fold_name_facets(input, f, g, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_CLOSED : FOLD_NONE;
@@ -123,7 +116,7 @@ struct fold folds_find_wrapped(const struct folds *folds)
         }
         if (fold.count++ == 0) {
             bool first = are_all(input, folds->turned, f);
-            name_facets(input, first ? f : g, first ? g : f, &fold);
+            fold_name_facets(input, first ? f : g, first ? g : f, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_WRAPPED : FOLD_NONE;

@@ -61,8 +61,8 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
 }
 
 /* The coarse fields at the corners opposite to points of contacts. */
-static enum status take_opposite(const struct solid_system *system, struct preconditioner *p,
-                                 struct error *error)
+static enum status take_fields_opposite(const struct solid_system *system, struct preconditioner *p,
+                                        struct error *error)
 {
     int64_t corners = 0, at = 0, count = p->coarse.count;
     for (int64_t c = 0; c < system->contact_count; c++) {
@@ -109,7 +109,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
-    RETURN_IF_ERROR(take_opposite(system, p, error));
+    RETURN_IF_ERROR(take_fields_opposite(system, p, error));
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
