@@ -2,7 +2,7 @@
 # resection with drainage, electrodes; against finer solutions
 #
 # Everything lies in build/out/neurosurgery, and in resection and electrodes there: neurosurgery.tsv (errors before and after), seconds.tsv, a
-# picture; of the craniotomy volumes.tsv and a film of the shift as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands
+# picture; of the craniotomy volumes.tsv, rounds.tsv (how the load was found) and a film of the shift as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands
 # in for it. One of them alone: make neurosurgery-one NEURO_SCENARIO=resection.
 NEURO_SCENARIO ?= craniotomy
 NEURO := $(OUT)/neurosurgery$(patsubst %,/%,$(filter-out craniotomy,$(NEURO_SCENARIO)))
@@ -13,13 +13,15 @@ NEURO_SCRIPTS := pipelines/neurosurgery
 # Spacing of the nodes of the prediction and of the true state.
 NEURO_SPACING ?= 9mm
 NEURO_TRUE_SPACING ?= 7mm
+# That of the nodes with which loads are found.
+NEURO_LOAD_SPACING ?= 12mm
 NEURO_RANDOM := awk -f $(NEURO_SCRIPTS)/random.awk
 NEURO_TIMED := bash $(NEURO_SCRIPTS)/timed.sh
 NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled interp sample warp mts)
 NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 # What differs: the names of the labels, the part of the surface that is seen, names of others, labels that landmarks lie in, the true scene, what is predicted: from what is
-# seen alone, and knowing as well how the patient lies.
+# seen alone, with the weight that is found from it, and knowing how the patient lies.
 NEURO_STEM := -u mm -f 'stem=ball:0,-41,-65,12'
 NEURO_EXPOSED := --part exposed=ball:63.5mm,16mm,20mm,33mm
 ifeq ($(NEURO_SCENARIO),craniotomy)
@@ -28,8 +30,9 @@ NEURO_PART := $(NEURO_EXPOSED)
 NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=all without stem without exposed'
 NEURO_INSIDE := $$4 > 0
 NEURO_TRUTH := truth
-NEURO_PREDICTIONS := craniotomy position
-NEURO_COLUMNS := from_cortex\twith_gravity
+NEURO_PREDICTIONS := craniotomy load position
+NEURO_COLUMNS := from_cortex\tload_found\twith_gravity
+NEURO_DEVIATION := -d 0.5
 NEURO_SEEN := from the exposed cortex
 else ifeq ($(NEURO_SCENARIO),resection)
 NEURO_NAMES := $(NEURO_INPUT)/resection.tsv
@@ -45,21 +48,22 @@ else
 $(error NEURO_SCENARIO: $(NEURO_SCENARIO) is none of craniotomy, resection, electrodes)
 endif
 NEURO_TRUTH ?= $(NEURO_SCENARIO)_truth
-NEURO_PREDICTIONS ?= $(NEURO_SCENARIO) $(NEURO_SCENARIO)_position
-NEURO_COLUMNS ?= from_points\twith_gravity
+NEURO_PREDICTIONS ?= $(NEURO_SCENARIO) $(NEURO_SCENARIO)_load $(NEURO_SCENARIO)_position
+NEURO_COLUMNS ?= from_points\tload_found\twith_gravity
 NEURO_SEEN ?= from points
 NEURO_FIRST := $(firstword $(NEURO_PREDICTIONS))
+NEURO_FOUND := $(word 2,$(NEURO_PREDICTIONS))
 
 .PHONY: neurosurgery neurosurgery-one
 neurosurgery: neurosurgery-one
 	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=resection
 	@$(MAKE) --no-print-directory neurosurgery-one NEURO_SCENARIO=electrodes
 
-neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png) $(if $(filter craniotomy,$(NEURO_SCENARIO)),$(addprefix $(NEURO)/,volumes.tsv shift.gif))
+neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png) $(if $(filter craniotomy,$(NEURO_SCENARIO)),$(addprefix $(NEURO)/,volumes.tsv rounds.tsv shift.gif))
 	@echo
 	@echo '$(NEURO_SCENARIO)'
-	@awk -F '\t' '{ printf "%-56s %12s %12s %12s\n", $$1, $$2, $$3, $$4 }' $<
-	@[ ! -f $(NEURO)/volumes.tsv ] || { echo; awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5 }' $(NEURO)/volumes.tsv; }
+	@awk -F '\t' '{ printf "%-56s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5 }' $<
+	@[ ! -f $(NEURO)/volumes.tsv ] || { echo; awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(NEURO)/volumes.tsv; }
 	@echo
 	@awk -F '\t' '{ printf "%-18s %12s\n", $$1, $$2 }' $(NEURO)/seconds.tsv
 
@@ -100,12 +104,29 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 	awk -f $(NEURO_SCRIPTS)/points.awk $< | interp -f u -p $(@:.tsv=.places) -u mm -b mls1 -R 15mm > $(@:.tsv=.smooth)
 	paste $(@:.tsv=.places) <(mts print u $(@:.tsv=.smooth) | awk '{ print 1e3 * $$1, 1e3 * $$2, 1e3 * $$3 }') > $@
 
-$(NEURO)/predicted.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
+$(NEURO)/predicted.body.mts $(NEURO)/coarse.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
-	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(NEURO_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) > $@"
+	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(if $(findstring coarse,$@),$(NEURO_LOAD_SPACING),$(NEURO_SPACING)) \
+	    -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) > $@"
 
-$(NEURO)/predicted.table.mts: $(NEURO)/predicted.body.mts $(NEURO_PROGRAMS)
+$(NEURO)/%.table.mts: $(NEURO)/%.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"
+
+# The weight, in size and direction, that moves the measured points as they moved: on a coarser cloud.
+$(NEURO)/load.template: $(NEURO_INPUT)/$(NEURO_FIRST).scene $(NEURO_SCRIPTS)/load.awk
+	@mkdir -p $(@D)
+	awk -f $(NEURO_SCRIPTS)/load.awk $< > $@
+
+$(NEURO)/found/identified.tsv: $(NEURO_INPUT)/gravity.tsv $(NEURO)/load.template $(NEURO)/coarse.table.mts $(NEURO)/measured.tsv $(NEURO)/skull.tsv \
+        $(wildcard pipelines/identify/*) $(NEURO_PROGRAMS)
+	$(NEURO_TIMED) $(NEURO)/found.seconds "bash pipelines/identify/identify.sh -j 2 -u mm $(NEURO_DEVIATION) $(wordlist 1,4,$^) $(@D) > $(NEURO)/found.log"
+
+$(NEURO)/rounds.tsv: $(NEURO)/found/identified.tsv
+	awk '{ line = ""; for (i = 2; i <= NF; i += 2) line = line (i > 2 ? "\t" : "") $$i } \
+	    NR == 1 { print "round\tmisfit\tgx\tgy\tgz" } { print line }' $(NEURO)/found.log > $@
+
+$(NEURO)/$(NEURO_FOUND).scene: $(NEURO_INPUT)/$(NEURO_FIRST).scene $(NEURO)/found/identified.tsv $(NEURO_SCRIPTS)/load.awk
+	awk -f $(NEURO_SCRIPTS)/load.awk -v found=$(word 2,$^) $< > $@
 
 $(NEURO_PREDICTIONS:%=$(NEURO)/%.u.dat): %.u.dat: $(NEURO)/predicted.table.mts %.scene $(NEURO)/$(if $(filter craniotomy,$(NEURO_SCENARIO)),exposed,measured).tsv $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.dat=.seconds) "mtled -v $*.scene $< > $@" $(NEURO_LOG)
@@ -143,12 +164,12 @@ $(NEURO)/neurosurgery.tsv: $(foreach kind,landmarks ventricles,$(patsubst %,$(NE
 	    awk -f $(NEURO_SCRIPTS)/surface.awk -v triangles=$(NEURO)/ventricles.tsv $(filter %.ventricles,$^)) > $@
 
 $(NEURO)/volumes.tsv: $(patsubst %,$(NEURO)/%.labels.nii.gz,$(NEURO_PREDICTIONS) true) $(NEURO_SCRIPTS)/volumes.awk
-	awk -f $(NEURO_SCRIPTS)/volumes.awk $(NEURO_INPUT)/labels.tsv $(patsubst %,$(NEURO)/%.labels.log,$(NEURO_PREDICTIONS) true) > $@
+	awk -f $(NEURO_SCRIPTS)/volumes.awk -v titles='$(NEURO_COLUMNS)' $(NEURO_INPUT)/labels.tsv $(patsubst %,$(NEURO)/%.labels.log,$(NEURO_PREDICTIONS) true) > $@
 
-$(NEURO)/seconds.tsv: $(NEURO)/$(NEURO_FIRST).scan.nii.gz
+$(NEURO)/seconds.tsv: $(NEURO)/$(NEURO_FOUND).scan.nii.gz
 	(printf 'stage\tseconds\n'; printf '%s\t%s\n' 'voxels and groups' "$$(cat $(NEURO)/predicted.body.seconds)" \
-	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" mtled "$$(cat $(NEURO)/$(NEURO_FIRST).u.seconds)" \
-	    warp "$$(cat $(NEURO)/$(NEURO_FIRST).scan.seconds)") > $@
+	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" 'identify.sh (load_found)' "$$(cat $(NEURO)/found.seconds)" \
+	    mtled "$$(cat $(NEURO)/$(NEURO_FOUND).u.seconds)" warp "$$(cat $(NEURO)/$(NEURO_FOUND).scan.seconds)") > $@
 
 # ---- pictures --------------------------------------------------------------------------------------------------------
 
@@ -162,7 +183,7 @@ $(NEURO)/slice.places: pipelines/neurosurgery.mk
 $(NEURO)/before.slice: $(NEURO_SCAN) $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
-$(NEURO)/$(NEURO_FIRST).slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
+$(NEURO)/$(NEURO_FOUND).slice $(NEURO)/true.slice: %.slice: %.scan.nii.gz $(NEURO)/slice.places $(NEURO_PROGRAMS)
 	sample -p $(NEURO)/slice.places -u mm $< > $@
 
 NEURO_CONTOUR = voxels -s z=$(NEURO_SLICE)mm -h 3mm -l $(NEURO_INPUT)/labels.tsv --surface ventricles -u mm $< > $@
@@ -171,10 +192,10 @@ $(NEURO)/before.contour: $(NEURO_LABELS) $(NEURO_INPUT)/labels.tsv $(NEURO_PROGR
 	@mkdir -p $(@D)
 	$(NEURO_CONTOUR)
 
-$(NEURO)/$(NEURO_FIRST).contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
+$(NEURO)/$(NEURO_FOUND).contour $(NEURO)/true.contour: %.contour: %.labels.nii.gz $(NEURO_INPUT)/labels.tsv $(NEURO_PROGRAMS)
 	$(NEURO_CONTOUR)
 
-NEURO_PARTS := before $(NEURO_FIRST) true
+NEURO_PARTS := before $(NEURO_FOUND) true
 
 $(NEURO)/slices.plot: $(NEURO_PARTS:%=$(NEURO)/%.slice) $(NEURO_SCRIPTS)/slice.awk
 	awk -f $(NEURO_SCRIPTS)/slice.awk $(filter %.slice,$^) > $@
@@ -186,17 +207,17 @@ $(NEURO)/distance.places: $(NEURO)/slice.places $(NEURO_LABELS) $(NEURO_PROGRAMS
 $(NEURO)/%.distance: $(NEURO)/%.u.dat $(NEURO)/distance.places $(NEURO_PROGRAMS)
 	interp -f u -p $(NEURO)/distance.places -u mm $< | mts print u - > $@
 
-$(NEURO)/distance.plot: $(NEURO)/distance.places $(patsubst %,$(NEURO)/%.distance,true $(NEURO_PREDICTIONS))
+$(NEURO)/distance.plot: $(NEURO)/distance.places $(patsubst %,$(NEURO)/%.distance,true $(NEURO_FIRST) $(NEURO_FOUND))
 	paste -d ' ' $^ | awk '\
 	    { print $$1, $$2, 1e3 * sqrt(($$4 - $$7)^2 + ($$5 - $$8)^2 + ($$6 - $$9)^2), 1e3 * sqrt(($$4 - $$10)^2 + ($$5 - $$11)^2 + ($$6 - $$12)^2) }' > $@
 
 $(NEURO)/slices.png: $(NEURO)/slices.plot $(NEURO)/distance.plot $(NEURO_PARTS:%=$(NEURO)/%.contour) $(NEURO_SCRIPTS)/slices.gp
-	gnuplot -e "folder='$(NEURO)'; out='$@'; prediction='$(NEURO_FIRST)'; seen='$(NEURO_SEEN)'" $(NEURO_SCRIPTS)/slices.gp
+	gnuplot -e "folder='$(NEURO)'; out='$@'; prediction='$(NEURO_FOUND)'; seen='$(NEURO_SEEN)'" $(NEURO_SCRIPTS)/slices.gp
 
 # The shift on the way: states of equilibrium at shares of the load.
 NEURO_FRAMES := 0 1 2 3 4 5
 
-$(NEURO)/shift.scene: $(NEURO_INPUT)/position.scene
+$(NEURO)/shift.scene: $(NEURO)/load.scene
 	@mkdir -p $(@D)
 	(cat $<; printf '\n[output]\nframes = $(lastword $(NEURO_FRAMES))\n') > $@
 

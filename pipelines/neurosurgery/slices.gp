@@ -47,10 +47,10 @@ stats folder."/distance.plot" using 3 nooutput
 set cbrange [0:STATS_max]
 set cbtics 1
 eval(place(1, 1))
-set title "distance from the true place, mm"
+set title "distance from the true place, mm: no load"
 plot folder."/distance.plot" using 1:2:3 with points pt 5 ps 1.3 lc palette notitle
 eval(place(2, 1))
-set title "with gravity"
+set title "with the weight that is found"
 set colorbox user horizontal origin 0.36,0.035 size 0.6,0.015
 plot folder."/distance.plot" using 1:2:4 with points pt 5 ps 1.3 lc palette notitle
 unset multiplot

@@ -1,5 +1,5 @@
-# Volumes of labels: awk -f volumes.awk LABELS REPORT..., a label table and what warp -v -i nearest says
-# of the images FROM_CORTEX, WITH_GRAVITY and TRUE.
+# Volumes of labels: awk -f volumes.awk -v titles=TITLES LABELS REPORT..., a label table and what warp -v -i nearest says of the predicted
+# images, which TITLES names (separated by tabs), and of the true one.
 
 BEGIN { OFS = "\t" }
 FNR == 1 { file++ }
@@ -7,11 +7,11 @@ file == 1 && !/^#/ { label[++count] = $1; name[$1] = $2; next }
 $2 == "label" { sub(":", "", $3); before[$3] = $4; after[file, $3] = $7 }
 
 END {
-    print "label, ml", "before", "from_cortex", "with_gravity", "true"
+    print "label, ml", "before", titles, "true"
     for (i = 1; i <= count; i++) {
         l = label[i]
         printf "%s\t%.1f", name[l], before[l]
-        for (f = 2; f <= 4; f++) {
+        for (f = 2; f < ARGC; f++) {
             if (!((f, l) in after)) {
                 print "volumes.awk: no volume of label " l " in report " f - 1 > "/dev/stderr"
                 exit 1
