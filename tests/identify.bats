@@ -88,6 +88,10 @@ value() { awk -F '\t' -v name="$1" -v column="$2" '$1 == name { print $column }'
     wrong 1 "'@E' is no column" -d 1 weight.tsv weight.scene table.mts measured.tsv
     printf 'name\tmean\tdeviation\ngx\t0\t3\ngy\t-4e9\t3\n' > heavy.tsv
     wrong 1 "trial: mtled: " -d 1 heavy.tsv known_E.scene table.mts measured.tsv
+    for wrong in "-j 0" "-q" "weight.tsv"; do
+        run -2 --separate-stderr bash "$identify" $wrong weight.tsv known_E.scene table.mts measured.tsv out
+        [[ "$stderr" == *"usage: identify.sh "* ]]
+    done
     # A point far from the body.
     sed '2s/^[0-9]*/500/' measured.tsv > outside.tsv
     run -2 --separate-stderr bash "$identify" -u mm -d 1 weight.tsv known_E.scene table.mts outside.tsv out

@@ -35,7 +35,7 @@ while getopts j:u:d: option; do
     esac
 done
 shift $((OPTIND - 1))
-[ $# -eq 5 ] || usage
+if [ $# -ne 5 ] || [[ ! $jobs =~ ^[1-9][0-9]*$ ]]; then usage; fi
 parameters=$1 template=$2 stream=$3 measured=$4 folder=$5
 for file in "$parameters" "$template" "$stream" "$measured"; do
     [ -f "$file" ] && [ -r "$file" ] || fail 2 "$file: cannot be read"
