@@ -32,7 +32,7 @@ static double angle_on_line(const struct labels *labels, const struct stuffing_o
     for (int k = 0; k < 3; k++) {
         int64_t node = stuffing->facet[facet * 3 + k];
         memcpy(x[k], stuffing->x + node * 3, sizeof x[k]);
-        if (!line_project(labels, options->keep, 3, label, x[k])) {
+        if (!line_project(labels, options->keep, options->spacing, 3, label, x[k])) {
             return 180.0;
         }
     }

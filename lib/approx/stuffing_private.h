@@ -183,7 +183,8 @@ struct shaping {
     const struct stuffing_kept *kept;
     struct stuffing *stuffing;
     struct stuffing_star star;
-    uint16_t (*rim)[3]; /* stuffing_rims */
+    uint16_t (*rim)[3]; /* stuffing_rims, */
+    double reach;       /* and how far a node may be off its rim: the spacing, m */
 };
 
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
@@ -204,9 +205,10 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
  * node meet. False where there is none near. */
 bool node_project(const struct shaping *shaping, int64_t node, double x[]);
 
-/* Move x to where all the labels meet, also from several voxels off. False where there is no such place. */
-bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
-                  double x[]);
+/* Move x to where all the labels meet, each of them no farther than `reach`, m, or six voxels. False where
+ * there is no such place. */
+bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
+                  const uint16_t label[], double x[]);
 
 /* The label beyond an interface: one label, or any that is kept, or any that is not. */
 struct interface_beyond {
