@@ -195,6 +195,55 @@ double interface_distance(const struct labels *labels, const double x[],
     return least;
 }
 
+/* Move x onto the rim that a ball cuts into the surface of the body, which is no farther than `reach`: in
+ * turn onto the surface and along it onto the ball. */
+static bool ball_project(const struct shaping *shaping, const struct label_ball *ball, double x[])
+{
+    const struct labels *labels = &shaping->labels;
+    int dim = labels->dim;
+    double voxel = labels_voxel(labels), y[3] = {0}, off = INFINITY;
+    memcpy(y, x, (size_t)dim * sizeof *x);
+    for (int i = 0; i < 20 && project_to_surface(labels, shaping->keep, shaping->reach, y); i++) {
+        double normal[3] = {0}, along[3] = {0}, from[3] = {0};
+        struct label_mix mix;
+        labels_mix(labels, y, &mix);
+        int32_t within = label_largest(&mix, shaping->keep, true);
+        int32_t outside = label_largest(&mix, shaping->keep, false);
+        vector_subtract(dim, y, ball->centre, from);
+        off = vector_length(dim, from) - ball->radius;
+        if (fabs(off) <= 1e-3 * voxel || within < 0 || outside < 0) {
+            break;
+        }
+        (void)labels_difference(labels, y, within, outside, normal);
+        double share = vector_dot(dim, from, normal) / vector_dot(dim, normal, normal);
+        for (int d = 0; d < dim; d++) {
+            along[d] = from[d] - share * normal[d];
+        }
+        double step = off * vector_length(dim, from) / vector_dot(dim, along, along);
+        for (int d = 0; d < dim; d++) {
+            y[d] -= step * along[d];
+        }
+        if (!(vector_distance(dim, x, y) <= shaping->reach)) {
+            return false;
+        }
+    }
+    if (fabs(off) > 1e-3 * voxel) {
+        return false;
+    }
+    memcpy(x, y, (size_t)dim * sizeof *x);
+    return true;
+}
+
+bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[])
+{
+    const struct labels *parts = shaping->parts;
+    int32_t later = rim[0] > rim[1] ? rim[0] : rim[1];
+    if (parts->ball != NULL && parts->ball[later].radius > 0) {
+        return ball_project(shaping, &parts->ball[later], x);
+    }
+    return line_project(parts, shaping->keep, shaping->reach, 3, rim, x);
+}
+
 bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
                   const uint16_t label[], double x[])
 {
