@@ -1,5 +1,5 @@
 #!/bin/bash
-# One body meshed by gmsh and from a label image with about as many nodes, five sizes each: bash meshes.sh BODY HELPERS > BODY.tsv, with
+# One body meshed by gmsh and from a label image with about as many nodes, of several sizes: bash meshes.sh BODY HELPERS > BODY.tsv, with
 # the folder of tests/helper's programs. `off_mm` is the mean distance of a solution from a reference, `apart_mm` its mean distance from
 # the solutions on the meshes of gmsh, other than itself.
 #
@@ -7,7 +7,7 @@
 # brain: the whole brain without its skull, of examples/brain3d; the reference is of mixed elements. The image is filled from the surfaces
 # that gmsh meshes anew, and so is the mask of the craniotomy.
 #
-# Sizes are 4 to 6 % apart: gmsh meshes a surface anew, with the rims on it, only where the number of nodes on these changes.
+# The brain's sizes are 4 to 6 % apart: gmsh meshes a surface anew, with the rims on it, only where the number of nodes on these changes.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -23,8 +23,8 @@ told() { "$@" 2> said || { cat said >&2; exit 1; }; }
 
 prepare_ball() {
     length=h
-    sizes=(4.6 4.8 5 5.2 5.4)
-    spacings=(6.2 6.5 6.8 7.1 7.4)
+    sizes=(4.6 4.7 4.8 4.9 5 5.1 5.2 5.3 5.4)
+    spacings=(6.2 6.35 6.5 6.65 6.8 6.95 7.1 7.25 7.4)
     cp "$here/ball.geo" body.geo
     cp "$here/ball.scene" body.scene
     "$helpers/phantom" sphere 1 0.75 > body.nii.gz
