@@ -4,11 +4,12 @@
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
 # compression's status, steps and least J, and from which share of the load on the body folds. Bodies of random blobs have crevices of some
 # voxels, whose walls meet under the push: such a body is computed once more, with contact with itself, and steps are those of both runs. Then
-# one body, meshed by gmsh and from an image: meshes.sh.
+# a ball and the whole brain, meshed by gmsh and from images: meshes.sh.
 VOXELS_OUT := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
 VOXELS_PHANTOM := $(BUILD)/tests/helper/phantom
+VOXELS_FILLED := $(BUILD)/tests/helper/filled
 VOXELS_TOOLS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled mts)
 
 # What voxels is told, where it is not a spacing of 5 mm.
@@ -24,8 +25,7 @@ voxels: $(VOXELS_OUT)/voxels.tsv $(VOXELS_OUT)/meshes.tsv
 	@awk -F '\t' 'NR > 1 { n++; good += $$4 == "yes" && $$5 >= 8 && $$6 <= 165; near += $$7 < 1 && $$7 > -1; ran += $$12 == 0; folds += $$15 != "-" } \
 	    END { printf "\nof %d: valid, angles within 8 to 165 degrees: %d; volumes within 1 %%: %d; compressed: %d, of which fold: %d\n", n, good, near, ran, folds }' $<
 	@echo
-	@awk -F '\t' '{ printf "%-10s %6s %8s %8s\n", $$1, $$2, $$3, $$4 } /^gmsh/ { of_gmsh += $$4 / 3 } /^image/ { of_image += $$4 / 3 } \
-	    END { printf "\nfrom meshes of gmsh, by how far they are from each other: %.2f\n", of_image / of_gmsh }' $(VOXELS_OUT)/meshes.tsv
+	@awk -F '\t' '{ printf "%-6s %-6s %14s %13s %8s %8s %14s %6s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $(VOXELS_OUT)/meshes.tsv
 
 $(VOXELS_OUT)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -53,10 +53,13 @@ $(VOXELS_OUT)/voxels.tsv: $(VOXELS_SHAPES:%=$(VOXELS_OUT)/%.row) pipelines/voxel
 	    awk -F '\t' -v OFS='\t' '{ from = "-"; if (match($$15, /folds from [0-9.]+/)) from = substr($$15, RSTART + 11, RLENGTH - 11); $$15 = from OFS $$15; print }' \
 	    $(filter %.row,$^)) > $@
 
-# Small voxels, so that it is the ball of ball.geo.
-$(VOXELS_OUT)/ball.nii.gz: $(VOXELS_PHANTOM)
+VOXELS_BODIES := ball brain
+VOXELS_BRAIN3D := $(addprefix examples/brain3d/,brain3d.geo brain3d_surfaces.msh.gz brain3d_free.tsv.gz free.scene load.tsv)
+$(VOXELS_BODIES:%=$(VOXELS_OUT)/meshes-%.tsv): $(VOXELS_OUT)/meshes-%.tsv: pipelines/voxels/meshes.sh pipelines/voxels/ball.geo \
+        pipelines/voxels/ball.scene pipelines/voxels/surface.awk pipelines/reference.awk $(VOXELS_BRAIN3D) $(VOXELS_PHANTOM) $(VOXELS_FILLED) \
+        $(addprefix $(BUILD)/bin/,nodes voxels mtled fieldcmp mts)
 	@mkdir -p $(@D)
-	$< sphere 1 0.75 > $@
+	bash $< $* $(BUILD)/tests/helper > $@
 
-$(VOXELS_OUT)/meshes.tsv: $(VOXELS_OUT)/ball.nii.gz pipelines/voxels/meshes.sh pipelines/voxels/ball.geo $(VOXELS_TOOLS) $(addprefix $(BUILD)/bin/,nodes fieldcmp)
-	bash pipelines/voxels/meshes.sh $< > $@
+$(VOXELS_OUT)/meshes.tsv: pipelines/voxels/meshes.awk $(VOXELS_BODIES:%=$(VOXELS_OUT)/meshes-%.tsv)
+	awk -f $^ > $@

@@ -174,9 +174,12 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
 
 @test "voxels: an image of which no cells are made is no row" {
     mkdir -p build/tests/helper
-    stand_in good > build/tests/helper/phantom
-    chmod +x build/tests/helper/phantom
-    fails voxels voxels VOXELS_SHAPES=sphere -o "$fake/tests/helper/phantom" -- voxels/sphere.row voxels/voxels.tsv
+    for helper in phantom filled; do
+        stand_in good > build/tests/helper/$helper
+        chmod +x build/tests/helper/$helper
+    done
+    fails voxels voxels VOXELS_SHAPES=sphere -o "$fake/tests/helper/phantom" -o "$fake/tests/helper/filled" -- \
+        voxels/sphere.row voxels/voxels.tsv voxels/meshes-ball.tsv voxels/meshes.tsv
 }
 
 @test "neurosurgery: whichever program fails" {

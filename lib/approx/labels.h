@@ -7,6 +7,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct label_ball {
+    double centre[3], radius; /* dim coordinates, m; radius 0: none */
+};
+
 /* The grid. Label 0 is the outside, also beyond the grid; along an axis with one voxel it extends without
  * end. Points have `dim` world coordinates, m: in 2D along the world axes `axis`, at `across` on the third.
  */
@@ -14,7 +18,9 @@ struct labels {
     int64_t size[3];
     const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
     int32_t count;
-    double to_voxel[3][4]; /* (world, m, 1) to voxel index, voxel centres */
+    const struct label_ball *ball; /* count: balls that labels which are parts of others are made by, the
+                                      later the higher; NULL: none */
+    double to_voxel[3][4];         /* (world, m, 1) to voxel index, voxel centres */
     int dim;
     int axis[2];
     double across;

@@ -129,8 +129,8 @@ static void fit(const struct shaping *shaping)
         }
         memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
         memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!(rim[0] != 0 && line_project(shaping->parts, keep, 3, rim, target)) &&
-            !line_project(labels, keep, count, label, target)) {
+        if (!(rim[0] != 0 && rim_project(shaping, rim, target)) &&
+            !line_project(labels, keep, 0, count, label, target)) {
             label[count] = (uint16_t)labels_at(labels, stuffing->x + n * dim);
             if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
                 memcpy(target, stuffing->x + n * dim, (size_t)dim * sizeof *target);
@@ -216,7 +216,7 @@ static bool find_astray(const struct shaping *shaping, int64_t node, double targ
     const double *x = shaping->stuffing->x + node * dim;
     const uint16_t *rim = shaping->rim[node];
     memcpy(target, x, (size_t)dim * sizeof *target);
-    if (rim[0] != 0 && line_project(shaping->parts, shaping->keep, 3, rim, target)) {
+    if (rim[0] != 0 && rim_project(shaping, rim, target)) {
         if (vector_distance(dim, target, x) > most) {
             return true;
         }
@@ -262,10 +262,14 @@ enum status stuffing_improve(const struct labels *parts, const struct stuffing_o
                              const struct stuffing_kept *kept, struct stuffing *stuffing, struct error *error)
 {
     enum status status;
-    struct shaping shaping = {
-        .parts = parts, .labels = *parts, .keep = options->keep, .kept = kept, .stuffing = stuffing};
+    struct shaping shaping = {.parts = parts,
+                              .labels = *parts,
+                              .keep = options->keep,
+                              .kept = kept,
+                              .stuffing = stuffing,
+                              .reach = options->spacing};
     TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
-    TRY(stuffing_rims(parts, options, stuffing, &shaping.rim, error));
+    TRY(stuffing_rims(options, &shaping, &shaping.rim, error));
     TRY(star_make(stuffing, kept->wanted, options->whole, &shaping.star, error));
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
         fit(&shaping);

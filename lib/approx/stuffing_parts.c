@@ -25,14 +25,14 @@ struct facets_at {
 
 /* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
  * put there. */
-static double angle_on_line(const struct labels *labels, const struct stuffing_options *options,
-                            const struct stuffing *stuffing, int64_t facet, const uint16_t label[3])
+static double angle_on_line(const struct shaping *shaping, int64_t facet, const uint16_t label[3])
 {
+    const struct stuffing *stuffing = shaping->stuffing;
     double x[3][3], most = 0.0;
     for (int k = 0; k < 3; k++) {
         int64_t node = stuffing->facet[facet * 3 + k];
         memcpy(x[k], stuffing->x + node * 3, sizeof x[k]);
-        if (!line_project(labels, options->keep, 3, label, x[k])) {
+        if (!rim_project(shaping, label, x[k])) {
             return 180.0;
         }
     }
@@ -72,9 +72,10 @@ static int64_t find_lone(const struct stuffing_options *options, const struct st
 }
 
 /* With each change two edges of the rim give way to one, so there is an end. */
-static void straighten(const struct labels *labels, const struct stuffing_options *options,
-                       const struct facets_at *at, struct stuffing *stuffing)
+static void straighten(const struct stuffing_options *options, const struct shaping *shaping,
+                       const struct facets_at *at)
 {
+    struct stuffing *stuffing = shaping->stuffing;
     bool changes = true;
     while (changes) {
         changes = false;
@@ -86,7 +87,7 @@ static void straighten(const struct labels *labels, const struct stuffing_option
             }
             int32_t *side = stuffing->side + 2 * facet;
             const uint16_t label[3] = {(uint16_t)side[0], (uint16_t)beyond, (uint16_t)side[1]};
-            if (angle_on_line(labels, options, stuffing, facet, label) > most_angle) {
+            if (angle_on_line(shaping, facet, label) > most_angle) {
                 side[0] = beyond;
                 changes = true;
             }
@@ -111,9 +112,10 @@ static void find_rim(const struct stuffing_options *options, const struct stuffi
     }
 }
 
-enum status stuffing_rims(const struct labels *labels, const struct stuffing_options *options,
-                          struct stuffing *stuffing, uint16_t (**rim)[3], struct error *error)
+enum status stuffing_rims(const struct stuffing_options *options, const struct shaping *shaping,
+                          uint16_t (**rim)[3], struct error *error)
 {
+    struct stuffing *stuffing = shaping->stuffing;
     enum status status;
     struct facets_at at = {0};
     TRY(NEW_ARRAY(rim, stuffing->node_count, error));
@@ -123,7 +125,7 @@ enum status stuffing_rims(const struct labels *labels, const struct stuffing_opt
     TRY(lists_by_row(stuffing->facet_count, stuffing->dim, stuffing->facet, stuffing->node_count, &at.ptr,
                      &at.facet, error));
     if (stuffing->dim == 3) {
-        straighten(labels, options, &at, stuffing);
+        straighten(options, shaping, &at);
     }
     for (int64_t n = 0; n < stuffing->node_count; n++) {
         find_rim(options, stuffing, &at, n, (*rim)[n]);

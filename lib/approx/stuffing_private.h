@@ -122,12 +122,6 @@ MUST_CHECK enum status star_make(const struct stuffing *stuffing, const bool *wa
                                  struct stuffing_star *star, struct error *error);
 void star_free(struct stuffing_star *star);
 
-/* (*rim)[node_count], allocated: the two parts whose facets meet at a node, and what lies beyond; zeros where
- * no rim is. In 3D facets are first named anew, stuffing->side, where the rim turns so sharply at a node that
- * no cell has room behind it: where a facet is the only one of its part there, and flat on the rim. */
-MUST_CHECK enum status stuffing_rims(const struct labels *labels, const struct stuffing_options *options,
-                                     struct stuffing *stuffing, uint16_t (**rim)[3], struct error *error);
-
 /* The labels with whole[] in place of each: result->label is allocated, or that of `labels` where there are
  * no parts. */
 MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
@@ -183,8 +177,15 @@ struct shaping {
     const struct stuffing_kept *kept;
     struct stuffing *stuffing;
     struct stuffing_star star;
-    uint16_t (*rim)[3]; /* stuffing_rims */
+    uint16_t (*rim)[3]; /* stuffing_rims, */
+    double reach;       /* and how far a node may be off its rim: the spacing, m */
 };
+
+/* (*rim)[node_count], allocated: the two parts whose facets meet at a node, and what lies beyond; zeros where
+ * no rim is. In 3D facets are first named anew, stuffing->side, where the rim turns so sharply at a node that
+ * no cell has room behind it: where a facet is the only one of its part there, and flat on the rim. */
+MUST_CHECK enum status stuffing_rims(const struct stuffing_options *options, const struct shaping *shaping,
+                                     uint16_t (**rim)[3], struct error *error);
 
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
  * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. Of cells
@@ -204,9 +205,13 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
  * node meet. False where there is none near. */
 bool node_project(const struct shaping *shaping, int64_t node, double x[]);
 
-/* Move x to where all the labels meet, also from several voxels off. False where there is no such place. */
-bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
-                  double x[]);
+/* Move x to where all the labels meet, each of them no farther than `reach`, m, or six voxels. False where
+ * there is no such place. */
+bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
+                  const uint16_t label[], double x[]);
+
+/* Move x onto a rim: that of a ball, or where the three labels meet. False where there is none near. */
+bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[]);
 
 /* The label beyond an interface: one label, or any that is kept, or any that is not. */
 struct interface_beyond {

@@ -79,14 +79,18 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
     return beyond->label >= 0 ? label == beyond->label : beyond->keep[label] == beyond->kept;
 }
 
+/* How far an interface is searched for, voxels. */
+static const double most_voxels = 6.0;
+
 /* The least distance, in steps of a tenth of a voxel, at which a label beyond lies in some direction, and
- * that place; infinity where there is none within six voxels. */
+ * that place; infinity where there is none within `reach`. */
 static double search_beyond(const struct labels *labels, const double x[],
-                            const struct interface_beyond *beyond, double place[3])
+                            const struct interface_beyond *beyond, double reach, double place[3])
 {
     int dim = labels->dim;
     double voxel = labels_voxel(labels);
-    for (int step = 1; step <= 60; step++) {
+    int steps = (int)ceil(reach / (0.1 * voxel) - 1e-6);
+    for (int step = 1; step <= steps; step++) {
         for (int direction = 0; direction < stuffing_directions(dim); direction++) {
             double norm = stuffing_direction(dim, direction, place);
             for (int d = 0; d < dim; d++) {
@@ -101,10 +105,11 @@ static double search_beyond(const struct labels *labels, const double x[],
 }
 
 /* Move x to the nearest place, of those that search_beyond looks at, where what lies beyond begins. */
-static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double x[])
+static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double reach,
+                          double x[])
 {
     double place[3] = {0}, low = 0, high = 1;
-    if (!(search_beyond(labels, x, beyond, place) < INFINITY)) {
+    if (!(search_beyond(labels, x, beyond, reach, place) < INFINITY)) {
         return false;
     }
     for (int step = 0; step < 12; step++) {
@@ -119,7 +124,7 @@ static bool search_change(const struct labels *labels, const struct interface_be
 /* Move x onto the surface of the body, whatever label lies there: where the largest share of a label that is
  * kept equals that of the others. Far from it and where Newton's method fails it is searched for. False where
  * there is none near. */
-static bool project_to_surface(const struct labels *labels, const bool *keep, double x[])
+static bool project_to_surface(const struct labels *labels, const bool *keep, double reach, double x[])
 {
     const struct interface_beyond other = {-1, keep, !keep[labels_at(labels, x)]};
     struct label_mix mix;
@@ -127,7 +132,7 @@ static bool project_to_surface(const struct labels *labels, const bool *keep, do
     int32_t within = label_largest(&mix, keep, true), outside = label_largest(&mix, keep, false);
     const uint16_t pair[2] = {(uint16_t)within, (uint16_t)outside};
     bool near = fmin(label_share(&mix, within), label_share(&mix, outside)) >= least_share;
-    return (near && interface_project(labels, 2, pair, x)) || search_change(labels, &other, x);
+    return (near && interface_project(labels, 2, pair, x)) || search_change(labels, &other, reach, x);
 }
 
 bool node_project(const struct shaping *shaping, int64_t node, double x[])
@@ -136,7 +141,7 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
     const struct stuffing_star *star = &shaping->star;
     for (int i = 0; i < star->labels[node]; i++) {
         if (!shaping->keep[star->label[node][i]]) {
-            return project_to_surface(labels, shaping->keep, x);
+            return project_to_surface(labels, shaping->keep, most_voxels * labels_voxel(labels), x);
         }
     }
     if (interface_project(labels, star->labels[node], star->label[node], x)) {
@@ -151,7 +156,8 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
         memcpy(place, x, (size_t)labels->dim * sizeof *place);
         pair[1] = star->label[node][i];
         if (pair[1] != pair[0] &&
-            (interface_project(labels, 2, pair, place) || search_change(labels, &region, place)) &&
+            (interface_project(labels, 2, pair, place) ||
+             search_change(labels, &region, most_voxels * labels_voxel(labels), place)) &&
             vector_distance(labels->dim, place, x) < least) {
             least = vector_distance(labels->dim, place, x);
             memcpy(best, place, sizeof best);
@@ -182,16 +188,67 @@ double interface_distance(const struct labels *labels, const double x[],
     }
     /* Newton's method does not go to the nearest place. */
     memcpy(place, x, (size_t)labels->dim * sizeof *place);
-    if (!(least < labels_voxel(labels) / 2) && search_change(labels, beyond, place)) {
+    if (!(least < labels_voxel(labels) / 2) &&
+        search_change(labels, beyond, most_voxels * labels_voxel(labels), place)) {
         least = fmin(least, vector_distance(labels->dim, place, x));
     }
     return least;
 }
 
-bool line_project(const struct labels *labels, const bool *keep, int count, const uint16_t label[],
-                  double x[])
+/* Move x onto the rim that a ball cuts into the surface of the body, which is no farther than `reach`: in
+ * turn onto the surface and along it onto the ball. */
+static bool ball_project(const struct shaping *shaping, const struct label_ball *ball, double x[])
+{
+    const struct labels *labels = &shaping->labels;
+    int dim = labels->dim;
+    double voxel = labels_voxel(labels), y[3] = {0}, off = INFINITY;
+    memcpy(y, x, (size_t)dim * sizeof *x);
+    for (int i = 0; i < 20 && project_to_surface(labels, shaping->keep, shaping->reach, y); i++) {
+        double normal[3] = {0}, along[3] = {0}, from[3] = {0};
+        struct label_mix mix;
+        labels_mix(labels, y, &mix);
+        int32_t within = label_largest(&mix, shaping->keep, true);
+        int32_t outside = label_largest(&mix, shaping->keep, false);
+        vector_subtract(dim, y, ball->centre, from);
+        off = vector_length(dim, from) - ball->radius;
+        if (fabs(off) <= 1e-3 * voxel || within < 0 || outside < 0) {
+            break;
+        }
+        (void)labels_difference(labels, y, within, outside, normal);
+        double share = vector_dot(dim, from, normal) / vector_dot(dim, normal, normal);
+        for (int d = 0; d < dim; d++) {
+            along[d] = from[d] - share * normal[d];
+        }
+        double step = off * vector_length(dim, from) / vector_dot(dim, along, along);
+        for (int d = 0; d < dim; d++) {
+            y[d] -= step * along[d];
+        }
+        if (!(vector_distance(dim, x, y) <= shaping->reach)) {
+            return false;
+        }
+    }
+    if (fabs(off) > 1e-3 * voxel) {
+        return false;
+    }
+    memcpy(x, y, (size_t)dim * sizeof *x);
+    return true;
+}
+
+bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[])
+{
+    const struct labels *parts = shaping->parts;
+    int32_t later = rim[0] > rim[1] ? rim[0] : rim[1];
+    if (parts->ball != NULL && parts->ball[later].radius > 0) {
+        return ball_project(shaping, &parts->ball[later], x);
+    }
+    return line_project(parts, shaping->keep, shaping->reach, 3, rim, x);
+}
+
+bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
+                  const uint16_t label[], double x[])
 {
     double y[3] = {0};
+    reach = fmax(reach, most_voxels * labels_voxel(labels));
     memcpy(y, x, (size_t)labels->dim * sizeof *x);
     if (interface_project(labels, count, label, x)) {
         return true;
@@ -204,11 +261,12 @@ bool line_project(const struct labels *labels, const bool *keep, int count, cons
     for (int round = 0; round < 4; round++) {
         for (int i = 0; i < count; i++) {
             const struct interface_beyond region = {label[i], keep, true};
-            if (keep[label[i]] && labels_at(labels, y) != label[i] && !search_change(labels, &region, y)) {
+            if (keep[label[i]] && labels_at(labels, y) != label[i] &&
+                !search_change(labels, &region, reach, y)) {
                 return false;
             }
         }
-        if (boundary && !project_to_surface(labels, keep, y)) {
+        if (boundary && !project_to_surface(labels, keep, reach, y)) {
             return false;
         }
     }

@@ -1,62 +1,86 @@
 #!/bin/bash
-# One body, a ball held at one opening and pressed in at the other, meshed by gmsh and from a label image with as many nodes, three
-# sizes each: bash meshes.sh IMAGE > meshes.tsv. `off` is the mean distance from a solution on a fine mesh of gmsh, `apart` the mean
-# distance from the three of gmsh, other than itself, both in mm.
+# One body meshed by gmsh and from a label image with about as many nodes, of several sizes: bash meshes.sh BODY HELPERS > BODY.tsv, with
+# the folder of tests/helper's programs. `off_mm` is the mean distance of a solution from a reference, `apart_mm` its mean distance from
+# the solutions on the meshes of gmsh, other than itself.
+#
+# ball: held at one opening and pressed in at the other; the reference is that of a fine mesh of gmsh.
+# brain: the whole brain without its skull, of examples/brain3d; the reference is of mixed elements. The image is filled from the surfaces
+# that gmsh meshes anew, and so is the mask of the craniotomy.
+#
+# The brain's sizes are 4 to 6 % apart: gmsh meshes a surface anew, with the rims on it, only where the number of nodes on these changes.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
-image=$(realpath "$1")
+body=$1
+helpers=$(realpath "$2")
+brain3d=$here/../../examples/brain3d
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# solve NAME: NAME.mts to NAME.dat.
-solve() {
-    cat > "$1.scene" << END
-[scene]
-dim = 3
-analysis = quasi-static
-[material all]
-region = $(mts list "$1.mts" | sed -nE 's/^cells\.region.*names=([^ ,]*).*/\1/p')
-model = neo-hookean
-E = 3000
-nu = 0.49
-rho = 1000
-[displacement bottom]
-facets = bottom
-components = 0, 0, 0
-[displacement top]
-facets = top
-components = 0.001, 0, -0.004
-[solver]
-tolerance = 1e-5
-END
-    mtled -q "$1.scene" "$1.mts" > "$1.dat" 2> "$1.log" || { cat "$1.log" >&2; exit 1; }
+# told COMMAND...: what it says is shown where it fails.
+told() { "$@" 2> said || { cat said >&2; exit 1; }; }
+
+prepare_ball() {
+    length=h
+    sizes=(4.6 4.7 4.8 4.9 5 5.1 5.2 5.3 5.4)
+    spacings=(6.2 6.35 6.5 6.65 6.8 6.95 7.1 7.25 7.4)
+    cp "$here/ball.geo" body.geo
+    cp "$here/ball.scene" body.scene
+    "$helpers/phantom" sphere 1 0.75 > body.nii.gz
+    printf '1 ball\n' > names
+    of_image=(--part "top=ball:0,0,28mm,14mm" --part "bottom=ball:0,0,-28mm,16mm")
+    of_gmsh fine 1.8
+    mv fine.dat reference.dat
 }
 
-# of_gmsh NAME SIZE and of_image NAME SPACING
+prepare_brain() {
+    length=lc
+    sizes=(12.4 13.1 13.8 14.6 15.4)
+    spacings=(16 16.7 17.4 18.1 18.8)
+    gzip -dc "$brain3d/brain3d_surfaces.msh.gz" > brain3d_surfaces.msh
+    gzip -dc "$brain3d/brain3d_free.tsv.gz" | awk -f "$here/../reference.awk" > reference.dat
+    cp "$brain3d/brain3d.geo" body.geo
+    cp "$brain3d/free.scene" body.scene
+    cp "$brain3d/load.tsv" .
+    triangles brain 1 100
+    triangles ventricles 201 218
+    triangles tumour 301 306
+    # From 8 mm within the surface to 16 mm beyond it, along the axis of the opening.
+    triangles craniotomy 100 100 -v along=7.838,1.273,0.97
+    "$helpers/filled" 1 1 brain.tsv 3 ventricles.tsv 2 tumour.tsv > body.nii.gz
+    "$helpers/filled" 1 0 brain.tsv 1 craniotomy.tsv > mask.nii.gz
+    printf '1 brain\n2 tumour\n3 ventricles -\n' > names
+    # gmsh's meshes are finer there, too.
+    of_image=(--fine "9.5mm:ventricles,tumour" --part craniotomy=mask.nii.gz)
+}
+
+# triangles NAME FIRST LAST [OPTIONS OF AWK]: of the brain's surfaces of these numbers
+triangles() { awk -f "$here/surface.awk" -v first="$2" -v last="$3" "${@:4}" brain3d_surfaces.msh > "$1.tsv"; }
+
+# of_gmsh NAME SIZE and of_image NAME SPACING: NAME.dat
 of_gmsh() {
-    gmsh -3 -v 1 -nt 1 -setnumber h "$2" "$here/ball.geo" -o "$1.msh" > /dev/null
-    nodes -u mm "$1.msh" > "$1.mts" 2> "$1.log" || { cat "$1.log" >&2; exit 1; }
-    solve "$1"
+    gmsh -3 -v 1 -nt 1 -setnumber "$length" "$2" body.geo -o "$1.msh" > /dev/null
+    told nodes -u mm "$1.msh" > "$1.mts"
+    told mtled -q body.scene "$1.mts" > "$1.dat"
 }
 of_image() {
-    voxels -h "$2mm" --part top=ball:0,0,28mm,14mm --part bottom=ball:0,0,-28mm,16mm "$image" > "$1.mts"
-    solve "$1"
+    told voxels -h "$2mm" -l names "${of_image[@]}" body.nii.gz > "$1.mts"
+    told mtled -q body.scene "$1.mts" > "$1.dat"
 }
-mean() { fieldcmp --skip-outside "$1.dat" "$2.dat" | awk -F '\t' '$1 == "avg" { print 1e3 * $2; found = 1 } END { exit !found }'; }
+mean() { told fieldcmp --skip-outside "$1.dat" "$2.dat" | awk -F '\t' '$1 == "avg" { print 1e3 * $2; found = 1 } END { exit !found }'; }
 
-of_gmsh fine 1.8
-for size in 4.8 5 5.2; do of_gmsh "gmsh-$size" $size; done
-for spacing in 6.2 6.4 6.6; do of_image "image-$spacing" $spacing; done
-printf 'mesh\tnodes\toff_mm\tapart_mm\n'
-for name in gmsh-{4.8,5,5.2} image-{6.2,6.4,6.6}; do
+"prepare_$body"
+for size in "${sizes[@]}"; do of_gmsh "gmsh-$size" "$size"; done
+for spacing in "${spacings[@]}"; do of_image "image-$spacing" "$spacing"; done
+printf 'body\tmesh\tsize_mm\tnodes\toff_mm\tapart_mm\n'
+for name in "${sizes[@]/#/gmsh-}" "${spacings[@]/#/image-}"; do
     apart=()
-    for other in gmsh-{4.8,5,5.2}; do
+    for other in "${sizes[@]/#/gmsh-}"; do
         [ "$name" = "$other" ] || { one=$(mean "$name" "$other"); apart+=("$one"); }
     done
-    off=$(mean "$name" fine)
+    off=$(mean "$name" reference)
     nodes=$(mts list "$name.dat" | awk -F '\t' '$1 == "nodes.x" { print $3 }')
-    printf '%s\n' "${apart[@]}" | awk -v OFS='\t' -v name="$name" -v nodes="$nodes" -v off="$off" '
-        { sum += $1 } END { print name, nodes, sprintf("%.4f", off), sprintf("%.4f", sum / NR) }'
+    printf '%s\n' "${apart[@]}" | awk -v OFS='\t' -v body="$body" -v name="$name" -v nodes="$nodes" -v off="$off" '
+        { sum += $1 } END { sub(/-/, OFS, name); print body, name, nodes, sprintf("%.4f", off), sprintf("%.4f", sum / NR) }'
 done

@@ -150,6 +150,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&image->region, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->ball, image->labels.count, &error));
     for (int32_t l = 0; l < image->labels.count; l++) {
         image->region[l] = l;
         image->part_of[l] = -1;
@@ -351,7 +352,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
 
 void label_image_free(struct label_image *image)
 {
-    FREE_ALL(image->voxel, image->keep, image->volume, image->region, image->part_of);
+    FREE_ALL(image->voxel, image->keep, image->volume, image->region, image->part_of, image->ball);
     for (int32_t p = 0; p < image->part_count; p++) {
         free(image->part[p]);
     }

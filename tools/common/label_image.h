@@ -20,6 +20,7 @@ struct label_image {
     struct label_table table; /* label l, at least 1, is table.name[l - 1]; higher ones are parts: */
     int32_t *region;          /* labels.count: the label whose region it is of */
     int32_t *part_of;         /* labels.count: number of its part, -1: none */
+    struct label_ball *ball;  /* labels.count: its ball, if it has one */
     int32_t part_count;
     char **part;    /* part_count: names */
     bool *keep;     /* labels.count */

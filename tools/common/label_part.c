@@ -7,8 +7,7 @@
 
 /* A ball, or the voxels of a mask that are not 0. */
 struct place {
-    bool is_ball;
-    double centre[3], radius; /* m */
+    struct label_ball ball;
     struct image mask;
     double to_voxel[3][4]; /* of the mask */
 };
@@ -25,12 +24,12 @@ static void world_of(const struct label_image *image, int64_t voxel, double worl
 static bool is_within(const struct place *place, const struct labels *labels, const double world[3])
 {
     double square = 0, index[3], value[4];
-    for (int d = 0; d < labels->dim && place->is_ball; d++) {
-        double step = world[labels->dim == 3 ? d : labels->axis[d]] - place->centre[d];
+    for (int d = 0; d < labels->dim; d++) {
+        double step = world[labels->dim == 3 ? d : labels->axis[d]] - place->ball.centre[d];
         square += step * step;
     }
-    if (place->is_ball) {
-        return square <= place->radius * place->radius;
+    if (place->ball.radius > 0) {
+        return square <= place->ball.radius * place->ball.radius;
     }
     image_map(&place->to_voxel[0][0], world, index);
     return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
@@ -59,9 +58,8 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
         tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted, the radius above 0", text,
                   dim + 1);
     }
-    memcpy(place->centre, value, sizeof place->centre);
-    place->radius = value[dim];
-    place->is_ball = true;
+    memcpy(place->ball.centre, value, sizeof place->ball.centre);
+    place->ball.radius = value[dim];
     free(copy);
 }
 
@@ -81,7 +79,8 @@ static void check_name(const struct tool *tool, const struct label_image *image,
 }
 
 /* The label of voxels of a region in the last part, added where it is new. */
-static int32_t part_label(const struct tool *tool, struct label_image *image, int32_t region)
+static int32_t part_label(const struct tool *tool, const struct label_ball *ball, struct label_image *image,
+                          int32_t region)
 {
     int32_t count = image->labels.count;
     for (int32_t l = image->table.name_count + 1; l < count; l++) {
@@ -98,11 +97,15 @@ static int32_t part_label(const struct tool *tool, struct label_image *image, in
     }
     bool *keep = array_grow(image->keep, count + 1, sizeof *keep);
     double *volume = array_grow(image->volume, count + 1, sizeof *volume);
-    if (!grown || keep == NULL || volume == NULL) {
+    struct label_ball *balls = array_grow(image->ball, count + 1, sizeof *balls);
+    if (!grown || keep == NULL || volume == NULL || balls == NULL) {
         TOOL_TRY(tool, fail_memory(&error, "labels"));
     }
     image->keep = keep;
     image->volume = volume;
+    image->ball = balls;
+    image->labels.ball = balls;
+    image->ball[count] = *ball;
     image->keep[count] = true;
     image->volume[count] = 0;
     image->region[count] = region;
@@ -119,7 +122,7 @@ static void make_part(const struct tool *tool, const struct place *place, struct
         double world[3];
         world_of(image, v, world);
         if (image->keep[image->voxel[v]] && is_within(place, &image->labels, world)) {
-            int32_t label = part_label(tool, image, image->region[image->voxel[v]]);
+            int32_t label = part_label(tool, &place->ball, image, image->region[image->voxel[v]]);
             image->volume[image->voxel[v]] -= image->voxel_volume;
             image->volume[label] += image->voxel_volume;
             image->voxel[v] = (uint16_t)label;
@@ -134,7 +137,7 @@ static void make_part(const struct tool *tool, const struct place *place, struct
 
 static void add_part(const struct tool *tool, const char *text, struct label_image *image)
 {
-    struct place place = {.is_ball = false};
+    struct place place = {0};
     size_t length = strcspn(text, "=");
     if (text[length] == '\0') {
         tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE", text);
