@@ -245,6 +245,16 @@ static void note_hinged(const struct run *run, const struct bodies *bodies)
     }
 }
 
+/* Bodies from number `first` on that may move or turn, and that no contact acts on. */
+static int64_t count_free(const struct bodies *bodies, int64_t first)
+{
+    int64_t count = 0;
+    for (int64_t b = first; b < bodies->count; b++) {
+        count += !bodies->touches[b] && bodies->moves[b].translations + bodies->moves[b].turns > 0;
+    }
+    return count;
+}
+
 void run_check_rigid_modes(struct run *run)
 {
     FREED_BY(bodies_free) struct bodies bodies = {0};
@@ -259,9 +269,15 @@ void run_check_rigid_modes(struct run *run)
         moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
         TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
         if (!bodies.touches[b]) {
+            int64_t more = count_free(&bodies, b + 1);
+            char others[64] = "";
+            if (more > 0) {
+                snprintf(others, sizeof others, "; %lld more bod%s free as well", (long long)more,
+                         more == 1 ? "y is" : "ies are");
+            }
             run_fail(run, STATUS_VERDICT,
-                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that", run->scene->path,
-                     body, what);
+                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that%s",
+                     run->scene->path, body, what, others);
         }
         if (run->verbose) {
             tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
