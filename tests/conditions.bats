@@ -390,10 +390,37 @@ END
     nodes -u mm two.msh 2> note | shapefn > two.mts 2> note
 }
 
+@test "a part that shares no face with the rest of its body is named before the first step, with the axis it may turn about" {
+    cat > lobes.geo << 'END'
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 25;
+Rectangle(1) = {0, 0, 0, 100, 100};
+Rectangle(2) = {100, 100, 0, 100, 100};
+BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
+Physical Surface("body") = {1, 2};
+left() = Curve In BoundingBox{-1, -1, -1, 1, 101, 1};
+right() = Curve In BoundingBox{199, 99, -1, 201, 201, 1};
+Physical Curve("left") = {left()};
+Physical Curve("right") = {right()};
+END
+    gmsh -v 1 -2 lobes.geo -o lobes.msh
+    nodes -u mm lobes.msh 2> note | shapefn > lobes.mts 2> note
+    { block quasi-static; printf '[displacement left]\nfacets = left\ncomponents = 0, 0\n'; } > lobes.scene
+    { cat lobes.scene; printf '[traction t]\nfacets = right\ncomponents = 0, 5\n[solver]\nmax_steps = 100\n'; } > loaded.scene
+    run -1 --separate-stderr mtled loaded.scene lobes.mts
+    [[ "${stderr_lines[0]}" == "mtled: loaded.scene: a part (region body, near (0.15, 0.15)) has nodes in common with the rest of its body, but no face: it may turn about (0.1, 0.1): hold it"* ]]
+    # Held as well, there is nothing to tell.
+    { cat lobes.scene; printf '[displacement right]\nfacets = right\ncomponents = 0.001, 0\n'; } > held.scene
+    mtled held.scene lobes.mts > u.dat 2> said
+    [ ! -s said ]
+}
+
 @test "of several bodies the free one is named; what only contact holds runs, and is told" {
     two
     { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
     refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along any direction and turn about any axis: " mtled two.scene two.mts
+    sed '/^\[displacement floor/,$d' two.scene > none.scene
+    refused 1 "nothing holds body 1 (region body, near (0.05, 0.05)): it may move along any direction and turn about any axis: add a [displacement] that forbids that; 1 more body is free as well" mtled none.scene two.mts
     { cat two.scene; printf '[displacement right]\nfacets = right\nnormal = 0\n'; } > slide.scene
     refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along (0, 1): " mtled slide.scene two.mts
     printf -- '-1 0.999\n2 0.999\n' > wall.tsv

@@ -456,6 +456,24 @@ END
     by_usage 2 body.inp
     nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
     refused 2 "a geometry of gmsh: gmsh -3 FILE.geo -o body.msh" nodes -u m cube.geo
+    # As gmsh writes them, with blanks before the first word; each command makes a mesh of the same volume.
+    for ending in mesh unv bdf; do
+        gmsh -v 1 -3 bare.geo -o foreign.$ending
+        refused 2 "gmsh FILE.$ending -save -o body.msh makes a mesh of it" nodes -u m foreign.$ending
+        gmsh -v 1 foreign.$ending -save -o body.msh
+        nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+    done
+    gmsh -v 1 -3 bare.geo -o body.su2
+    refused 2 "an SU2 mesh: python3 -c" nodes -u m body.su2
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("body.stl"); a.cell_data = {}; a.write("body.off"); a.write("body.obj")' > said 2>&1
+    sed '/^#/d' body.obj > plain.obj # and an OBJ without meshio's comment
+    refused 2 'an OFF surface: make it STL (python3 -c ' nodes -u m body.off
+    refused 2 'an OBJ surface: make it STL (python3 -c ' nodes -u m plain.obj
+    for surface in body.off body.obj; do
+        /usr/bin/python3 -c "import meshio as m; m.write('body.stl', m.read('$surface'))" > said 2>&1
+        gmsh -v 1 -3 fill.geo -o filled.msh
+        nodes -u m -t filled.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
+    done
 }
 
 # by_usage N FILE.vtu [ARRAY]: body.msh by the Nth command in Python of the usage, of FILE with ARRAY for regions

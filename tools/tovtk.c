@@ -27,8 +27,9 @@ static const char usage[] =
     "mtled with frames writes u.frame.0, u.frame.1, ... beside the final u, and other\n"
     "sections X.frame.K. Name a .pvd file to write them all: NAME.pvd lists\n"
     "NAME-0000.vtu, NAME-0001.vtu, ... with their times, each with the fields of its\n"
-    "frame and those that nodes, support and ipoints made. Other files hold the final\n"
-    "state only.\n"
+    "frame and those that nodes, support and ipoints made. Reactions, moments and\n"
+    "energies of the frames are field data, as reactions.GROUP.x: ParaView's filter Plot\n"
+    "Data Over Time draws the load curve. Other files hold the final state only.\n"
     "\n"
     "The name's ending says what is written: .vtu, VTK XML unstructured grid, or .pvd. A\n"
     "name without ending, and standard output, are vtu. Other endings are refused.\n"
@@ -50,8 +51,9 @@ static const char usage[] =
 /* One frame as a vtu file. */
 static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
 {
-    plot_choose_fields(plot, frame);
-    return vtu_write(file, &plot->mesh, plot->fields, plot->field_count, text, error);
+    RETURN_IF_ERROR(plot_choose(plot, frame, error));
+    return vtu_write(file, &plot->mesh, plot->field_count, plot->fields, plot->number_count, plot->numbers,
+                     text, error);
 }
 
 /* NAME-0001.vtu, ... and at last the NAME.pvd that lists them. */

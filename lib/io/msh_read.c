@@ -3,6 +3,7 @@
 #include "io/msh_private.h"
 
 #include <errno.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,9 @@ static const char *foreign_hint(const char *bytes, size_t size)
     "makes a mesh of it (python3-meshio)"
 #define WITH_REGIONS "; nodes -h tells how to keep an array of regions"
 #define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
+#define AS_STL(name)                                                                                         \
+    "make it STL (python3 -c 'import meshio as m; m.write(\"body.stl\", m.read(\"" name "\"))'); "           \
+    "nodes -h tells how to fill that"
     static const char stl_hint[] = ": an STL surface: nodes -h tells how to fill it";
     static const char geo_hint[] =
         ": a geometry of gmsh: gmsh -3 FILE.geo -o body.msh (in the plane -2) makes a mesh of it";
@@ -51,6 +55,13 @@ static const char *foreign_hint(const char *bytes, size_t size)
         {"<VTKFile", ": a VTU file: " BY_MESHIO WITH_REGIONS},
         {"solid", stl_hint},
         {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
+        {"-1\n", ": a UNV mesh: " BY_GMSH("FILE.unv")},
+        {"-1\r", ": a UNV mesh: " BY_GMSH("FILE.unv")},
+        {"$ ", ": a Nastran deck: " BY_GMSH("FILE.bdf")},
+        {"BEGIN BULK", ": a Nastran deck: " BY_GMSH("FILE.bdf")},
+        {"NDIME", ": an SU2 mesh: " BY_MESHIO},
+        {"OFF\n", ": an OFF surface: " AS_STL("FILE.off")},
+        {"v ", ": an OBJ surface: " AS_STL("FILE.obj")},
         {"*", ": an Abaqus deck: " BY_MESHIO},
         {"ply",
          ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
@@ -62,9 +73,13 @@ static const char *foreign_hint(const char *bytes, size_t size)
         {"CDF", ": an Exodus file: " BY_MESHIO},
         {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO},
     };
+    size_t blanks = 0;
+    while (blanks < size && isspace((unsigned char)bytes[blanks])) {
+        blanks++;
+    }
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         size_t length = strlen(formats[i].begin);
-        if (size >= length && memcmp(bytes, formats[i].begin, length) == 0) {
+        if (size - blanks >= length && memcmp(bytes + blanks, formats[i].begin, length) == 0) {
             return formats[i].hint;
         }
     }

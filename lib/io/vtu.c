@@ -248,22 +248,35 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
     put_rows(writer, field->section, &layout);
 }
 
+static void begin_number(struct writer *writer, const char *type, const char *name)
+{
+    fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
+    print_escaped(writer->file, name);
+    fputs("\" NumberOfTuples=\"1\"", writer->file);
+}
+
 /* The regions by name, each with its index in cells.region: readers other than VTK know no arrays of strings.
- */
-static void put_region_names(struct writer *writer, const char *names)
+ * And numbers. */
+static void put_field_data(struct writer *writer, const char *regions, int64_t count,
+                           const struct vtk_number *numbers)
 {
     char name[256], label[300];
-    for (int64_t i = 0; list_item(names, i, name, sizeof name); i++) {
-        fputs(i == 0 ? "<FieldData>\n" : "", writer->file);
+    bool is_empty = count == 0 && !list_item(regions, 0, name, sizeof name);
+    fputs(is_empty ? "" : "<FieldData>\n", writer->file);
+    for (int64_t i = 0; list_item(regions, i, name, sizeof name); i++) {
         snprintf(label, sizeof label, "region.%s", name);
-        fputs("<DataArray type=\"Int64\" Name=\"", writer->file);
-        print_escaped(writer->file, label);
-        fputs("\" NumberOfTuples=\"1\"", writer->file);
+        begin_number(writer, "Int64", label);
         begin_data(writer, 1, 8);
         put_integer(writer, i, 8);
         end_array(writer);
     }
-    fputs(list_item(names, 0, name, sizeof name) ? "</FieldData>\n" : "", writer->file);
+    for (int64_t i = 0; i < count; i++) {
+        double value = numbers[i].value;
+        struct section section = {.type = TYPE_F8, .rows = 1, .cols = 1, .data = &value};
+        begin_number(writer, "Float64", numbers[i].name);
+        put_rows(writer, &section, &(struct layout){.count = 1});
+    }
+    fputs(is_empty ? "" : "</FieldData>\n", writer->file);
 }
 
 static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
@@ -306,8 +319,9 @@ static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const
     fprintf(writer->file, "</%s>\n", tag);
 }
 
-enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_field *fields,
-                      int64_t field_count, bool text, struct error *error)
+enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
+                      const struct vtk_field *fields, int64_t number_count, const struct vtk_number *numbers,
+                      bool text, struct error *error)
 {
     struct writer writer = {.file = file, .text = text};
     union {
@@ -320,7 +334,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, const struct vtk_
           "byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
           file);
-    put_region_names(&writer, mesh->region_names);
+    put_field_data(&writer, mesh->region_names, number_count, numbers);
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
             mesh->node_count, cell_count);
     begin_array(&writer, "Float64", "Points", 3);

@@ -149,7 +149,7 @@ static void look_at_bodies(const struct solid_system *system, const struct const
         struct average average = constraint_rows_average(rows, r);
         int32_t last = -1;
         for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
-            if (body[average.idx[i]] != last) {
+            if (body[average.idx[i]] != last && body[average.idx[i]] >= 0) {
                 last = body[average.idx[i]];
                 look(system, rows, r, body, last, &seen[last]);
             }
@@ -157,8 +157,27 @@ static void look_at_bodies(const struct solid_system *system, const struct const
     }
 }
 
+/* A node that does not move, at X, adds what it sees of a body. */
+static void look_at_node(int dim, const double *X, struct seen *seen)
+{
+    int moves = move_count(dim);
+    double move[MOST_MODES][3], value[MOST_MODES];
+    for (int k = 0; k < moves; k++) {
+        rigid_move(&seen->box, k, X, move[k]);
+    }
+    for (int a = 0; a < dim; a++) {
+        for (int k = 0; k < moves; k++) {
+            value[k] = move[k][a];
+        }
+        for (int i = 0; i < moves; i++) {
+            add_scaled(moves, value[i], value, seen->matrix + i * moves);
+        }
+    }
+}
+
 enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
-                               struct rigid_modes *moves, struct error *error)
+                               int64_t hinge_count, const struct hinge *hinge, struct rigid_modes *moves,
+                               struct error *error)
 {
     SCRATCH struct seen *seen = NULL;
     int dim = system->dim;
@@ -168,8 +187,16 @@ enum status system_rigid_modes(const struct solid_system *system, int64_t body_c
         seen[b].box = box_of(dim, 0, NULL);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
-        box_add(&seen[body[n]].box, 1, system->X + n * dim);
-        moves[body[n]].nodes++;
+        if (body[n] >= 0) {
+            box_add(&seen[body[n]].box, 1, system->X + n * dim);
+            moves[body[n]].nodes++;
+        }
+    }
+    for (int64_t h = 0; h < hinge_count; h++) {
+        box_add(&seen[hinge[h].body].box, 1, system->X + (int64_t)hinge[h].node * dim);
+    }
+    for (int64_t h = 0; h < hinge_count; h++) {
+        look_at_node(dim, system->X + (int64_t)hinge[h].node * dim, &seen[hinge[h].body]);
     }
     look_at_bodies(system, &system->rows, 0, body, seen);
     look_at_bodies(system, &system->penalties, first_spring(system), body, seen);

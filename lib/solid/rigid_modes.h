@@ -14,11 +14,17 @@ struct rigid_modes {
     double axis[3][3];    /* orthogonal unit vectors; in 2D not used */
 };
 
-/* moves[body_count]: those of each body; body[node_count] tells the body of each node. What a condition sees
- * of a body is the part of its average that lies on that body's nodes. */
+/* A body is held at a node that it shares with others. */
+struct hinge {
+    int32_t body, node;
+};
+
+/* moves[body_count]: those of each body; body[node_count] tells the body of each node, negative: of none.
+ * What a condition sees of a body is the part of its average that lies on that body's nodes. At hinges,
+ * hinge[hinge_count], whose nodes are of no body, a body does not move. */
 MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,
-                                          const int32_t *body, struct rigid_modes *moves,
-                                          struct error *error);
+                                          const int32_t *body, int64_t hinge_count, const struct hinge *hinge,
+                                          struct rigid_modes *moves, struct error *error);
 
 /* Whether all nodes as one body can move as a whole without meeting a condition. */
 bool system_has_rigid_mode(const struct solid_system *system);

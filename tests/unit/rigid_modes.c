@@ -47,7 +47,7 @@ static void expect(struct held *held, int64_t body, int translations, int turns,
 {
     struct rigid_modes all[4];
     GOOD(system_rigid_modes(&held->system, held->system.node_count / (held->system.dim == 2 ? 4 : 8),
-                            held->body, all, &error));
+                            held->body, 0, NULL, all, &error));
     *moves = all[body];
     assert_int_equal(moves->translations, translations);
     assert_int_equal(moves->turns, turns);
@@ -116,6 +116,32 @@ TEST(in_space)
     expect(&held, 0, 2, 1, &moves);
     NEAR_TO(fabs(moves.axis[0][2]), 1.0, 1e-9);
     NEAR_TO(moves.along[0][2], 0.0, 1e-9);
+    constraint_rows_free(&held.system.rows);
+}
+
+/* A box that shares one node with what is held, and one that shares an edge, turn about these; by three nodes it is held. */
+TEST(hinges)
+{
+    static const struct hinge hinge[] = {{1, 0}, {1, 2}, {1, 4}};
+    static const int turns[] = {3, 1, 0};
+    struct held held;
+    struct rigid_modes moves[2];
+    begin(&held, 3, 2, 5.0);
+    for (int count = 1; count <= 3; count++) {
+        held.body[hinge[count - 1].node] = -1;
+        GOOD(system_rigid_modes(&held.system, 2, held.body, count, hinge, moves, &error));
+        assert_int_equal(moves[1].translations, 0);
+        assert_int_equal(moves[1].turns, turns[count - 1]);
+        assert_int_equal(moves[0].translations, 3);
+        if (count == 2) { /* nodes 0 and 2: along y */
+            NEAR_TO(fabs(moves[1].axis[0][1]), 1.0, 1e-9);
+            NEAR_TO(moves[1].through[0][0], 5.0, 1e-9);
+            NEAR_TO(moves[1].through[0][2], 5.0, 1e-9);
+        }
+    }
+    hold_all(&held, 0); /* a condition at a node of no body */
+    GOOD(system_rigid_modes(&held.system, 2, held.body, 1, hinge, moves, &error));
+    assert_int_equal(moves[1].turns, 3);
     constraint_rows_free(&held.system.rows);
 }
 

@@ -84,7 +84,7 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     }
 }
 
-void plot_choose_fields(struct plot *plot, int64_t frame)
+static void choose_fields(struct plot *plot, int64_t frame)
 {
     plot->field_count = 0;
     for (int64_t s = 0; s < plot->stream.section_count; s++) {
@@ -127,6 +127,61 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
         if (frame != FRAME_NONE && frame_of(section->name, &length) == frame &&
             section_attribute(section, "time", text, sizeof text)) {
             return parse_double(text, section->name, -1e300, 1e300, time, error);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum { COLUMNS_SIZE = 16384 };
+
+/* Is the section a table X.frames, a row for each frame and its time first? columns[COLUMNS_SIZE]: their
+ * names. */
+static bool is_of_frames(const struct section *section, char columns[])
+{
+    return text_ends(section->name, ".frames") && section->type == TYPE_F8 &&
+           section_attribute(section, "cols", columns, COLUMNS_SIZE) && begins_with(columns, "time,");
+}
+
+/* The row at that time of a table X.frames, each column behind the time as the number X.COLUMN. */
+static void add_numbers(struct plot *plot, const struct section *section, const char *columns, double time)
+{
+    const double *row = section->data, *end = row + section->rows * section->cols;
+    int length = (int)(strlen(section->name) - strlen(".frames"));
+    while (row < end && *row != time) {
+        row += section->cols;
+    }
+    for (int64_t c = 1; row < end && c < section->cols; c++) {
+        struct vtk_number *number = &plot->numbers[plot->number_count++];
+        columns += strcspn(columns, ",");
+        columns += *columns == ',';
+        snprintf(number->name, sizeof number->name, "%.*s.%.*s", length, section->name,
+                 (int)strcspn(columns, ","), columns);
+        number->value = row[c];
+    }
+}
+
+static enum status find_numbers(struct plot *plot, struct error *error)
+{
+    char columns[COLUMNS_SIZE];
+    int64_t most = 0;
+    for (int64_t s = 0; s < plot->stream.section_count; s++) {
+        const struct section *section = &plot->stream.sections[s];
+        most += is_of_frames(section, columns) ? section->cols : 0;
+    }
+    return NEW_ARRAY(&plot->numbers, most, error);
+}
+
+enum status plot_choose(struct plot *plot, int64_t frame, struct error *error)
+{
+    char columns[COLUMNS_SIZE];
+    double time;
+    choose_fields(plot, frame);
+    RETURN_IF_ERROR(plot_time(plot, frame, &time, error));
+    plot->number_count = 0;
+    for (int64_t s = 0; s < plot->stream.section_count && frame != FRAME_NONE; s++) {
+        const struct section *section = &plot->stream.sections[s];
+        if (is_of_frames(section, columns)) {
+            add_numbers(plot, section, columns, time);
         }
     }
     return STATUS_OK;
@@ -175,6 +230,7 @@ enum status plot_find(struct plot *plot, struct error *error)
 {
     RETURN_IF_ERROR(find_mesh(plot, error));
     RETURN_IF_ERROR(find_frames(plot, error));
+    RETURN_IF_ERROR(find_numbers(plot, error));
     return find_fields(plot, error);
 }
 
@@ -183,5 +239,5 @@ void plot_free(struct plot *plot)
     stream_free(&plot->stream);
     derived_free(&plot->derived);
     names_free(&plot->regions.names);
-    FREE_ALL(plot->fields, plot->labels, plot->frames);
+    FREE_ALL(plot->fields, plot->labels, plot->frames, plot->numbers);
 }

@@ -100,7 +100,8 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
-    RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->moves, error));
+    RETURN_IF_ERROR(
+        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->moves, error));
     return find_touching(system, bodies, error);
 }
 
@@ -165,6 +166,95 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     return STATUS_OK;
 }
 
+/* Parts of bodies that are joined to the rest by nodes alone, at corners and edges of cells: by cells with
+ * common faces, see cells_parts. */
+struct hinged {
+    int32_t *of_node; /* the part of each node; NO_PART, or SHARED by parts */
+    struct hinge *hinge;
+    int64_t hinge_count;
+    struct rigid_modes *moves; /* of each part, the others being held */
+};
+enum { NO_PART = -1, SHARED = -2 };
+
+static enum status hinged_find(const struct model *model, const struct folds *folds, struct hinged *hinged,
+                               struct error *error)
+{
+    const struct cells *cells = &model->assembly.cells;
+    int64_t corners = cells->count * (cells->dim + 1);
+    RETURN_IF_ERROR(NEW_ARRAY(&hinged->of_node, cells->node_count, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        hinged->of_node[n] = NO_PART;
+    }
+    for (int64_t i = 0; i < corners; i++) {
+        int32_t *of = &hinged->of_node[cells->node[i]], part = folds->part[i / (cells->dim + 1)];
+        *of = *of == NO_PART || *of == part ? part : SHARED;
+    }
+    for (int64_t i = 0; i < corners; i++) {
+        hinged->hinge_count += hinged->of_node[cells->node[i]] == SHARED;
+    }
+    if (hinged->hinge_count == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&hinged->hinge, hinged->hinge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&hinged->moves, folds->body_count, error));
+    for (int64_t i = 0, h = 0; i < corners; i++) {
+        if (hinged->of_node[cells->node[i]] == SHARED) {
+            hinged->hinge[h++] = (struct hinge){folds->part[i / (cells->dim + 1)], cells->node[i]};
+        }
+    }
+    return system_rigid_modes(&model->system, folds->body_count, hinged->of_node, hinged->hinge_count,
+                              hinged->hinge, hinged->moves, error);
+}
+
+static void hinged_free(struct hinged *hinged)
+{
+    FREE_ALL(hinged->of_node, hinged->hinge, hinged->moves);
+}
+
+/* Note the largest part that may turn where it is joined to the rest, and how many more there are. What a
+ * contact acts on may be held by it. */
+static void note_hinged(const struct run *run, const struct bodies *bodies)
+{
+    FREED_BY(hinged_free) struct hinged hinged = {0};
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    const struct model *model = run->model;
+    const struct folds *folds = &run->folds.folds;
+    const struct cells *cells = &model->assembly.cells;
+    int64_t first = -1, count = 0;
+    TOOL_TRY(run->tool, hinged_find(model, folds, &hinged, &error));
+    for (int64_t p = 0; p < folds->body_count && hinged.hinge_count > 0; p++) {
+        int32_t node = cells->node[folds->bodies[p].cell.item * (cells->dim + 1)];
+        if (hinged.moves[p].translations + hinged.moves[p].turns > 0 &&
+            !bodies->touches[bodies->of_node[node]]) {
+            first = count++ == 0 ? p : first;
+        }
+    }
+    if (count > 0) {
+        char what[512], place[96], more[64] = "";
+        moves_text(cells->dim, model->assembly.extent, &hinged.moves[first], what, sizeof what);
+        point_text(cells->dim, hinged.moves[first].centre, place);
+        TOOL_TRY(run->tool, stream_regions(model->stream, cells, &regions, &error));
+        if (count > 1) {
+            snprintf(more, sizeof more, "; %lld such parts in all", (long long)count);
+        }
+        tool_note(run->tool,
+                  "%s: a part (region %s, near %s) has nodes in common with the rest of its body, but no "
+                  "face: it %s: hold it, or join it by faces%s",
+                  run->scene->path, regions.names.name[regions.of_cell[folds->bodies[first].cell.item]],
+                  place, what, more);
+    }
+}
+
+/* Bodies from number `first` on that may move or turn, and that no contact acts on. */
+static int64_t count_free(const struct bodies *bodies, int64_t first)
+{
+    int64_t count = 0;
+    for (int64_t b = first; b < bodies->count; b++) {
+        count += !bodies->touches[b] && bodies->moves[b].translations + bodies->moves[b].turns > 0;
+    }
+    return count;
+}
+
 void run_check_rigid_modes(struct run *run)
 {
     FREED_BY(bodies_free) struct bodies bodies = {0};
@@ -179,12 +269,21 @@ void run_check_rigid_modes(struct run *run)
         moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
         TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
         if (!bodies.touches[b]) {
+            int64_t more = count_free(&bodies, b + 1);
+            char others[64] = "";
+            if (more > 0) {
+                snprintf(others, sizeof others, "; %lld more bod%s free as well", (long long)more,
+                         more == 1 ? "y is" : "ies are");
+            }
             run_fail(run, STATUS_VERDICT,
-                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that", run->scene->path,
-                     body, what);
+                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that%s",
+                     run->scene->path, body, what, others);
         }
         if (run->verbose) {
             tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
         }
+    }
+    if (run->folds.folds.part != NULL) {
+        note_hinged(run, &bodies);
     }
 }
