@@ -403,7 +403,8 @@ limit_memory() {
 
     for format in "msh22" "msh22 -bin" "msh40" "msh41" "msh41 -bin"; do
         cube tet -part 3 -format $format
-        nodes -u m -t cube.msh > parts.mts
+        nodes -u m -t cube.msh > parts.mts 2> said
+        run ! grep parts said
         [ "$(volumes parts.mts)" = "1 1" ]
         [ "$(rows nodes.x parts.mts | wc -l)" -eq "$(rows nodes.x plain.mts | wc -l)" ]
         [ "$(rows facets parts.mts | wc -l)" -eq 36 ]
@@ -414,6 +415,15 @@ limit_memory() {
             head -c "$at" cube.msh > cut.msh
             refused 2 "cut.msh: " nodes -u mm cut.msh
         done
+    done
+}
+
+@test "one file of a mesh that was cut into files is told, in 2D and 3D" {
+    for dim in 2 3; do
+        printf 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n%s\n' \
+            "$([ $dim = 2 ] && echo 'Physical Surface("body") = {5};' || echo 'Physical Volume("body") = {1};')" > cut.geo
+        gmsh -v 1 -$dim -clmax 0.3 -part 3 -part_split cut.geo -o cut.msh
+        nodes -u m cut_2.msh 2>&1 > part.mts | grep -q '^nodes: 1 of the 3 parts that a mesh was cut into'
     done
 }
 

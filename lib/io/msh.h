@@ -33,6 +33,8 @@ struct msh {
     int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
+    int64_t partitions;       /* into which the mesh was cut, MSH 4 alone tells; 0: it was not */
+    int64_t partitions_here;  /* how many of them have elements of the highest dimension in this file */
 };
 
 /* What is known of a type of element. */

@@ -67,12 +67,29 @@ int64_t msh_read_entity_tag(struct msh_reader *r, int64_t *dim)
     return tag;
 }
 
-/* Tags that follow an entity's box: the entities that bound it, its partitions, ... */
+/* Tags that follow an entity's box: the entities that bound it. */
 static void skip_tags(struct msh_reader *r, const char *what)
 {
     int64_t count = msh_count(r, what, 2, 4);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         (void)msh_int(r, what, -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+}
+
+/* The partitions that an entity is in: of the parts of the mesh's highest dimension they are kept. */
+static void read_partitions_of(struct msh_reader *r, int dim, bool is_part)
+{
+    int64_t count = msh_count(r, "partitions", 2, 4);
+    if (is_part && dim > r->partition_dim) {
+        r->partition_dim = dim;
+        r->partition_count = 0;
+    }
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        int64_t tag = msh_int(r, "partitions", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        MSH_GROW(r, &r->partitions, r->partition_count + 1, &r->partition_room);
+        if (is_part && r->status == STATUS_OK) {
+            r->partitions[r->partition_count++] = tag;
+        }
     }
 }
 
@@ -103,7 +120,7 @@ static void read_entity(struct msh_reader *r, int dim, bool partitioned, struct 
     if (partitioned) {
         is_part = msh_int(r, "dimension of the whole", -1, 3) == dim;
         (void)msh_int(r, "tag of the whole", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        skip_tags(r, "partitions");
+        read_partitions_of(r, dim, is_part);
     }
     for (int k = 0; k < (dim == 0 && r->version == 41 ? 3 : 6); k++) {
         (void)msh_real(r, "box");
@@ -152,12 +169,18 @@ void msh_read_partitions(struct msh_reader *r)
     if (r->version < 40 || !r->has[MSH_ENTITIES]) {
         msh_fail(r, "stands in MSH 4 only, behind $Entities");
     }
-    (void)msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
+    r->msh->partitions = msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
     int64_t ghosts = msh_count(r, "number of ghosts", 4, 8);
     for (int64_t i = 0; r->status == STATUS_OK && i < 2 * ghosts; i++) {
         (void)msh_int(r, "ghost", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
     }
     read_entities(r, true);
+    if (r->status == STATUS_OK && r->partition_count > 0) {
+        qsort(r->partitions, (size_t)r->partition_count, sizeof *r->partitions, compare_int64);
+        for (int64_t i = 0; i < r->partition_count; i++) {
+            r->msh->partitions_here += i == 0 || r->partitions[i] != r->partitions[i - 1];
+        }
+    }
 }
 
 /* ---- joining them ---- */

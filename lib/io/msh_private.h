@@ -78,6 +78,10 @@ struct msh_reader {
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
     int64_t *physicals; /* keys of groups */
+    int partition_dim; /* the highest dimension of parts of the mesh so far, and the partitions of these parts
+                        */
+    int64_t partition_count, partition_room;
+    int64_t *partitions;
 };
 
 /* ---- msh_number.c: numbers, text or binary alike ---- */
