@@ -9,6 +9,10 @@
  * those that meet have passed through each other when the angles of the cells around the place where they
  * meet add up to more than a full turn.
  *
+ * A flat cell may lie between two facets of the boundary that continue each other. Where the surface becomes
+ * concave there, as beside a part that is held, the cell is inverted, and no fold: the body is what the other
+ * cells fill.
+ *
  * A facet that slides on its plane turns by half a turn only with a body that goes through the plane.
  *
  * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
@@ -32,10 +36,11 @@ enum fold_kind {
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_FLAT, /* cells are inverted, but by less than that; slivers invert within the error of the field */
-    FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
-    FOLD_CLOSED,  /* a side has creased: facets that meet there face each other */
-    FOLD_WRAPPED  /* a side of one body presses on both sides of a corner of another */
+    FOLD_FLAT,     /* cells are inverted, but by less than that, as slivers within the error of the field; or
+                      between     facets where the boundary has become concave */
+    FOLD_SUPPORT,  /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_CLOSED,   /* a side has creased: facets that meet there face each other */
+    FOLD_WRAPPED   /* a side of one body presses on both sides of a corner of another */
 };
 
 struct fold {
@@ -99,11 +104,13 @@ struct folds {
     int32_t *ring_cell;    /* by their dim + 1 nodes, in a positive order, those of the ring first */
     struct fold_rim *rims; /* rim_count */
     int64_t rim_count;
-    bool *is_held;            /* node_count: of a held facet */
-    int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
-    double extent;            /* diagonal of the box around the nodes, m */
-    int32_t *part;            /* cell_count: the connected body of each cell */
-    int32_t *node_part;       /* node_count: of a cell of each node */
+    int32_t *flat_ring; /* cell_count: the ring in which two facets of the cell meet that continue each other
+                           at rest, turning by less than 22.5 degrees; -1: none */
+    bool *is_held;      /* node_count: of a held facet */
+    int32_t *support;   /* facet_count: the first facet of the plane support that it is in; -1: free */
+    double extent;      /* diagonal of the box around the nodes, m */
+    int32_t *part;      /* cell_count: the connected body of each cell */
+    int32_t *node_part; /* node_count: of a cell of each node */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold at_rest; /* FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at rest;

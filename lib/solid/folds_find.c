@@ -107,6 +107,14 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node, doubl
     return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
 }
 
+/* Whether a cell is between facets that continued each other at rest, and do not face each other now. */
+static bool is_in_hollow(const struct folds *folds, int64_t cell)
+{
+    int32_t r = folds->flat_ring[cell];
+    return r >= 0 && fold_facet_cosine(&folds->input, folds->y, folds->rings[r].facet,
+                                       folds->rings[r].other) >= FOLD_REVERSING;
+}
+
 /* Turned cells, or else inverted ones. */
 static struct fold look_at_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
@@ -119,7 +127,8 @@ static struct fold look_at_cells(const struct folds *folds, int64_t begin, int64
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
             continue;
         }
-        enum fold_kind kind = is_turned_over(folds, node, volume) ? FOLD_CELL : FOLD_FLAT;
+        enum fold_kind kind =
+            is_turned_over(folds, node, volume) && !is_in_hollow(folds, c) ? FOLD_CELL : FOLD_FLAT;
         if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
             fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
             vector_middle(dim, input->x, corners, node, fold.place);

@@ -31,6 +31,15 @@ static inline void fold_area_vector(int dim, const double *y, const int32_t *fac
     vector_cross(a, b, area);
 }
 
+/* The cosine of the angle between the normals of two facets, at positions y. */
+static inline double fold_facet_cosine(const struct fold_input *input, const double *y, int64_t f, int64_t g)
+{
+    double one[3], other[3];
+    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
+    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
+    return fold_cosine(input->dim, one, other);
+}
+
 /* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
 static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
 {

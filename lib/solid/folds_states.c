@@ -11,14 +11,6 @@ static const double corner_share = 0.5;
 
 static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}};
 
-static double cosine_of_normals(const struct fold_input *input, const double *y, int64_t f, int64_t g)
-{
-    double one[3], other[3];
-    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
-    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
-    return fold_cosine(input->dim, one, other);
-}
-
 struct fold folds_find_closed(struct folds *folds, const double *u)
 {
     struct fold fold = none;
@@ -26,8 +18,8 @@ struct fold folds_find_closed(struct folds *folds, const double *u)
     folds_take_positions(folds, u);
     for (int64_t i = 0; i < folds->ring_count; i++) {
         int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
-        if (g >= 0 && cosine_of_normals(input, folds->y, f, g) < FOLD_REVERSING &&
-            cosine_of_normals(input, input->x, f, g) > alike && fold.count++ == 0) {
+        if (g >= 0 && fold_facet_cosine(input, folds->y, f, g) < FOLD_REVERSING &&
+            fold_facet_cosine(input, input->x, f, g) > alike && fold.count++ == 0) {
             fold_name_facets(input, f, g, &fold);
         }
     }
@@ -40,7 +32,7 @@ static bool is_corner(const struct fold_input *input, const struct fold_ring *ri
 {
     int dim = input->dim;
     double normal[3], to_other[3], middle[3];
-    if (ring->other < 0 || !(cosine_of_normals(input, input->x, ring->facet, ring->other) < alike)) {
+    if (ring->other < 0 || !(fold_facet_cosine(input, input->x, ring->facet, ring->other) < alike)) {
         return false;
     }
     fold_area_vector(dim, input->x, input->facet + ring->facet * dim, normal);

@@ -268,10 +268,11 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
                  place);
         return;
     case FOLD_FLAT:
-        snprintf(text, size,
-                 "%s, cells are inverted between their nodes, by less than a tenth of their size: %lld, "
-                 "the first one cell %lld at %s",
-                 when, (long long)fold->count, (long long)fold->cell, place);
+        snprintf(
+            text, size,
+            "%s, cells are inverted between their nodes, by less than a tenth of their size or where the "
+            "boundary has become concave: %lld, the first one cell %lld at %s",
+            when, (long long)fold->count, (long long)fold->cell, place);
         return;
     case FOLD_SUPPORT:
         snprintf(text, size, "%s, %s at %s is beyond the plane of %s, where nothing in the scene stops it",
