@@ -120,7 +120,7 @@ said() {
 
 # The processor seconds in a file of `time`.
 seconds() {
-    awk '{ sum += $1 + $2 } END { printf "%.2f", sum }' "$@"
+    awk '{ sum += $1 + $2 } END { printf "%.3f", sum }' "$@"
 }
 
 quantity() {
