@@ -119,7 +119,8 @@ TEST(in_space)
     constraint_rows_free(&held.system.rows);
 }
 
-/* A box that shares one node with what is held, and one that shares an edge, turn about these; by three nodes it is held. */
+/* A box that shares one node with what is held, and one that shares an edge, turn about these; by three nodes
+ * it is held. */
 TEST(hinges)
 {
     static const struct hinge hinge[] = {{1, 0}, {1, 2}, {1, 4}};
