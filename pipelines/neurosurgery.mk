@@ -106,7 +106,7 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 
 $(NEURO)/predicted.body.mts $(NEURO)/coarse.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
-	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(if $(findstring coarse,$@),$(NEURO_LOAD_SPACING),$(NEURO_SPACING)) \
+	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(if $(filter coarse.%,$(@F)),$(NEURO_LOAD_SPACING),$(NEURO_SPACING)) \
 	    -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) > $@"
 
 $(NEURO)/%.table.mts: $(NEURO)/%.body.mts $(NEURO_PROGRAMS)

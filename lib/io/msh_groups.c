@@ -86,8 +86,11 @@ static void read_partitions_of(struct msh_reader *r, int dim, bool is_part)
     }
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int64_t tag = msh_int(r, "partitions", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        if (!is_part) {
+            continue;
+        }
         MSH_GROW(r, &r->partitions, r->partition_count + 1, &r->partition_room);
-        if (is_part && r->status == STATUS_OK) {
+        if (r->status == STATUS_OK) {
             r->partitions[r->partition_count++] = tag;
         }
     }

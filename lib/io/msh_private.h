@@ -78,8 +78,8 @@ struct msh_reader {
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
     int64_t *physicals; /* keys of groups */
-    int partition_dim; /* the highest dimension of parts of the mesh so far, and the partitions of these parts
-                        */
+    /* The partitions of the parts of the highest dimension so far. */
+    int partition_dim;
     int64_t partition_count, partition_room;
     int64_t *partitions;
 };

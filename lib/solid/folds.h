@@ -36,8 +36,8 @@ enum fold_kind {
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_FLAT,     /* cells are inverted, but by less than that, as slivers within the error of the field; or
-                      between     facets where the boundary has become concave */
+    FOLD_FLAT,     /* cells are inverted: by less than that, as slivers within the error of the field, or
+                      between facets where the boundary has become concave */
     FOLD_SUPPORT,  /* a free facet at the rim of a plane support has gone through its plane */
     FOLD_CLOSED,   /* a side has creased: facets that meet there face each other */
     FOLD_WRAPPED   /* a side of one body presses on both sides of a corner of another */

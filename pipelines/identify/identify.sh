@@ -48,20 +48,20 @@ dim=$(mts list "$stream" | awk -F '\t' '$1 == "nodes.x" { print $4 }')
 
 mkdir -p "$folder"
 rm -rf "$folder"/round-* "$folder"/identified.* "$folder/state.tsv"
-awk -f "$scripts/measured.awk" -v dim="$dim" -v unit="$unit" -v deviation="$deviation" "$measured" > "$folder/measured.tsv"
+awk -f "$scripts/common.awk" -f "$scripts/measured.awk" -v dim="$dim" -v unit="$unit" -v of_all="$deviation" "$measured" > "$folder/measured.tsv"
 cut -f "1-$dim" "$folder/measured.tsv" > "$folder/places.tsv"
 
 for round in {1..20}; do
     at=$folder/round-$round
     mkdir "$at"
-    awk -f "$scripts/cases.awk" -v state="$folder/state.tsv" "$parameters" > "$at/cases.tsv"
+    awk -f "$scripts/common.awk" -f "$scripts/cases.awk" -v state="$folder/state.tsv" "$parameters" > "$at/cases.tsv"
     bash "$scripts/../sweep/sweep.sh" -j "$jobs" "$at/cases.tsv" "$template" "$stream" "$at" 2> "$at/log" ||
         fail 1 "$(sed -n '/^sweep: .* done, /d; s/^sweep: //p' "$at/log" | head -n 1)"
     for name in $(sed 1d "$at/cases.tsv" | cut -f 1); do
         interp -f u -p "$folder/places.tsv" -u m -o "$at/$name.points" "$at/$name.dat" || fail 2 "$measured: not all of its points are in the body"
         mts print u "$at/$name.points" > "$at/$name.u"
     done
-    awk -f "$scripts/step.awk" -v round="$round" -v at="$at" -v folder="$folder" -v dim="$dim" "$parameters"
+    awk -f "$scripts/common.awk" -f "$scripts/step.awk" -v round="$round" -v at="$at" -v folder="$folder" -v dim="$dim" "$parameters"
     [ ! -f "$folder/identified.tsv" ] || break
 done
 [ -f "$folder/identified.tsv" ] || fail 1 "no end after $round rounds: the displacements do not determine the parameters, or the scene cannot have them"

@@ -1,4 +1,4 @@
-# A round of Gauss and Newton's method: awk -f step.awk -v round=K -v at=ROUND -v folder=FOLDER -v dim=DIM PARAMETERS
+# A round of Gauss and Newton's method: awk -f common.awk -f step.awk -v round=K -v at=ROUND -v folder=FOLDER -v dim=DIM PARAMETERS
 #
 # Least of all is J(p) = sum ((m - u(p)) / s)^2 + sum ((p - mean) / deviation)^2, with m what was measured to s (FOLDER/measured.tsv) and
 # u(p) what was computed (ROUND/trial.u and, for derivatives, ROUND/more_NAME.u). FOLDER/state.tsv keeps the best parameters so far, their J
@@ -10,15 +10,10 @@ BEGIN {
     CONVFMT = OFMT = "%.17g"
 }
 
-{ sub(/\r$/, "") }
-/^#/ || /^[ \t]*$/ || !head++ { next }
-{
-    name[++count] = $1
-    mean[count] = $2
-    deviation[count] = $3
-}
+{ take_parameter() }
 
 END {
+    if (failed) exit 2
     read_state()
     read_measured()
     read_displacements("trial", residual)
@@ -138,9 +133,4 @@ function write_identified(    i, file) {
         if (after[i] > 0.9 * deviation[i])
             print "identify: parameter '" name[i] "': the points hardly tell it, its deviation stays" > "/dev/stderr"
     }
-}
-
-function die(message) {
-    print "identify: " message > "/dev/stderr"
-    exit 2
 }

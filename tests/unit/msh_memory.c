@@ -39,8 +39,8 @@ static enum status try_build(struct error *error)
                                   {1, 1, names[1], 1, NULL},
                                   {1, 2, names[2], 1, NULL},
                                   {2, 1, names[3], 1, NULL}};
-    struct msh msh = {7,        x,        node_tag,   5,          element_tag, type,
-                      node_ptr, node_idx, member_ptr, member_idx, 4,           groups};
+    struct msh msh = {7,        x,          node_tag,   5, element_tag, type, node_ptr,
+                      node_idx, member_ptr, member_idx, 4, groups,      0,    0};
     FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     enum status status = mesh_build(&mesh, &msh, &(struct mesh_options){.unit = 1e-3}, error);
