@@ -1,5 +1,5 @@
-/* Reading mesh files, private to lib/io: what msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c and
- * msh_groups.c share.
+/* Reading mesh files, private to lib/io: what msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c,
+ * msh_entities.c and msh_groups.c share.
  *
  *   bytes --> sections --> $PhysicalNames, $Entities  --> groups    \
  *                          $Nodes                     --> nodes      } struct msh
@@ -126,13 +126,16 @@ void msh_skip_line(struct msh_reader *reader);
 /* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 
 void msh_read_format(struct msh_reader *reader); /* msh_read.c */
-void msh_read_names(struct msh_reader *reader);  /* msh_groups.c */
+void msh_read_names(struct msh_reader *reader);  /* msh_entities.c */
 void msh_read_entities(struct msh_reader *reader);
 void msh_read_partitions(struct msh_reader *reader);
 void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */
 void msh_read_elements(struct msh_reader *reader); /* msh_elements.c */
 
-/* ---- msh_groups.c: entities and groups ---- */
+/* ---- msh_entities.c, msh_groups.c: entities and groups ---- */
+
+/* "point", "curve", "surface" or "volume". */
+const char *msh_entity_kind(int dim);
 
 /* Dimension and tag of the entity at the head of a block of nodes or elements in MSH 4. */
 int64_t msh_read_entity_tag(struct msh_reader *reader, int64_t *dim);

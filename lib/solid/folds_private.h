@@ -7,6 +7,18 @@
 /* Normals whose cosine is below this, that of 120 degrees, face opposite ways. */
 #define FOLD_REVERSING (-0.5)
 
+/* Depth, by the length of a facet, up to which facets that go through each other or through the plane of a
+ * support are no fold: the field at the nodes is uncertain by as much. */
+#define FOLD_BEYOND_FACET 0.05
+
+#define FOLD_NOTHING ((struct fold){.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}})
+
+/* Deformed position of a node, dim components. */
+static inline const double *fold_position(const struct folds *folds, int32_t node)
+{
+    return folds->y + (int64_t)node * folds->input.dim;
+}
+
 /* What a fold names: two facets, the other one -1 where there is none, and as its place the middle of the
  * first at rest. */
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold);
@@ -55,6 +67,16 @@ static inline double fold_volume(int dim, const double *a, const double *b, cons
 
 /* Find the parts and bodies of the cells. */
 MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
+
+/* ---- folds_crossing.c: facets that go through each other ---- */
+
+/* Fill folds->boxes, ascending along the first axis. */
+void folds_sort_boxes(struct folds *folds);
+
+/* Search the boxes [begin, end) and those behind them for facets that cross; `stopped` is not used. */
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+
+/* ---- folds_within.c ---- */
 
 /* Look for a body within another, where boundaries do not cross. */
 void folds_find_within(struct folds *folds, struct fold *fold);

@@ -9,11 +9,9 @@ static const double alike = 0.5;
 /* Corners lie on each other by less than this share of the larger facet there. */
 static const double corner_share = 0.5;
 
-static const struct fold none = {.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}};
-
 struct fold folds_find_closed(struct folds *folds, const double *u)
 {
-    struct fold fold = none;
+    struct fold fold = FOLD_NOTHING;
     const struct fold_input *input = &folds->input;
     folds_take_positions(folds, u);
     for (int64_t i = 0; i < folds->ring_count; i++) {
@@ -97,7 +95,7 @@ static bool are_all(const struct fold_input *input, const bool *marked, int64_t 
 
 struct fold folds_find_wrapped(const struct folds *folds)
 {
-    struct fold fold = none;
+    struct fold fold = FOLD_NOTHING;
     const struct fold_input *input = &folds->input;
     for (int64_t i = 0; folds->turned != NULL && i < folds->ring_count; i++) {
         int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
