@@ -109,7 +109,7 @@ static struct ipoints_options parse_for(const struct tool *tool, const struct st
     TOOL_TRY(tool, stream_nodes(stream, &dim, &node_count, &x, &error));
     TOOL_TRY(tool, stage_recorded(stream, "support", dim, &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
-    ipoints.refinement.support.reach = recorded.support.reach;
+    ipoints.refinement.support.visibility = recorded.support.visibility;
     return ipoints;
 }
 

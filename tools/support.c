@@ -64,9 +64,9 @@ static struct support_options parse(const struct tool *tool, int dim)
         tool_fail(tool, STATUS_INPUT, "-n is less than -m");
     }
     support.gradient_bound = tool_number(tool, "bound", 1.0, 1e6, support.gradient_bound);
-    support.reach =
-        (enum reach_rule)tool_choice(tool, "reach", reach_names, REACH_RULE_COUNT, (int)support.reach);
-    if (tool_given(tool, "interface") && support.reach == REACH_DISTANCE) {
+    support.visibility = (enum visibility_rule)tool_choice(tool, "reach", visibility_names,
+                                                           VISIBILITY_RULE_COUNT, (int)support.visibility);
+    if (tool_given(tool, "interface") && support.visibility == VISIBILITY_DISTANCE) {
         tool_fail(tool, STATUS_INPUT, "--reach distance acts across the interfaces of -i");
     }
     support.widen = !tool_given(tool, "no-widen");
@@ -83,7 +83,7 @@ static void note_report(const struct tool *tool, const struct support_report *re
         widened += report->list[l].widened;
         widest = report->list[l].widest > widest ? report->list[l].widest : widest;
     }
-    if (report->reach == REACH_DISTANCE) {
+    if (report->visibility == VISIBILITY_DISTANCE) {
         tool_note(tool, "neighbours by distance alone: supports act across gaps");
     }
     tool_note(tool, "widened at %lld points, at most %.3g times", (long long)widened, widest);
@@ -120,7 +120,7 @@ int main(int argc, char *argv[])
         support.side = side;
     }
     TOOL_TRY(&tool, stage_support(&stream, &support, &report, &error));
-    if (tool_given(&tool, "reach") && report.reach != support.reach) {
+    if (tool_given(&tool, "reach") && report.visibility != support.visibility) {
         tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
     }
     if (tool_given(&tool, "verbose")) {

@@ -89,18 +89,18 @@ static double shown(int dim, double volume)
 }
 
 static void report_labels(const struct tool *tool, const struct label_image *image,
-                          const struct stuffing *stuffing, const struct cells *cells, bool verbose)
+                          const struct label_cells *result, const struct cells *cells, bool verbose)
 {
     SCRATCH double *volume = NULL, *voxels = NULL;
     SCRATCH int64_t *lost = NULL;
-    int dim = stuffing->dim;
+    int dim = result->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
     TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
-    TOOL_TRY(tool, stuffing_lost(&image->labels, image->keep, stuffing, lost, &error));
+    TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
     TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
     for (int64_t c = 0; c < cells->count; c++) {
-        volume[image->region[stuffing->label[c]]] += cell_volume(cells, c);
+        volume[image->region[result->label[c]]] += cell_volume(cells, c);
     }
     for (int32_t l = 1; l < image->labels.count; l++) {
         voxels[image->region[l]] += image->volume[l];
@@ -142,12 +142,12 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
 /* Where a connection of the image's bodies is missing. Labels are smoothed: what is too thin for that is lost
  * at any spacing. */
 static void report_apart(const struct tool *tool, const struct label_image *image,
-                         const struct stuffing *stuffing, const int32_t *part, int32_t count)
+                         const struct label_cells *result, const int32_t *part, int32_t count)
 {
     const struct labels *labels = &image->labels;
-    struct stuffing_apart apart;
+    struct label_cells_apart apart;
     double place[3], x[3];
-    TOOL_TRY(tool, stuffing_find_apart(labels, image->keep, stuffing, part, count, &apart, &error));
+    TOOL_TRY(tool, label_cells_find_apart(labels, image->keep, result, part, count, &apart, &error));
     if (apart.count == 0) {
         return;
     }
@@ -174,7 +174,7 @@ static void report_apart(const struct tool *tool, const struct label_image *imag
 
 /* How many connected bodies there are, when more than one. */
 static void report_bodies(const struct tool *tool, const struct label_image *image,
-                          const struct stuffing *stuffing, const struct cells *cells, bool verbose)
+                          const struct label_cells *result, const struct cells *cells, bool verbose)
 {
     SCRATCH int32_t *part = NULL;
     int32_t count = 0;
@@ -189,7 +189,7 @@ static void report_bodies(const struct tool *tool, const struct label_image *ima
     if (count > 1) {
         tool_note(tool, "%d connected bodies, %.3g %% of the %s in the largest: --largest keeps that one",
                   count, 100 * first / total, cells->dim == 3 ? "volume" : "area");
-        report_apart(tool, image, stuffing, part, count);
+        report_apart(tool, image, result, part, count);
     } else if (verbose) {
         tool_note(tool, "one connected body");
     }
@@ -208,9 +208,9 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);
     }
-    if (least < STUFFING_LEAST_ANGLE || most > STUFFING_MOST_ANGLE) {
+    if (least < LABEL_CELLS_LEAST_ANGLE || most > LABEL_CELLS_MOST_ANGLE) {
         tool_note(tool, "angles from %.1f to %.1f degrees, beyond %g to %g: another spacing may avoid them",
-                  least, most, STUFFING_LEAST_ANGLE, STUFFING_MOST_ANGLE);
+                  least, most, LABEL_CELLS_LEAST_ANGLE, LABEL_CELLS_MOST_ANGLE);
     }
     if (!verbose) {
         return;
@@ -220,49 +220,48 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
               cells->dim == 3 ? "dihedral angles" : "angles", least, most);
 }
 
-static void report(const struct tool *tool, const struct label_image *image, const struct stuffing *stuffing,
+static void report(const struct tool *tool, const struct label_image *image, const struct label_cells *result,
                    double spacing, bool surface, bool verbose)
 {
-    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
-                          stuffing->cell};
-    if (stuffing->unsized > reported_share) {
+    struct cells cells = {result->dim, result->node_count, result->x, result->cell_count, result->cell};
+    if (result->unsized > reported_share) {
         tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
-                  100 * stuffing->unsized);
+                  100 * result->unsized);
     }
-    if (stuffing->specks > 0) {
+    if (result->specks > 0) {
         tool_note(tool, "%lld bodies no larger than the spacing, %.3g %s in all, are left out",
-                  (long long)stuffing->specks, shown(cells.dim, stuffing->speck_volume),
+                  (long long)result->specks, shown(cells.dim, result->speck_volume),
                   cells.dim == 3 ? "ml" : "cm2");
     }
-    if (stuffing->pinched > 0) {
+    if (result->pinched > 0) {
         tool_note(tool, "bodies that hung together by a node or an edge alone are cut apart at %lld nodes",
-                  (long long)stuffing->pinched);
+                  (long long)result->pinched);
     }
-    if (stuffing->hinges > 0) {
+    if (result->hinges > 0) {
         tool_note(
             tool,
             "parts of a body touch by a node or an edge alone at %lld nodes: --fine may tell them apart",
-            (long long)stuffing->hinges);
+            (long long)result->hinges);
     }
-    report_labels(tool, image, stuffing, &cells, verbose);
-    report_bodies(tool, image, stuffing, &cells, verbose);
+    report_labels(tool, image, result, &cells, verbose);
+    report_bodies(tool, image, result, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
     if (!surface) {
         tool_note_thin(tool, &cells);
     }
-    if (verbose || stuffing->astray > 0) {
+    if (verbose || result->astray > 0) {
         tool_note(tool, "nodes of interfaces: farthest %.2g voxels off, %lld of them more than %g",
-                  stuffing->farthest / labels_voxel(&image->labels), (long long)stuffing->astray,
-                  STUFFING_MOST_ASTRAY);
+                  result->farthest / labels_voxel(&image->labels), (long long)result->astray,
+                  LABEL_CELLS_MOST_ASTRAY);
     }
 }
 
 static void write_stream(const struct tool *tool, const struct label_image *image,
-                         const struct stuffing *stuffing, bool text)
+                         const struct label_cells *result, bool text)
 {
     FREED_BY(label_mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
-    TOOL_TRY(tool, label_mesh_make(image, stuffing, &mesh, &error));
+    TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
     stream_init(&stream);
     for (int32_t p = 0; p < image->part_count; p++) {
         bool found = false;
@@ -294,7 +293,7 @@ int main(int argc, char *argv[])
     static char help[] = "--help";
     struct tool tool;
     FREED_BY(label_image_free) struct label_image image = {0};
-    FREED_BY(stuffing_free) struct stuffing stuffing = {0};
+    FREED_BY(label_cells_free) struct label_cells result = {0};
     if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
         argv[argc - 1] = help;
     }
@@ -313,32 +312,33 @@ int main(int argc, char *argv[])
             image.keep[l] = l == surface.inner;
         }
     }
-    struct stuffing_options stuffing_options = {.spacing = spacing,
-                                                .keep = image.keep,
-                                                .whole = image.region,
-                                                .largest = tool_given(&tool, "largest")};
+    struct label_cells_options label_cells_options = {.spacing = spacing,
+                                                      .keep = image.keep,
+                                                      .whole = image.region,
+                                                      .largest = tool_given(&tool, "largest")};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
-        fine = label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &stuffing_options.finest);
-        stuffing_options.fine = fine;
+        fine =
+            label_fine_parse(&tool, &image, tool_value(&tool, "fine"), spacing, &label_cells_options.finest);
+        label_cells_options.fine = fine;
     }
     struct label_sizes sizes;
     label_sizes_read(&tool, &image, tool_value(&tool, "sizes"), &sizes);
-    stuffing_options.sized = &sizes.cells;
-    stuffing_options.size = sizes.size;
+    label_cells_options.sized = &sizes.cells;
+    label_cells_options.size = sizes.size;
     struct error error;
-    enum status status = stuffing_make(&image.labels, &stuffing_options, &stuffing, &error);
+    enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);
     const char *length = tool_value(&tool, "spacing");
     if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {
         tool_fail(&tool, status, "%s -h %s is %s m: give a unit, as -h %smm", error.text, length, length,
                   length);
     }
     tool_check(&tool, status, &error);
-    report(&tool, &image, &stuffing, spacing, tool_given(&tool, "surface"), tool_given(&tool, "verbose"));
+    report(&tool, &image, &result, spacing, tool_given(&tool, "surface"), tool_given(&tool, "verbose"));
     if (tool_given(&tool, "surface")) {
-        label_surface_write(&tool, &stuffing, &surface);
+        label_surface_write(&tool, &result, &surface);
     } else {
-        write_stream(&tool, &image, &stuffing, tool_given(&tool, "text"));
+        write_stream(&tool, &image, &result, tool_given(&tool, "text"));
     }
     label_sizes_free(&sizes);
     return tool_end(&tool);

@@ -80,7 +80,7 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
             x += per_rule * dim;
         }
     }
-    struct reach_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
+    struct visibility_places places = {.cell = sample->cell, .points_per_row = sample->per_leaf};
     RETURN_IF_ERROR(support_space_lists(&refinement->options->support, &refinement->space, &places, points,
                                         sample->x, "adaptive points", &sample->lists, error));
     int64_t pairs = sample->lists.ptr[points];

@@ -94,13 +94,13 @@ MUST_CHECK enum status boundary_points_build(const struct face_table *table, con
                                              struct boundary_averages *averages, struct error *error);
 
 /* Ends of held faces: smooth, on a side that goes on; sharp, at an edge between two sides. */
-enum boundary_end { BOUNDARY_END_SMOOTH, BOUNDARY_END_SHARP };
+enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP };
 
 /* end[table->node_count] becomes true at the nodes where a held face of the boundary meets one that is not
  * touched, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
  * held[table->faces->count]; touched[the same]: held ones, and others that are not free. */
-MUST_CHECK enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind,
-                                          const bool *held, const bool *touched, bool *end,
-                                          struct error *error);
+MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
+                                               const bool *held, const bool *touched, bool *end,
+                                               struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);

@@ -191,8 +191,8 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
     return STATUS_OK;
 }
 
-enum status boundary_find_ends(const struct face_table *table, enum boundary_end kind, const bool *held,
-                               const bool *touched, bool *end, struct error *error)
+enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
+                                    const bool *held, const bool *touched, bool *end, struct error *error)
 {
     int dim = table->dim;
     const int32_t *node = table->faces->node;
@@ -210,7 +210,7 @@ enum status boundary_find_ends(const struct face_table *table, enum boundary_end
                 const int32_t *f = node + (int64_t)at[i] * dim, *g = node + (int64_t)at[k] * dim;
                 bool ends = (held[at[i]] && !touched[at[k]]) || (held[at[k]] && !touched[at[i]]);
                 if (ends && share_edge(dim, f, g) &&
-                    of_one_side(table, f, g) == (kind == BOUNDARY_END_SMOOTH)) {
+                    of_one_side(table, f, g) == (kind == BOUNDARY_JUNCTION_SMOOTH)) {
                     end[n] = true;
                 }
             }

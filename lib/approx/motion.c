@@ -63,7 +63,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
     int64_t nodes = cells->node_count;
     struct support_options options = source != NULL ? *source->support : support_defaults(dim);
     struct mls shapes = source != NULL ? *source->shapes : options.mls;
-    struct reach_places places = {.nodes = true};
+    struct visibility_places places = {.nodes = true};
     FREED_BY(support_free) struct support_lists lists = {0};
     FREED_BY(support_space_free) struct support_space space = {0};
     SCRATCH double *radius = NULL, *phi = NULL, *dphi = NULL;

@@ -68,7 +68,7 @@ static void insert(struct nearest *nearest, int64_t most, int64_t row, double di
 /* Whether a point is not known to be out of reach. */
 static bool usable(const struct scattered_fit *fit, int64_t row)
 {
-    return fit->ways == NULL || fit->ways->verdict[row] != WAY_NONE;
+    return fit->paths == NULL || fit->paths->verdict[row] != PATH_NONE;
 }
 
 static int64_t count_usable(const struct scattered_fit *fit, const struct index_list *rows)
@@ -133,15 +133,15 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
 {
-    if (fit->ways != NULL) {
-        ways_begin(fit->ways, from);
+    if (fit->paths != NULL) {
+        edge_paths_begin(fit->paths, from);
     }
     for (bool settled = false; !settled;) {
         settled = true;
         RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
-        for (int64_t i = 0; fit->ways != NULL && i < nearest->count; i++) {
+        for (int64_t i = 0; fit->paths != NULL && i < nearest->count; i++) {
             bool reached;
-            RETURN_IF_ERROR(ways_reach(fit->ways, nearest->row[i], &reached, error));
+            RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->row[i], &reached, error));
             settled = settled && reached;
         }
     }

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "approx/point_grid.h"
-#include "approx/ways.h"
+#include "approx/edge_paths.h"
 
 #include <stdint.h>
 
@@ -16,11 +16,12 @@
 struct scattered_fit {
     int dim;
     int value_count;
-    int64_t count;      /* >= 1 */
-    int64_t row_size;   /* doubles per row, >= dim + value_count */
-    const double *row;  /* count * row_size; coordinates in units of `unit` */
-    double unit;        /* m; scales coordinates and values */
-    struct ways *ways;  /* unless NULL, only rows within reach of a node count (scattered_fit_evaluate) */
+    int64_t count;     /* >= 1 */
+    int64_t row_size;  /* doubles per row, >= dim + value_count */
+    const double *row; /* count * row_size; coordinates in units of `unit` */
+    double unit;       /* m; scales coordinates and values */
+    struct edge_paths
+        *paths;         /* unless NULL, only rows within reach of a node count (scattered_fit_evaluate) */
     double *x, *radius; /* what scattered_fit_build() makes: the points, count * dim, in a grid */
     struct point_grid grid;
 };
@@ -30,7 +31,7 @@ struct scattered_fit {
 MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct error *error);
 void scattered_fit_free(struct scattered_fit *fit);
 
-/* values[value_count] at x[dim] (m), a place beside node `from`. With `ways` only rows within reach of that
+/* values[value_count] at x[dim] (m), a place beside node `from`. With `paths` only rows within reach of that
  * node are used; STATUS_INPUT if there are none. *distance receives the distance to the nearest point and
  * *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller can
  * refuse to extrapolate far. */

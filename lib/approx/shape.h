@@ -6,7 +6,7 @@
 #include "approx/mls.h"
 #include "approx/support.h"
 
-/* The neighbours that points see around corners (see reach.h). */
+/* The neighbours that points see around corners (see visibility.h). */
 struct around {
     int64_t count;
     const int64_t *pair;  /* count: places in idx, ascending */

@@ -30,10 +30,10 @@ static void worker_free(int64_t body_count, struct worker *worker)
     free(worker->list.index);
     free(worker->around_pair);
     free(worker->around_offset);
-    for (int64_t b = 0; b < body_count && worker->reach != NULL; b++) {
-        reach_work_free(&worker->reach[b]);
+    for (int64_t b = 0; b < body_count && worker->visibility != NULL; b++) {
+        visibility_work_free(&worker->visibility[b]);
     }
-    free(worker->reach);
+    free(worker->visibility);
     free(worker->order);
     free(worker->gradient);
     mls_work_free(&worker->work);
@@ -70,7 +70,7 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                 "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
                 "coplanar, stray or too few nodes there",
                 search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                body->reach != NULL ? " reach through the cells" : "", stray);
+                body->visibility != NULL ? " reach through the cells" : "", stray);
 }
 
 /* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
@@ -152,8 +152,9 @@ static enum status build_chunks(const struct search *search, struct support_list
             struct error own;
             int64_t first = c * chunk_points;
             int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
-            enum status outcome =
-                worker.reach != NULL ? STATUS_OK : NEW_ARRAY(&worker.reach, search->body_count, &own);
+            enum status outcome = worker.visibility != NULL
+                                      ? STATUS_OK
+                                      : NEW_ARRAY(&worker.visibility, search->body_count, &own);
             if (outcome == STATUS_OK) {
                 outcome = build_chunk(search, first, last, lists, &worker, &own);
             }
@@ -179,17 +180,17 @@ enum status support_build(const struct support_options *options, const struct po
 }
 
 enum status support_build_within(const struct support_options *options, const struct point_grid *grid,
-                                 const struct reach *reach, const struct reach_places *places, int64_t count,
-                                 const double *x, const char *what, struct support_lists *lists,
-                                 struct error *error)
+                                 const struct visibility *visibility, const struct visibility_places *places,
+                                 int64_t count, const double *x, const char *what,
+                                 struct support_lists *lists, struct error *error)
 {
-    const struct support_body body = {.grid = grid, .reach = reach};
+    const struct support_body body = {.grid = grid, .visibility = visibility};
     return support_build_among(options, 1, &body, NULL, places, count, x, what, lists, error);
 }
 
 enum status support_build_among(const struct support_options *options, int64_t body_count,
                                 const struct support_body *body, const int32_t *body_of,
-                                const struct reach_places *places, int64_t count, const double *x,
+                                const struct visibility_places *places, int64_t count, const double *x,
                                 const char *what, struct support_lists *lists, struct error *error)
 {
     enum status status;
@@ -210,8 +211,9 @@ enum status support_build_among(const struct support_options *options, int64_t b
     TRY(check_finite(&search, count, error));
     TRY(NEW_ARRAY(&search.shadows, body_count, error));
     for (int32_t b = 0; b < body_count && !search.places.nodes; b++) {
-        if (body[b].reach != NULL) {
-            TRY(reach_shadows_build(body[b].reach, count, x, body_of, b, &search.shadows[b], error));
+        if (body[b].visibility != NULL) {
+            TRY(visibility_shadows_build(body[b].visibility, count, x, body_of, b, &search.shadows[b],
+                                         error));
         }
     }
     TRY(build_chunks(&search, lists, &all, error));
@@ -222,7 +224,7 @@ enum status support_build_among(const struct support_options *options, int64_t b
     all.index = NULL;
 done:
     for (int64_t b = 0; b < body_count && search.shadows != NULL; b++) {
-        reach_shadows_free(&search.shadows[b]);
+        visibility_shadows_free(&search.shadows[b]);
     }
     free(search.shadows);
     free(all.index);

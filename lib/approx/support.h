@@ -4,7 +4,7 @@
 
 #include "approx/mls.h"
 #include "approx/point_grid.h"
-#include "approx/reach.h"
+#include "approx/visibility.h"
 
 struct support_options {
     double radius;         /* constant support radius, m; 0: factor times the local spacing */
@@ -12,7 +12,7 @@ struct support_options {
     int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
     bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
-    enum reach_rule reach; /* what else a neighbour must be, besides near */
+    enum visibility_rule visibility; /* what else a neighbour must be, besides near */
     const int32_t
         *side;            /* by cells: of each cell, from 0, on which side of the interfaces it is, at which
                              supports stop; NULL: no interfaces. See support_space.h, support_build ignores it */
@@ -58,23 +58,24 @@ MUST_CHECK enum status support_build(const struct support_options *options, cons
 /* The same with neighbours that are within reach through the cells only: of the points, which lie in these
  * cells. Without reach (NULL) within their radii as the crow flies. */
 MUST_CHECK enum status support_build_within(const struct support_options *options,
-                                            const struct point_grid *grid, const struct reach *reach,
-                                            const struct reach_places *places, int64_t count, const double *x,
-                                            const char *what, struct support_lists *lists,
+                                            const struct point_grid *grid,
+                                            const struct visibility *visibility,
+                                            const struct visibility_places *places, int64_t count,
+                                            const double *x, const char *what, struct support_lists *lists,
                                             struct error *error);
 
 /* A body that neighbours are looked for in. */
 struct support_body {
     const struct point_grid *grid;
-    const struct reach *reach; /* as above */
-    const int32_t *node;       /* the numbers of its nodes in the lists, ascending; NULL: their own */
+    const struct visibility *visibility; /* as above */
+    const int32_t *node; /* the numbers of its nodes in the lists, ascending; NULL: their own */
 };
 /* The same with neighbours of each point in one of several bodies: number body_of[p], or the first where
  * body_of is NULL. The places are nodes and cells of that body. */
 MUST_CHECK enum status support_build_among(const struct support_options *options, int64_t body_count,
                                            const struct support_body *body, const int32_t *body_of,
-                                           const struct reach_places *places, int64_t count, const double *x,
-                                           const char *what, struct support_lists *lists,
+                                           const struct visibility_places *places, int64_t count,
+                                           const double *x, const char *what, struct support_lists *lists,
                                            struct error *error);
 void support_free(struct support_lists *lists);
 

@@ -56,22 +56,22 @@ static double spacing_within(const struct support_options *options, const struct
                              const double *x, const int32_t *index, const double *image, int64_t count,
                              double widen)
 {
-    double reach = 0.0;
+    double farthest = 0.0;
     if (count == options->most) {
         for (int64_t i = 0; i < count; i++) {
             double distance2 =
                 neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
-            reach = distance2 > reach ? distance2 : reach;
+            farthest = distance2 > farthest ? distance2 : farthest;
         }
-        reach = sqrt(reach);
+        farthest = sqrt(farthest);
     } else {
         for (int64_t i = 0; i < count; i++) {
-            reach = grid->radius[index[i]] > reach ? grid->radius[index[i]] : reach;
+            farthest = grid->radius[index[i]] > farthest ? grid->radius[index[i]] : farthest;
         }
-        reach *= widen;
+        farthest *= widen;
     }
     double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
-    return reach * pow(unit_ball / (double)count, 1.0 / grid->dim);
+    return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
 /* Whether a support serves: enough nodes, a well-conditioned moment matrix, bounded gradients. */
@@ -136,12 +136,12 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
     const struct support_options *options = search->options;
     int32_t body = search_body(search, p);
     const struct point_grid *grid = search->body[body].grid;
-    const struct reach *reach = search->body[body].reach;
-    struct reach_work *work = &worker->reach[body];
+    const struct visibility *visibility = search->body[body].visibility;
+    struct visibility_work *work = &worker->visibility[body];
     const double *x = search->x + p * grid->dim;
     int64_t first = worker->list.count;
-    if (reach != NULL) {
-        RETURN_IF_ERROR(reach_begin(reach, &search->places, p, x, work, error));
+    if (visibility != NULL) {
+        RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p, x, work, error));
     }
     for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
         worker->list.count = first;
@@ -149,8 +149,9 @@ enum status support_find(const struct search *search, int64_t p, struct worker *
         int64_t count = worker->list.count - first;
         int32_t *index = worker->list.index + first;
         double *image = NULL;
-        if (reach != NULL) {
-            RETURN_IF_ERROR(reach_filter(reach, &search->shadows[body], *widen, index, &count, work, error));
+        if (visibility != NULL) {
+            RETURN_IF_ERROR(
+                visibility_filter(visibility, &search->shadows[body], *widen, index, &count, work, error));
             image = work->around > 0 ? work->image : NULL;
         }
         RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));

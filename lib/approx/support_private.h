@@ -12,8 +12,8 @@ struct search {
     int64_t body_count;
     const struct support_body *body;
     const int32_t *body_of; /* of each point; NULL: the first */
-    struct reach_places places;
-    struct reach_shadows *shadows; /* body_count: of its points, within reach */
+    struct visibility_places places;
+    struct visibility_shadows *shadows; /* body_count: of its points, within reach */
     const double *x;
     const char *what;
 };
@@ -24,7 +24,7 @@ struct worker {
     int64_t around_count, pair_room, offset_room; /* neighbours seen around corners */
     int64_t *around_pair;                         /* places in the list */
     double *around_offset;
-    struct reach_work *reach; /* for each body */
+    struct visibility_work *visibility; /* for each body */
     struct mls_work work;
     double *order, *gradient;
     int64_t order_room, gradient_room;

@@ -1,7 +1,7 @@
 #include "approx/support_space.h"
 
 #include "approx/partition.h"
-#include "approx/reach_private.h"
+#include "approx/visibility_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -73,8 +73,9 @@ static enum status cut(struct support_space *space, struct error *error)
 enum status support_space_build(const struct support_options *options, const struct cells *cells,
                                 const double *radius, struct support_space *space, struct error *error)
 {
-    *space = (struct support_space){
-        .cells = *cells, .radius = radius, .by_cells = options->reach == REACH_CELLS && cells->count > 0};
+    *space = (struct support_space){.cells = *cells,
+                                    .radius = radius,
+                                    .by_cells = options->visibility == VISIBILITY_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
         space->owner = options->owner;
@@ -98,7 +99,7 @@ enum status support_space_build(const struct support_options *options, const str
                                          side->node != NULL ? side->radius : radius, error));
         RETURN_IF_ERROR(point_grid_list_touching(&side->grid, error));
         if (space->by_cells) {
-            RETURN_IF_ERROR(reach_build(&own, &side->grid, &side->reach, error));
+            RETURN_IF_ERROR(visibility_build(&own, &side->grid, &side->visibility, error));
         }
     }
     return STATUS_OK;
@@ -108,7 +109,7 @@ void support_space_free(struct support_space *space)
 {
     for (int64_t s = 0; space->side != NULL && s < sides_in(space); s++) {
         struct support_side *side = &space->side[s];
-        reach_free(&side->reach);
+        visibility_free(&side->visibility);
         point_grid_free(&side->grid);
         free(side->node);
         free(side->local);
@@ -121,12 +122,12 @@ void support_space_free(struct support_space *space)
 }
 
 /* The side of each point whose cells are known, and its cells there; -1: none known. */
-static void sides_of_cells(const struct support_space *space, const struct reach_places *places,
+static void sides_of_cells(const struct support_space *space, const struct visibility_places *places,
                            int64_t count, int32_t *side)
 {
     for (int64_t p = 0; p < count; p++) {
         int64_t cells;
-        const int32_t *cell = reach_places_cells(places, p, &cells);
+        const int32_t *cell = visibility_places_cells(places, p, &cells);
         side[p] = -1;
         for (int64_t i = 0; i < cells; i++) {
             if (cell[i] >= 0 && (side[p] < 0 || space->cell_side[cell[i]] < side[p])) {
@@ -147,12 +148,12 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
 }
 
 /* Nodes of others, and points of no cell of the part's own, have the whole for their side. */
-static void sides_of_others(const struct support_space *space, const struct reach_places *places,
+static void sides_of_others(const struct support_space *space, const struct visibility_places *places,
                             int64_t count, int32_t *side)
 {
     for (int64_t p = 0; p < count && space->owner != NULL; p++) {
         int64_t cells;
-        const int32_t *cell = reach_places_cells(places, p, &cells);
+        const int32_t *cell = visibility_places_cells(places, p, &cells);
         bool own = places->nodes ? space->owner[p] == space->part : places->cell == NULL;
         for (int64_t i = 0; i < cells && !places->nodes; i++) {
             own = own ||
@@ -166,8 +167,8 @@ static void sides_of_others(const struct support_space *space, const struct reac
 static enum status locate_sides(const struct support_space *space, int64_t count, const double *x,
                                 int32_t *side, struct error *error)
 {
-    FREED_BY(reach_free) struct reach whole = {0};
-    FREED_BY(reach_work_free) struct reach_work work = {0};
+    FREED_BY(visibility_free) struct visibility whole = {0};
+    FREED_BY(visibility_work_free) struct visibility_work work = {0};
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     const struct cells *cells = &space->cells;
     bool all_known = true;
@@ -177,14 +178,14 @@ static enum status locate_sides(const struct support_space *space, int64_t count
     if (all_known) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(reach_build_cells(cells, &whole, error));
+    RETURN_IF_ERROR(visibility_build_cells(cells, &whole, error));
     RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, space->radius, error));
     whole.grid = &grid;
     for (int64_t p = 0; p < count; p++) {
         if (side[p] >= 0) {
             continue;
         }
-        RETURN_IF_ERROR(reach_locate(&whole, x + p * cells->dim, &work, error));
+        RETURN_IF_ERROR(visibility_locate(&whole, x + p * cells->dim, &work, error));
         side[p] = work.cell_count > 0 ? space->cell_side[work.cell[0]] : 0;
         for (int64_t i = 1; i < work.cell_count; i++) {
             int32_t other = space->cell_side[work.cell[i]];
@@ -196,18 +197,18 @@ static enum status locate_sides(const struct support_space *space, int64_t count
 
 /* The places of points on their sides: the node that each is there, or its cells there. ptr, item: what they
  * are kept in, the caller's to free. */
-static enum status places_on_sides(const struct support_space *space, const struct reach_places *places,
+static enum status places_on_sides(const struct support_space *space, const struct visibility_places *places,
                                    int64_t count, const int32_t *side, int64_t **ptr, int32_t **item,
-                                   struct reach_places *within, struct error *error)
+                                   struct visibility_places *within, struct error *error)
 {
     int64_t items = 0, cells;
     for (int64_t p = 0; p < count; p++) {
-        (void)reach_places_cells(places, p, &cells);
+        (void)visibility_places_cells(places, p, &cells);
         items += places->nodes ? 1 : cells;
     }
     RETURN_IF_ERROR(NEW_ARRAY(ptr, count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(item, items, error));
-    *within = (struct reach_places){.nodes = places->nodes};
+    *within = (struct visibility_places){.nodes = places->nodes};
     if (places->nodes) {
         within->node = *item;
     } else if (places->cell != NULL) {
@@ -218,7 +219,7 @@ static enum status places_on_sides(const struct support_space *space, const stru
     items = 0;
     for (int64_t p = 0; p < count; p++) {
         bool whole = side[p] == space->side_count;
-        const int32_t *cell = reach_places_cells(places, p, &cells);
+        const int32_t *cell = visibility_places_cells(places, p, &cells);
         for (int64_t k = 0; k < cells; k++) {
             if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == side[p])) {
                 (*item)[items++] = whole ? cell[k] : space->place[cell[k]];
@@ -239,10 +240,10 @@ static enum status places_on_sides(const struct support_space *space, const stru
 }
 
 static enum status lists_of_sides(const struct support_options *options, const struct support_space *space,
-                                  const struct reach_places *places, int64_t count, const double *x,
+                                  const struct visibility_places *places, int64_t count, const double *x,
                                   const char *what, struct support_lists *lists, struct error *error)
 {
-    struct reach_places within;
+    struct visibility_places within;
     SCRATCH struct support_body *body = NULL;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *side = NULL, *item = NULL;
@@ -258,21 +259,21 @@ static enum status lists_of_sides(const struct support_options *options, const s
     RETURN_IF_ERROR(places_on_sides(space, places, count, side, &ptr, &item, &within, error));
     for (int64_t s = 0; s < sides_in(space); s++) {
         const struct support_side *of = &space->side[s];
-        body[s] = (struct support_body){&of->grid, &of->reach, of->node};
+        body[s] = (struct support_body){&of->grid, &of->visibility, of->node};
     }
     return support_build_among(options, sides_in(space), body, side, &within, count, x, what, lists, error);
 }
 
 enum status support_space_lists(const struct support_options *options, const struct support_space *space,
-                                const struct reach_places *places, int64_t count, const double *x,
+                                const struct visibility_places *places, int64_t count, const double *x,
                                 const char *what, struct support_lists *lists, struct error *error)
 {
-    static const struct reach_places unknown = {0};
+    static const struct visibility_places unknown = {0};
     const struct support_side *side = &space->side[0];
     if (side->node != NULL) {
         return lists_of_sides(options, space, places != NULL ? places : &unknown, count, x, what, lists,
                               error);
     }
-    return support_build_within(options, &side->grid, space->by_cells ? &side->reach : NULL, places, count, x,
-                                what, lists, error);
+    return support_build_within(options, &side->grid, space->by_cells ? &side->visibility : NULL, places,
+                                count, x, what, lists, error);
 }

@@ -16,7 +16,7 @@ struct support_side {
     int32_t *local; /* cell_count * (dim + 1): the cells, by nodes of the side; NULL: the body's */
     double *x, *radius;
     struct point_grid grid;
-    struct reach reach; /* where neighbours are within reach through cells */
+    struct visibility visibility; /* where neighbours are within reach through cells */
 };
 
 /* The arrays of the cells and the radii are the caller's and must outlive this. */
@@ -43,6 +43,6 @@ void support_space_free(struct support_space *space);
 /* The lists of points x[count * dim], which lie in these cells (NULL: to be found): see support_build. */
 MUST_CHECK enum status support_space_lists(const struct support_options *options,
                                            const struct support_space *space,
-                                           const struct reach_places *places, int64_t count, const double *x,
-                                           const char *what, struct support_lists *lists,
+                                           const struct visibility_places *places, int64_t count,
+                                           const double *x, const char *what, struct support_lists *lists,
                                            struct error *error);

@@ -6,20 +6,20 @@
 
 #include <stdint.h>
 
-struct way_end {
+struct path_end {
     double length;
     int32_t node;
 };
 
 struct queue {
     int64_t count, capacity;
-    struct way_end *end;
+    struct path_end *end;
 };
 
 /* Errors: STATUS_SYSTEM (memory). */
 MUST_CHECK enum status queue_push(struct queue *queue, double length, int32_t node, struct error *error);
 
 /* Takes the shortest one out, of equal lengths that of the lower node; count > 0. */
-struct way_end queue_pop(struct queue *queue);
+struct path_end queue_pop(struct queue *queue);
 
 void queue_free(struct queue *queue);

@@ -96,36 +96,36 @@ int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item)
     return low;
 }
 
-enum status stretches_of(int64_t begin, int64_t end, const bool *wanted, struct stretches *stretches,
-                         struct error *error)
+enum status row_ranges_of(int64_t begin, int64_t end, const bool *wanted, struct row_ranges *ranges,
+                          struct error *error)
 {
     int64_t most = 0;
-    *stretches = (struct stretches){0};
+    *ranges = (struct row_ranges){0};
     for (int pass = 0; pass < 2; pass++) {
-        stretches->count = 0;
+        ranges->count = 0;
         for (int64_t r = begin; r < end;) {
             int64_t last = r;
-            while (last < end && last - r < STRETCH_MOST && (wanted == NULL || wanted[last])) {
+            while (last < end && last - r < ROW_RANGE_MOST && (wanted == NULL || wanted[last])) {
                 last++;
             }
             if (last > r && pass == 1) {
-                stretches->items[stretches->count] = (struct stretch){r, last};
+                ranges->items[ranges->count] = (struct row_range){r, last};
             }
-            stretches->count += last > r;
+            ranges->count += last > r;
             r = last > r ? last : r + 1;
         }
         if (pass == 0) {
-            most = stretches->count;
-            RETURN_IF_ERROR(NEW_ARRAY(&stretches->items, most, error));
+            most = ranges->count;
+            RETURN_IF_ERROR(NEW_ARRAY(&ranges->items, most, error));
         }
     }
     return STATUS_OK;
 }
 
-void stretches_free(struct stretches *stretches)
+void row_ranges_free(struct row_ranges *ranges)
 {
-    free(stretches->items);
-    *stretches = (struct stretches){0};
+    free(ranges->items);
+    *ranges = (struct row_ranges){0};
 }
 
 /* The list of what is wanted of each process. */

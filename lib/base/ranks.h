@@ -64,19 +64,19 @@ MUST_CHECK enum status ranks_share(const struct ranks *ranks, int64_t items, con
 int ranks_owner(const struct ranks *ranks, const int64_t *first, int64_t item);
 
 /* Rows of a table, as stretches that are short enough to be a thread's work. */
-struct stretch {
+struct row_range {
     int64_t begin, end;
 };
-struct stretches {
+struct row_ranges {
     int64_t count;
-    struct stretch *items;
+    struct row_range *items;
 };
-enum { STRETCH_MOST = 256 };
+enum { ROW_RANGE_MOST = 256 };
 
 /* The rows from `begin` to before `end` that are wanted (wanted[end]; NULL: all). */
-MUST_CHECK enum status stretches_of(int64_t begin, int64_t end, const bool *wanted,
-                                    struct stretches *stretches, struct error *error);
-void stretches_free(struct stretches *stretches);
+MUST_CHECK enum status row_ranges_of(int64_t begin, int64_t end, const bool *wanted,
+                                     struct row_ranges *ranges, struct error *error);
+void row_ranges_free(struct row_ranges *ranges);
 
 /* Items of a vector that other processes compute and this one needs, and the other way about. */
 struct halo {

@@ -55,7 +55,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
     SCRATCH double *coordinate = NULL;
     SCRATCH bool *at_edge = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        RETURN_IF_ERROR(assembly_soften_ends(input, materials, error));
+        RETURN_IF_ERROR(assembly_soften_junctions(input, materials, error));
         RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {

@@ -117,8 +117,8 @@ MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, s
                                                  struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
-MUST_CHECK enum status assembly_soften_ends(const struct assembly *input, struct material_list *list,
-                                            struct error *error);
+MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
+                                                 struct error *error);
 
 /* (*at_edge)[node_count]: nodes at edges between clamped and free sides, in 3D; NULL: there are none. The
  * caller's to free. */

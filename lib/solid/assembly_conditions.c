@@ -235,17 +235,17 @@ static enum status add_condition(struct prescription *p, struct error *error)
     enum status status = STATUS_OK;
     int dim = p->input->cells.dim;
     const struct condition *condition = p->condition;
-    struct ways ways = {0};
+    struct edge_paths paths = {0};
     if (condition->kind == CONDITION_TABLE) {
-        TRY(ways_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows, condition->unit,
-                       &ways, error));
+        TRY(edge_paths_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows,
+                             condition->unit, &paths, error));
         p->fit = (struct scattered_fit){.dim = dim,
                                         .value_count = dim,
                                         .count = condition->row_count,
                                         .row_size = 2 * dim,
                                         .row = condition->rows,
                                         .unit = condition->unit,
-                                        .ways = &ways};
+                                        .paths = &paths};
         TRY(scattered_fit_build(&p->fit, error));
         TRY(prescription_check_table(p, error));
         TRY(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
@@ -258,7 +258,7 @@ static enum status add_condition(struct prescription *p, struct error *error)
         TRY(add_nodes(p, error));
     }
 done:
-    ways_free(&ways);
+    edge_paths_free(&paths);
     scattered_fit_free(&p->fit);
     free(p->spacing);
     return status;

@@ -150,8 +150,8 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
         RETURN_IF_ERROR(sparse_rows_used(&body->rows.columns, &wanted, error));
     }
     RETURN_IF_ERROR(body_share_rows(body, wanted, error));
-    RETURN_IF_ERROR(stretches_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
-                                 &share->values, error));
+    RETURN_IF_ERROR(row_ranges_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
+                                  &share->values, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
     body->pair_count = input->ptr[body->point_count];
     return STATUS_OK;

@@ -258,8 +258,8 @@ static enum status order_sums(struct body *body, struct error *error)
     for (int64_t r = 0; r < rows; r++) {
         is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
     }
-    RETURN_IF_ERROR(stretches_of(0, rows, is_sent, &share->sums, error));
-    return stretches_of(0, rows, is_inner, &share->inner_sums, error);
+    RETURN_IF_ERROR(row_ranges_of(0, rows, is_sent, &share->sums, error));
+    return row_ranges_of(0, rows, is_inner, &share->inner_sums, error);
 }
 
 static int owner_of_corner(const void *body, int64_t corner)
@@ -291,7 +291,7 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
     struct body_share *share = &body->share;
     if (share->ranks == NULL) {
         RETURN_IF_ERROR(order_blocks(body, error));
-        return stretches_of(0, row_count(body), NULL, &share->inner_sums, error);
+        return row_ranges_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
         RETURN_IF_ERROR(share_corners(body, error));
@@ -310,7 +310,7 @@ enum status body_share_nodes(struct body *body, struct error *error)
     for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
         wanted[matrix->idx[i]] = true;
     }
-    return stretches_of(0, body->node_count, wanted, &body->share.placed, error);
+    return row_ranges_of(0, body->node_count, wanted, &body->share.placed, error);
 }
 
 bool body_share_has_node(const struct body *body, int64_t node)
@@ -323,10 +323,10 @@ void body_share_free(struct body_share *share)
 {
     FREE_ALL(share->block_first, share->point_first, share->node_first, share->slice_first,
              share->volume_first);
-    stretches_free(&share->values);
-    stretches_free(&share->placed);
-    stretches_free(&share->sums);
-    stretches_free(&share->inner_sums);
+    row_ranges_free(&share->values);
+    row_ranges_free(&share->placed);
+    row_ranges_free(&share->sums);
+    row_ranges_free(&share->inner_sums);
     free(share->block);
     halo_free(&share->strains);
     halo_free(&share->pressures);

@@ -22,16 +22,16 @@ struct body_share {
     int64_t *slice_first;      /* its nodal pressures, by slices, */
     int64_t *volume_first;     /* and the nodal volumes of these */
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
-    int64_t *block;              /* blocks of this process in the order in which they are worked on, */
-    int64_t border_count;        /* first those at its border, from which others need strains or forces */
-    struct stretches values;     /* rows of the operator that are computed here, */
-    struct stretches placed;     /* and the nodes in them, in the body's order */
-    struct stretches sums;       /* smoothed cells: rows whose forces are summed here, for others, */
-    struct stretches inner_sums; /* and for this process alone */
-    struct halo strains;         /* of points: for nodal volumes */
-    struct halo pressures;       /* of nodal volumes: those beside own ones, and at own points */
-    struct halo corners;         /* of smoothed cells: forces on rows that are summed here */
-    struct halo rows;            /* forces on rows, for own nodes */
+    int64_t *block;               /* blocks of this process in the order in which they are worked on, */
+    int64_t border_count;         /* first those at its border, from which others need strains or forces */
+    struct row_ranges values;     /* rows of the operator that are computed here, */
+    struct row_ranges placed;     /* and the nodes in them, in the body's order */
+    struct row_ranges sums;       /* smoothed cells: rows whose forces are summed here, for others, */
+    struct row_ranges inner_sums; /* and for this process alone */
+    struct halo strains;          /* of points: for nodal volumes */
+    struct halo pressures;        /* of nodal volumes: those beside own ones, and at own points */
+    struct halo corners;          /* of smoothed cells: forces on rows that are summed here */
+    struct halo rows;             /* forces on rows, for own nodes */
 };
 
 /* Share out the blocks of a body that are cut, and its nodes. */

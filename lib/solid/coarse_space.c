@@ -30,7 +30,7 @@ static enum status measure_ways(struct coarse_space *coarse, const struct neighb
     length[from][c] = 0.0;
     RETURN_IF_ERROR(queue_push(queue, 0.0, (int32_t)from, error));
     while (queue->count > 0) {
-        struct way_end end = queue_pop(queue);
+        struct path_end end = queue_pop(queue);
         int64_t last = end.length > length[end.node][c] ? 0 : neighbours->ptr[end.node + 1];
         for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
             int32_t next = neighbours->idx[i];

@@ -63,7 +63,7 @@ void body_visit(const struct body *body, int64_t first, int64_t last, body_visit
 /* What threads share: loops over rows, blocks and nodes. */
 static void apply(const struct body *body, const double *x, double *y)
 {
-    const struct stretches *rows = &body->share.values;
+    const struct row_ranges *rows = &body->share.values;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
         body->kernels->apply(&body->rows.matrix, rows->items[i].begin, rows->items[i].end, x, y);
@@ -78,7 +78,7 @@ static void apply_transposed(const struct body *body, const double *x, double *y
     }
 }
 
-static void sum_corners(struct body *body, const struct stretches *rows)
+static void sum_corners(struct body *body, const struct row_ranges *rows)
 {
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
@@ -116,7 +116,7 @@ static void for_all_blocks(struct body *body, void (*work)(struct body *body, in
 static void place_nodes(struct body *body, const double *u)
 {
     int dim = body->dim, stride = VECTOR_STRIDE(dim);
-    const struct stretches *placed = &body->share.placed;
+    const struct row_ranges *placed = &body->share.placed;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < placed->count; i++) {
         for (int64_t n = placed->items[i].begin; n < placed->items[i].end; n++) {

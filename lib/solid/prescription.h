@@ -5,7 +5,7 @@
 #include "solid/held_directions.h"
 
 #include "approx/scattered_fit.h"
-#include "approx/ways.h"
+#include "approx/edge_paths.h"
 
 /* One condition, and where it goes. */
 struct prescription {

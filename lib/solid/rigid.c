@@ -134,7 +134,7 @@ enum status rigid_build(int dim, int64_t facet_count, const double *corners, boo
     surface->extent = box_diagonal(&box);
     RETURN_IF_ERROR(number_vertices(surface, corners, error));
     RETURN_IF_ERROR(make_normals(surface, flip, error));
-    RETURN_IF_ERROR(rigid_join_facets(surface, error));
+    RETURN_IF_ERROR(rigid_make_pseudo_normals(surface, error));
     return rigid_grow_tree(surface, error);
 }
 

@@ -9,7 +9,7 @@
 
 /* Fill vertex_normal, edge_normal, turn and the rims of a surface whose facets and normals are
  * made. STATUS_INPUT where two facets disagree on the side. */
-MUST_CHECK enum status rigid_join_facets(struct rigid_surface *surface, struct error *error);
+MUST_CHECK enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error);
 
 /* An edge of a triangle; it goes from corner k to k + 1. */
 struct half_edge {

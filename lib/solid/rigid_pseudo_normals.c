@@ -166,7 +166,7 @@ static double corner_angle(const struct rigid_surface *surface, int64_t f, int k
     return acos(fmin(fmax(vector_dot(3, one, other) / lengths, -1.0), 1.0));
 }
 
-enum status rigid_join_facets(struct rigid_surface *surface, struct error *error)
+enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * surface->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));

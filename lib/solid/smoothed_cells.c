@@ -242,7 +242,7 @@ static enum status copy_all(const struct smoothed_cells_input *input,
         input->copied(input->context);
     }
     RETURN_IF_ERROR(body_share_rows(body, NULL, error));
-    return stretches_of(0, body->cells.averages.row_count, NULL, &body->share.values, error);
+    return row_ranges_of(0, body->cells.averages.row_count, NULL, &body->share.values, error);
 }
 
 /* Several processes: copy the rows that this one's cells need, and the columns of its nodes. */
@@ -257,7 +257,7 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
         RETURN_IF_ERROR(fetch_faces(input, body, &tables->tables[0], error));
     }
     RETURN_IF_ERROR(body_share_values(body, &needed, error));
-    RETURN_IF_ERROR(stretches_of(0, averages->row_count, needed, &share->values, error));
+    RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, needed, &share->values, error));
     RETURN_IF_ERROR(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
     RETURN_IF_ERROR(
         field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));

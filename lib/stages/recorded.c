@@ -24,7 +24,7 @@ static void describe(const struct recorded *recorded, char text[DESCRIPTION])
         snprintf(lists, sizeof lists, " least=%lld most=%lld widen=%d bound=%.17g", (long long)options->least,
                  (long long)options->most, options->widen, options->gradient_bound);
     }
-    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", reach_names[options->reach], mls, lists,
+    snprintf(text, DESCRIPTION, "unit=m reach=%s %s%s%s", visibility_names[options->visibility], mls, lists,
              same ? "" : shapes);
 }
 
@@ -61,7 +61,7 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, int 
 {
     struct support_options *options = &recorded->support;
     char name[64], value[64], what[96];
-    int choice = REACH_CELLS;
+    int choice = VISIBILITY_CELLS;
     int64_t widen = 1;
     snprintf(name, sizeof name, "%s.radius", prefix);
     const struct section *radius = stream_find(stream, name);
@@ -75,8 +75,8 @@ enum status stage_recorded(const struct stream *stream, const char *prefix, int 
     recorded->shapes = options->mls;
     RETURN_IF_ERROR(read_mls(radius, "shape_", &recorded->shapes, error));
     if (find_attribute(radius, "reach", value, what)) {
-        RETURN_IF_ERROR(parse_choice(value, what, reach_names, REACH_RULE_COUNT, &choice, error));
-        options->reach = (enum reach_rule)choice;
+        RETURN_IF_ERROR(parse_choice(value, what, visibility_names, VISIBILITY_RULE_COUNT, &choice, error));
+        options->visibility = (enum visibility_rule)choice;
     }
     const struct {
         const char *key;

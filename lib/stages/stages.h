@@ -40,7 +40,7 @@ struct list_report {
 
 /* and for all. */
 struct support_report {
-    enum reach_rule reach; /* by distance also where there are no cells */
+    enum visibility_rule visibility; /* by distance also where there are no cells */
     int lists;
     struct list_report list[3];
 };

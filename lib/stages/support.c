@@ -41,7 +41,7 @@ static enum status put_radii(struct stream *stream, const struct support_options
 /* Points of one section, in those cells: lists PREFIX.ptr, .idx, .widen, and what the report calls them. */
 struct listed {
     const struct section *points;
-    struct reach_places places;
+    struct visibility_places places;
     const char *prefix, *called;
 };
 
@@ -80,10 +80,10 @@ static enum status put_lists(struct stream *stream, const struct support_options
 
 /* The cells of the integration points; to be found by place where there is no such section. */
 static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
-                                    struct reach_places *places, struct error *error)
+                                    struct visibility_places *places, struct error *error)
 {
     const struct section *section = stream_find(stream, "points.cell");
-    *places = (struct reach_places){0};
+    *places = (struct visibility_places){0};
     if (section == NULL) {
         return STATUS_OK;
     }
@@ -98,7 +98,7 @@ static enum status places_of_points(const struct stream *stream, const struct ce
             return fail(error, STATUS_INPUT, "points.cell: row %lld: no cell %d", (long long)i, cell[i]);
         }
     }
-    *places = (struct reach_places){.cell = cell, .points_per_row = 1};
+    *places = (struct visibility_places){.cell = cell, .points_per_row = 1};
     return STATUS_OK;
 }
 
@@ -106,10 +106,10 @@ static enum status places_of_points(const struct stream *stream, const struct ce
  * there. */
 static enum status places_of_face_points(const struct stream *stream, const struct cells *cells,
                                          int64_t points, int64_t **ptr, int32_t **cell,
-                                         struct reach_places *places, struct error *error)
+                                         struct visibility_places *places, struct error *error)
 {
     struct faces faces;
-    *places = (struct reach_places){0};
+    *places = (struct visibility_places){0};
     if (cells->count == 0 || stream_find(stream, "faces.cell") == NULL) {
         return STATUS_OK;
     }
@@ -118,7 +118,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
     }
     RETURN_IF_ERROR(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
-    *places = (struct reach_places){
+    *places = (struct visibility_places){
         .ptr = *ptr, .cell = *cell, .points_per_row = OWN_POINTS(cells->dim), .long_rows = faces.own_count};
     return STATUS_OK;
 }
@@ -167,9 +167,9 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (cells.count == 0) {
-        actual.reach = REACH_DISTANCE;
+        actual.visibility = VISIBILITY_DISTANCE;
     }
-    report->reach = actual.reach;
+    report->visibility = actual.visibility;
     RETURN_IF_ERROR(put_radii(stream, &actual, node_count, x, error));
     if (actual.side != NULL) {
         RETURN_IF_ERROR(

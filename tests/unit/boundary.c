@@ -390,15 +390,15 @@ TEST_IN_EACH_DIM(ends)
     bool *held = zeros(sample.assembly.faces.count, sizeof *held);
     bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
     bool *end = zeros(sample.cloud.node_count, sizeof *end);
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
     for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
         held[f] = on_side_below(&sample, f, 2.0 * sample_size);
     }
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
     for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
         held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
     }
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         assert_false(end[n]);
     }
@@ -411,7 +411,7 @@ TEST_IN_EACH_DIM(ends)
         }
     }
     assert_true(highest > 0.2 * sample_size);
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SMOOTH, held, held, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
     int64_t count = 0;
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         const double *x = sample.cloud.x + n * dim;
@@ -429,11 +429,11 @@ TEST_IN_EACH_DIM(ends)
     for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
         touched[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
     }
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, touched, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SHARP, held, touched, end, &error));
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         assert_false(end[n]);
     }
-    GOOD(boundary_find_ends(&table, BOUNDARY_END_SHARP, held, held, end, &error));
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SHARP, held, held, end, &error));
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         const double *x = sample.cloud.x + n * dim;
         bool is_edge = false;

@@ -6,7 +6,7 @@
 #include "approx/field_error.h"
 #include "approx/size_field.h"
 #include "approx/support_space.h"
-#include "approx/ways.h"
+#include "approx/edge_paths.h"
 
 #include <gsl/gsl_errno.h>
 
@@ -48,10 +48,10 @@ static enum status try_reach(struct error *error)
     struct support_options options = support_defaults(2);
     FREED_BY(cloud_free) struct cloud cloud = {0};
     FREED_BY(point_grid_free) struct point_grid grid = {0};
-    FREED_BY(reach_free) struct reach reach = {0};
+    FREED_BY(visibility_free) struct visibility visibility = {0};
     FREED_BY(support_free) struct support_lists lists = {0};
-    struct reach_places places = {0}; /* to be found */
-    FREED_BY(ways_free) struct ways ways = {0};
+    struct visibility_places places = {0}; /* to be found */
+    FREED_BY(edge_paths_free) struct edge_paths paths = {0};
     double radius[49];
     SCRATCH double *phi = NULL;
     int64_t kept = 0;
@@ -70,16 +70,16 @@ static enum status try_reach(struct error *error)
     }
     struct cells cells = {2, cloud.node_count, cloud.x, kept, cloud.cells};
     RETURN_IF_ERROR(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
-    RETURN_IF_ERROR(reach_build(&cells, &grid, &reach, error));
-    RETURN_IF_ERROR(support_build_within(&options, &grid, &reach, &places, cells.node_count, cloud.x, "nodes",
-                                         &lists, error));
+    RETURN_IF_ERROR(visibility_build(&cells, &grid, &visibility, error));
+    RETURN_IF_ERROR(support_build_within(&options, &grid, &visibility, &places, cells.node_count, cloud.x,
+                                         "nodes", &lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
     RETURN_IF_ERROR(shape_table(&options.mls, cloud.x, radius, &view, cloud.x, "nodes", phi, NULL, error));
-    RETURN_IF_ERROR(ways_build(&cells, cells.node_count, 2, cloud.x, 1.0, &ways, error));
-    ways_begin(&ways, 0);
+    RETURN_IF_ERROR(edge_paths_build(&cells, cells.node_count, 2, cloud.x, 1.0, &paths, error));
+    edge_paths_begin(&paths, 0);
     for (int32_t n = 0; n < cells.node_count; n++) {
-        RETURN_IF_ERROR(ways_reach(&ways, n, &reached, error));
+        RETURN_IF_ERROR(edge_paths_reach(&paths, n, &reached, error));
     }
     return lists.around_count > 0 ? STATUS_OK : STATUS_INPUT;
 }
@@ -89,7 +89,7 @@ static enum status try_sides(struct error *error)
 {
     struct cloud_options wanted = {.kind = CLOUD_REGULAR, .dim = 2, .count = {7, 7}, .high = {1.0, 1.0}};
     struct support_options options = support_defaults(2);
-    struct reach_places nodes = {.nodes = true};
+    struct visibility_places nodes = {.nodes = true};
     FREED_BY(support_space_free) struct support_space space = {0};
     FREED_BY(support_free) struct support_lists of_nodes = {0}, found = {0};
     FREED_BY(cloud_free) struct cloud cloud = {0};

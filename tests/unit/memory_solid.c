@@ -55,7 +55,7 @@ static enum status try_ends(struct error *error)
     static bool none_held[1 << 12], end[1 << 12];
     struct face_table table = sample_face_table(&sample);
     assert_true(sample.assembly.faces.count < 1 << 12 && sample.cloud.node_count < 1 << 12);
-    return boundary_find_ends(&table, BOUNDARY_END_SMOOTH, none_held, none_held, end, error);
+    return boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, none_held, none_held, end, error);
 }
 
 static enum status try_rigid(struct error *error)

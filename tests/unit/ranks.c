@@ -309,18 +309,17 @@ TEST(shares)
 
 TEST(rows_in_stretches)
 {
-    struct stretches stretches;
+    struct row_ranges ranges;
     const bool wanted[9] = {true, true, false, true, false, false, true, true, true};
-    GOOD(stretches_of(1, 8, wanted, &stretches, &error));
-    assert_int_equal(stretches.count, 3);
-    assert_true(stretches.items[0].begin == 1 && stretches.items[0].end == 2);
-    assert_true(stretches.items[2].begin == 6 && stretches.items[2].end == 8);
-    stretches_free(&stretches);
-    GOOD(stretches_of(0, 2 * STRETCH_MOST + 1, NULL, &stretches, &error));
-    assert_int_equal(stretches.count, 3);
-    assert_true(stretches.items[2].begin == 2 * STRETCH_MOST &&
-                stretches.items[2].end == 2 * STRETCH_MOST + 1);
-    stretches_free(&stretches);
+    GOOD(row_ranges_of(1, 8, wanted, &ranges, &error));
+    assert_int_equal(ranges.count, 3);
+    assert_true(ranges.items[0].begin == 1 && ranges.items[0].end == 2);
+    assert_true(ranges.items[2].begin == 6 && ranges.items[2].end == 8);
+    row_ranges_free(&ranges);
+    GOOD(row_ranges_of(0, 2 * ROW_RANGE_MOST + 1, NULL, &ranges, &error));
+    assert_int_equal(ranges.count, 3);
+    assert_true(ranges.items[2].begin == 2 * ROW_RANGE_MOST && ranges.items[2].end == 2 * ROW_RANGE_MOST + 1);
+    row_ranges_free(&ranges);
 }
 
 /* What the first that fails says, all know; the values of all, in turn. */

@@ -105,7 +105,7 @@ TEST_IN_EACH_DIM(places_tell_the_side)
     assert_true(middle != NULL && cell != NULL);
     options.side = halves.side;
     GOOD(support_space_build(&options, &halves.cells, halves.radius, &space, &error));
-    struct reach_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
+    struct visibility_places at_nodes = {.nodes = true}, in_cells = {.cell = cell, .points_per_row = 1};
     for (int64_t c = 0; c < cells; c++) {
         cell_centroid(&halves.cells, c, middle + c * dim);
         cell[c] = (int32_t)c;
@@ -113,7 +113,7 @@ TEST_IN_EACH_DIM(places_tell_the_side)
     for (int kind = 0; kind < 2; kind++) {
         int64_t count = kind == 0 ? nodes : cells;
         const double *x = kind == 0 ? halves.cells.x : middle;
-        const struct reach_places *known = kind == 0 ? &at_nodes : &in_cells;
+        const struct visibility_places *known = kind == 0 ? &at_nodes : &in_cells;
         GOOD(support_space_lists(&options, &space, NULL, count, x, "points", &found, &error));
         GOOD(support_space_lists(&options, &space, known, count, x, "points", &given, &error));
         assert_memory_equal(found.ptr, given.ptr, (size_t)(count + 1) * sizeof *found.ptr);
@@ -157,7 +157,7 @@ TEST(inclusions)
 {
     struct support_options options = support_defaults(2);
     FREED_BY(halves_free) struct halves halves = make_halves(2, &options);
-    struct reach_places at_nodes = {.nodes = true};
+    struct visibility_places at_nodes = {.nodes = true};
     for (int single = 0; single < 2; single++) {
         FREED_BY(support_space_free) struct support_space space = {0};
         FREED_BY(support_free) struct support_lists lists = {0};

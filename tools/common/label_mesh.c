@@ -34,14 +34,14 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
     return mesh_add_name(names, joined, error);
 }
 
-static enum status make_regions(const struct label_image *image, const struct stuffing *stuffing,
+static enum status make_regions(const struct label_image *image, const struct label_cells *result,
                                 struct mesh *mesh, struct error *error)
 {
     SCRATCH int32_t *region = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&region, image->labels.count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, stuffing->cell_count, error));
-    for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        region[image->region[stuffing->label[c]]] = 1;
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, result->cell_count, error));
+    for (int64_t c = 0; c < result->cell_count; c++) {
+        region[image->region[result->label[c]]] = 1;
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (region[l] != 0) {
@@ -49,29 +49,29 @@ static enum status make_regions(const struct label_image *image, const struct st
             RETURN_IF_ERROR(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
         }
     }
-    for (int64_t c = 0; c < stuffing->cell_count; c++) {
-        mesh->cell_region[c] = region[image->region[stuffing->label[c]]];
+    for (int64_t c = 0; c < result->cell_count; c++) {
+        mesh->cell_region[c] = region[image->region[result->label[c]]];
     }
     return STATUS_OK;
 }
 
-static enum status make_facets(const struct label_image *image, const struct stuffing *stuffing,
+static enum status make_facets(const struct label_image *image, const struct label_cells *result,
                                struct mesh *mesh, struct error *error)
 {
-    int dim = stuffing->dim;
+    int dim = result->dim;
     SCRATCH struct member *member = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&member, stuffing->facet_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, stuffing->facet_count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, stuffing->facet_count, error));
-    for (int32_t f = 0; f < (int32_t)stuffing->facet_count; f++) {
-        int32_t inner = stuffing->side[2 * f], part = image->part_of[inner];
-        member[f] = (struct member){inner, stuffing->side[2 * f + 1], f};
-        if (part >= 0 && stuffing->side[2 * f + 1] == 0) {
+    RETURN_IF_ERROR(NEW_ARRAY(&member, result->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, result->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, result->facet_count, error));
+    for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
+        int32_t inner = result->side[2 * f], part = image->part_of[inner];
+        member[f] = (struct member){inner, result->side[2 * f + 1], f};
+        if (part >= 0 && result->side[2 * f + 1] == 0) {
             member[f] = (struct member){image->labels.count + part, 0, f};
         }
     }
-    qsort(member, (size_t)stuffing->facet_count, sizeof *member, compare_members);
-    for (int64_t f = 0; f < stuffing->facet_count; f++) {
+    qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
+    for (int64_t f = 0; f < result->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
             int32_t part = member[f].inner - image->labels.count;
             RETURN_IF_ERROR(add_name(&mesh->facet_sets,
@@ -79,10 +79,10 @@ static enum status make_facets(const struct label_image *image, const struct stu
                                      part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
         }
         mesh->facet_set[f] = mesh->facet_sets.count - 1;
-        memcpy(mesh->facets + f * dim, stuffing->facet + (int64_t)member[f].item * dim,
+        memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
                (size_t)dim * sizeof *mesh->facets);
     }
-    mesh->facet_count = stuffing->facet_count;
+    mesh->facet_count = result->facet_count;
     return STATUS_OK;
 }
 
@@ -111,11 +111,10 @@ static int64_t find_interfaces(const struct cells *cells, const int32_t *region,
     return count;
 }
 
-static enum status make_sets(const struct label_image *image, const struct stuffing *stuffing,
+static enum status make_sets(const struct label_image *image, const struct label_cells *result,
                              struct mesh *mesh, struct error *error)
 {
-    struct cells cells = {stuffing->dim, stuffing->node_count, stuffing->x, stuffing->cell_count,
-                          stuffing->cell};
+    struct cells cells = {result->dim, result->node_count, result->x, result->cell_count, result->cell};
     SCRATCH int32_t *across = NULL;
     SCRATCH struct member *member = NULL;
     SCRATCH int32_t *region = NULL;
@@ -124,7 +123,7 @@ static enum status make_sets(const struct label_image *image, const struct stuff
     RETURN_IF_ERROR(cells_across(&cells, across, error));
     RETURN_IF_ERROR(NEW_ARRAY(&region, cells.count, error));
     for (int64_t c = 0; c < cells.count; c++) {
-        region[c] = image->region[stuffing->label[c]];
+        region[c] = image->region[result->label[c]];
     }
     int64_t count = find_interfaces(&cells, region, across, NULL);
     RETURN_IF_ERROR(NEW_ARRAY(&member, count, error));
@@ -147,17 +146,17 @@ static enum status make_sets(const struct label_image *image, const struct stuff
     return STATUS_OK;
 }
 
-enum status label_mesh_make(const struct label_image *image, const struct stuffing *stuffing,
+enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,
                             struct mesh *mesh, struct error *error)
 {
-    *mesh = (struct mesh){.dim = stuffing->dim,
-                          .node_count = stuffing->node_count,
-                          .x = stuffing->x,
-                          .cell_count = stuffing->cell_count,
-                          .cells = stuffing->cell};
-    RETURN_IF_ERROR(make_regions(image, stuffing, mesh, error));
-    RETURN_IF_ERROR(make_facets(image, stuffing, mesh, error));
-    return make_sets(image, stuffing, mesh, error);
+    *mesh = (struct mesh){.dim = result->dim,
+                          .node_count = result->node_count,
+                          .x = result->x,
+                          .cell_count = result->cell_count,
+                          .cells = result->cell};
+    RETURN_IF_ERROR(make_regions(image, result, mesh, error));
+    RETURN_IF_ERROR(make_facets(image, result, mesh, error));
+    return make_sets(image, result, mesh, error);
 }
 
 void label_mesh_free(struct mesh *mesh)

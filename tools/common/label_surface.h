@@ -3,7 +3,7 @@
 
 #include "label_image.h"
 
-#include "approx/stuffing.h"
+#include "approx/label_cells.h"
 
 /* Which facets, and how far they are moved outward, m. */
 struct label_surface_options {
@@ -18,5 +18,5 @@ void label_surface_parse(const struct tool *tool, const struct label_image *imag
 /* Write the facets, right-hand normals outward of A: 3D a triangle's corners in each row; 2D closed curves
  * with A on the left, a point in each row, a blank line between curves; m. To tool->output or standard
  * output; exits on failure, also when there is no such facet. */
-void label_surface_write(const struct tool *tool, const struct stuffing *stuffing,
+void label_surface_write(const struct tool *tool, const struct label_cells *mesh,
                          const struct label_surface_options *options);

@@ -1,0 +1,37 @@
+/* Which places are within reach of a node, so that measured values do not act across gaps and slits.
+ *
+ * A place belongs to the node nearest to it. It is within reach of another node when the straight segment
+ * between the two nodes stays within the cells (see visibility.h), or when a way along edges of the cells is
+ * at most twice as long as that segment: around mild folds of the boundary, but not from one lip of a slit to
+ * the other. */
+#pragma once
+
+#include "approx/visibility.h"
+#include "base/queue.h"
+
+enum path_verdict { PATH_UNKNOWN, PATH_GOOD, PATH_NONE };
+
+struct edge_paths {
+    struct visibility visibility; /* its cells only */
+    struct visibility_work work;
+    int64_t place_count;
+    int32_t *node;    /* place_count: to which each place belongs; -1 where no node is in a cell */
+    uint8_t *verdict; /* place_count, of enum path_verdict: on the ways from `from` */
+    int32_t from;     /* -1: none yet */
+    double searched;  /* ways from there are known up to this length, m; negative: none */
+    double *length;   /* node_count: their lengths, infinite beyond */
+    struct queue queue;
+};
+
+/* place[place_count * stride], the first dim of each row, in units of `unit` m. The cells must outlive this.
+ * Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
+MUST_CHECK enum status edge_paths_build(const struct cells *cells, int64_t place_count, int64_t stride,
+                                        const double *place, double unit, struct edge_paths *paths,
+                                        struct error *error);
+void edge_paths_free(struct edge_paths *paths);
+
+/* Ask about another node; the same as before: nothing is forgotten. */
+void edge_paths_begin(struct edge_paths *paths, int32_t from);
+
+MUST_CHECK enum status edge_paths_reach(struct edge_paths *paths, int64_t place, bool *reached,
+                                        struct error *error);

@@ -1,0 +1,467 @@
+/* Cells from labels: what must hold for any shape. */
+#include "approx/cells.h"
+#include "approx/label_cells_private.h"
+
+#include "label_cells_fixture.h"
+
+/* The volume of each label within a share of that of its voxels. */
+static void check_volumes(const struct labels *labels, const struct label_shape *shape,
+                          const struct label_cells *mesh, double tolerance)
+{
+    double wanted[64] = {0}, found[64] = {0};
+    struct cells cells = cells_of(mesh);
+    for (int64_t v = 0; v < labels->size[0] * labels->size[1] * labels->size[2]; v++) {
+        wanted[labels->label[v]] += shape->voxel[0] * shape->voxel[1] * shape->voxel[2] * 1e-9;
+    }
+    for (int64_t c = 0; c < cells.count; c++) {
+        found[mesh->label[c]] += cell_volume(&cells, c);
+    }
+    for (int l = 1; l < labels->count; l++) {
+        assert_true(fabs(found[l] - wanted[l]) <= tolerance * wanted[l]);
+    }
+}
+
+/* Whether the label is another one within a distance of a place, m, in one of 98 directions. */
+static bool changes_within(const struct labels *labels, const double x[3], double reach)
+{
+    int32_t label = labels_at(labels, x);
+    for (int step = 1; step <= 12; step++) {
+        for (int i = 0; i < 125; i++) {
+            double u[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2}, place[3];
+            double norm = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+            for (int d = 0; d < 3 && norm > 0; d++) {
+                place[d] = x[d] + reach * step / 12 * u[d] / norm;
+            }
+            if (norm > 0 && labels_at(labels, place) != label) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* How many nodes of facets, and of faces between two labels, are farther than .6 voxels from where the label
+ * changes. */
+static int64_t count_astray(const struct labels *labels, const struct label_cells *mesh)
+{
+    struct cells cells = cells_of(mesh);
+    FREED_BY(faces_free) struct faces faces = {0};
+    int64_t count = 0;
+    bool *seen = zeros(mesh->node_count, sizeof *seen);
+    GOOD(faces_build(&cells, false, &faces, &error));
+    for (int64_t f = 0; f < faces.count; f++) {
+        const int32_t *cell = faces.cell + 2 * f;
+        for (int k = 0; k < 3 && (cell[1] < 0 || mesh->label[cell[0]] != mesh->label[cell[1]]); k++) {
+            int32_t node = faces.node[3 * f + k];
+            count += !seen[node] &&
+                     !changes_within(labels, mesh->x + 3 * (int64_t)node, 0.6 * labels_voxel(labels));
+            seen[node] = true;
+        }
+    }
+    return count;
+}
+
+TEST(smooth_shapes)
+{
+    static const struct {
+        const char *name;
+        double spacing;
+    } cases[] = {{"sphere", 3}, {"sphere", 6},     {"sphere", 12}, {"torus", 4}, {"two", 5},
+                 {"four", 5},   {"four", 0.8 * 5}, {"thin", 2},    {"layer", 2}, {"layer", 1.5}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct label_shape shape;
+        struct labels labels;
+        FREED_BY(label_cells_free)
+        struct label_cells mesh = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
+        check_volumes(&labels, &shape, &mesh, 0.01);
+        assert_int_equal(count_astray(&labels, &mesh), 0);
+        free(shape.label);
+    }
+}
+
+/* Where gaps and necks are narrower than the spacing, nodes have others out of the way. */
+TEST(random_blobs)
+{
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        for (int h = 3; h <= 5; h += 2) {
+            struct label_shape shape;
+            struct labels labels;
+            FREED_BY(label_cells_free)
+            struct label_cells mesh = make_of_shape("blobs", seed, h, &shape, &labels);
+            check_volumes(&labels, &shape, &mesh, 0.01);
+            assert_int_equal(count_astray(&labels, &mesh), 0);
+            assert_int_equal(mesh.astray, 0);
+            free(shape.label);
+        }
+    }
+}
+
+/* Four labels and the outside meet where the line between quarters of a ball ends. */
+TEST(five_labels_at_a_node)
+{
+    int most = 0;
+    for (int h = 3; h <= 6; h++) {
+        struct label_shape shape;
+        assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+        for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+            int64_t i = v % shape.size[0], j = v / shape.size[0] % shape.size[1];
+            if (shape.label[v] != 0) {
+                shape.label[v] = (uint16_t)(1 + (2 * i > shape.size[0]) + 2 * (2 * j > shape.size[1]));
+            }
+        }
+        struct labels labels = labels_of(&shape);
+        struct label_cells_options options = {.spacing = 1e-3 * h, .keep = all_kept};
+        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
+        check_cells(&mesh);
+        assert_int_equal(count_astray(&labels, &mesh), 0);
+        FREED_BY(star_free) struct label_cells_star star = {0};
+        GOOD(star_make(&mesh, NULL, NULL, &star, &error));
+        for (int64_t n = 0; n < mesh.node_count; n++) {
+            most = star.labels[n] > most ? star.labels[n] : most;
+        }
+        free(shape.label);
+    }
+    assert_int_equal(most, 5);
+}
+
+/* The same body from voxels in another order, mirrored along an axis: the same cells. */
+TEST(orders_of_voxels)
+{
+    const double voxel[3] = {1, 1.25, 2};
+    struct label_shape shape;
+    assert_true(label_shape_make("two", 1, voxel, &shape));
+    struct labels labels = labels_of(&shape), turned = labels;
+    uint16_t *label = zeros(shape.size[0] * shape.size[1] * shape.size[2], sizeof *label);
+    for (int d = 0; d < 3; d++) { /* axes k, i, j, the first one backwards */
+        turned.size[d] = shape.size[(d + 2) % 3];
+        for (int e = 0; e < 4; e++) {
+            turned.to_voxel[d][e] = labels.to_voxel[(d + 2) % 3][e] * (d == 0 ? -1 : 1);
+        }
+    }
+    turned.to_voxel[0][3] += (double)(turned.size[0] - 1);
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        int64_t i = v % shape.size[0], j = v / shape.size[0] % shape.size[1],
+                k = v / shape.size[0] / shape.size[1];
+        label[(j * turned.size[1] + i) * turned.size[0] + turned.size[0] - 1 - k] = shape.label[v];
+    }
+    turned.label = label;
+    struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept};
+    struct label_cells a = make(&labels, &options), b = make(&turned, &options);
+    check_cells(&a);
+    check_volumes(&labels, &shape, &a, 0.01);
+    assert_int_equal(count_astray(&labels, &a), 0);
+    assert_int_equal(a.node_count, b.node_count);
+    assert_int_equal(a.cell_count, b.cell_count);
+    for (int64_t i = 0; i < 3 * a.node_count; i++) {
+        assert_true(fabs(a.x[i] - b.x[i]) < 1e-9);
+    }
+    label_cells_free(&a);
+    label_cells_free(&b);
+    free(shape.label);
+}
+
+/* Longest edge of the cells of a label, or 0, that touch its boundary, or do not. */
+static double longest_edge(const struct label_cells *mesh, int32_t label, bool at_boundary)
+{
+    double longest = 0;
+    bool *on = zeros(mesh->node_count, sizeof *on);
+    for (int64_t i = 0; i < 3 * mesh->facet_count; i++) {
+        on[mesh->facet[i]] = true;
+    }
+    for (int64_t c = 0; c < mesh->cell_count; c++) {
+        const int32_t *node = mesh->cell + 4 * c;
+        bool touches = on[node[0]] || on[node[1]] || on[node[2]] || on[node[3]];
+        for (int k = 0; k < 6 && mesh->label[c] == label && touches == at_boundary; k++) {
+            static const int pair[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+            const double *a = mesh->x + 3 * (int64_t)node[pair[k][0]];
+            const double *b = mesh->x + 3 * (int64_t)node[pair[k][1]];
+            longest = fmax(longest, sqrt(shape_square(a, b)));
+        }
+    }
+    return longest;
+}
+
+TEST(finer_at_interfaces)
+{
+    struct label_shape shape;
+    bool fine[64] = {false, false, true};
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct label_cells_options options = {.spacing = 6e-3, .finest = 1.5e-3, .keep = all_kept};
+    struct label_cells mesh = make(&labels, &options);
+    check_cells(&mesh);
+    check_volumes(&labels, &shape, &mesh, 1e-3);
+    assert_int_equal(count_astray(&labels, &mesh), 0);
+    assert_true(longest_edge(&mesh, 1, true) < 1.6 * 1.5e-3);
+    assert_true(longest_edge(&mesh, 1, false) > 5.9e-3);
+    label_cells_free(&mesh);
+    free(shape.label);
+
+    /* At a thin layer only: it is kept, while the outside is coarse. */
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    labels = labels_of(&shape);
+    options = (struct label_cells_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
+    mesh = make(&labels, &options);
+    check_cells(&mesh);
+    check_volumes(&labels, &shape, &mesh, 0.01);
+    assert_int_equal(count_astray(&labels, &mesh), 0);
+    assert_true(longest_edge(&mesh, 1, true) > 5.9e-3);
+    label_cells_free(&mesh);
+    free(shape.label);
+
+    for (uint64_t seed = 1; seed <= 10; seed++) {
+        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
+        labels = labels_of(&shape);
+        options =
+            (struct label_cells_options){.spacing = 6e-3, .finest = 1.5e-3, .fine = fine, .keep = all_kept};
+        mesh = make(&labels, &options);
+        check_cells(&mesh);
+        label_cells_free(&mesh);
+        free(shape.label);
+    }
+}
+
+/* Six tetrahedra about a cube of half edge `half`, m, and the sizes at its corners: `least` at the one where
+ * x, y and z are largest, six times as much at the others. */
+struct sized_cube {
+    struct cells cells;
+    double x[24], size[8];
+    int32_t node[24];
+};
+
+static void sized_cube(double half, double least, struct sized_cube *cube)
+{
+    static const int32_t node[24] = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+    memcpy(cube->node, node, sizeof node);
+    for (int n = 0; n < 8; n++) {
+        for (int d = 0; d < 3; d++) {
+            cube->x[3 * n + d] = n >> d & 1 ? half : -half;
+        }
+        cube->size[n] = n == 7 ? least : 6 * least;
+    }
+    cube->cells = (struct cells){3, 8, cube->x, 6, cube->node};
+}
+
+TEST(by_sizes)
+{
+    struct label_shape shape;
+    struct sized_cube cube;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct label_cells_options options = {.spacing = 8e-3, .keep = all_kept, .sized = &cube.cells};
+    struct label_cells plain, mesh;
+    options.size = NULL;
+    plain = make(&labels, &options);
+
+    /* Sizes of about those there are, and larger ones, change nothing. */
+    options.size = cube.size;
+    for (double least = 7e-3; least < 1; least *= 5) {
+        sized_cube(30e-3, least, &cube);
+        mesh = make(&labels, &options);
+        assert_int_equal(mesh.cell_count, plain.cell_count);
+        assert_memory_equal(mesh.x, plain.x, (size_t)plain.node_count * 3 * sizeof(double));
+        assert_true(mesh.unsized == 0);
+        label_cells_free(&mesh);
+    }
+
+    /* Everywhere half: the lattice of half the spacing. */
+    sized_cube(30e-3, 0.91 * 1e-3, &cube);
+    for (int n = 0; n < 8; n++) {
+        cube.size[n] = 0.91 * 4e-3;
+    }
+    mesh = make(&labels, &options);
+    struct label_cells_options half = {.spacing = 4e-3, .keep = all_kept};
+    FREED_BY(label_cells_free) struct label_cells halved = make(&labels, &half);
+    assert_int_equal(mesh.node_count, halved.node_count);
+    assert_int_equal(mesh.cell_count, halved.cell_count);
+    label_cells_free(&mesh);
+
+    /* Finer to one side: mean edges about the sizes there. */
+    for (int shape_at = 0; shape_at < 4; shape_at++) {
+        static const char *const names[] = {"sphere", "two", "four", "atlas"};
+        struct label_shape other;
+        assert_true(label_shape_make(names[shape_at], 1, millimetre, &other));
+        struct labels others = labels_of(&other);
+        sized_cube(32e-3, 1.2e-3, &cube);
+        options.spacing = 0.006;
+        mesh = make(&others, &options);
+        check_cells(&mesh);
+        double volume[2] = {0};
+        int64_t count[2] = {0};
+        struct cells cells = cells_of(&mesh);
+        for (int64_t c = 0; c < cells.count; c++) {
+            double middle[3];
+            cell_centroid(&cells, c, middle);
+            bool fine = middle[0] > 0 && middle[1] > 0 && middle[2] > 0;
+            volume[fine] += cell_volume(&cells, c);
+            count[fine]++;
+        }
+        assert_true(volume[0] / (double)count[0] > 3 * volume[1] / (double)count[1]);
+        label_cells_free(&mesh);
+        free(other.label);
+    }
+
+    /* Sizes over a part of the body, elsewhere, or far too small. */
+    options.spacing = 8e-3;
+    sized_cube(10e-3, 2e-3, &cube);
+    mesh = make(&labels, &options);
+    check_cells(&mesh);
+    assert_true(mesh.unsized > 0.5 && mesh.unsized < 1);
+    label_cells_free(&mesh);
+    for (int i = 0; i < 24; i++) {
+        cube.x[i] += 1;
+    }
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "elsewhere");
+    sized_cube(30e-3, 1e-6, &cube);
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "a size of 1e-06 m");
+    sized_cube(30e-3, 0.1e-3, &cube);
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "lattice points");
+    label_cells_free(&plain);
+    free(shape.label);
+}
+
+/* A slice: triangles. */
+TEST(slices)
+{
+    uint16_t label[64 * 64];
+    struct labels labels = {.size = {64, 1, 64}, .label = label, .count = 3, .dim = 2, .axis = {0, 2}};
+    const double area[3] = {0, 0.5 * M_PI * 400e-6, 0.5 * M_PI * 400e-6};
+    double found[3] = {0};
+    for (int v = 0; v < 64 * 64; v++) {
+        double x = v % 64 - 31.5, z = v / 64 - 31.5;
+        label[v] = hypot(x, z) < 20 ? (x < 0 ? 1 : 2) : 0;
+    }
+    for (int d = 0; d < 3; d++) {
+        labels.to_voxel[d][d] = 1e3;
+        labels.to_voxel[d][3] = d == 1 ? 0 : 31.5;
+    }
+    struct label_cells_options options = {.spacing = 4e-3, .keep = all_kept};
+    struct label_cells mesh = make(&labels, &options);
+    check_cells(&mesh);
+    struct cells cells = cells_of(&mesh);
+    for (int64_t c = 0; c < cells.count; c++) {
+        found[mesh.label[c]] += cell_volume(&cells, c);
+    }
+    for (int l = 1; l < 3; l++) {
+        assert_true(fabs(found[l] / area[l] - 1) < 0.01);
+    }
+    label_cells_free(&mesh);
+    options.finest = 1e-3;
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "not for slices");
+}
+
+TEST(threads)
+{
+    struct label_shape shape;
+    struct label_cells mesh[2];
+    assert_true(label_shape_make("blobs", 3, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct label_cells_options options = {.spacing = 5e-3, .finest = 2.5e-3, .keep = all_kept};
+    int before = omp_get_max_threads();
+    for (int t = 0; t < 2; t++) {
+        omp_set_num_threads(t == 0 ? 1 : 3);
+        mesh[t] = make(&labels, &options);
+    }
+    omp_set_num_threads(before);
+    assert_int_equal(mesh[0].node_count, mesh[1].node_count);
+    assert_int_equal(mesh[0].cell_count, mesh[1].cell_count);
+    assert_memory_equal(mesh[0].x, mesh[1].x, (size_t)mesh[0].node_count * 3 * sizeof(double));
+    assert_memory_equal(mesh[0].cell, mesh[1].cell, (size_t)mesh[0].cell_count * 4 * sizeof(int32_t));
+    label_cells_free(&mesh[0]);
+    label_cells_free(&mesh[1]);
+    free(shape.label);
+}
+
+/* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
+TEST(shares)
+{
+    struct label_shape shape;
+    const double far[3] = {5, -3, 1e6}, step = 1e-6;
+    uint64_t seed = 7;
+    assert_true(label_shape_make("four", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    assert_int_equal(labels_at(&labels, far), 0);
+    for (int i = 0; i < 200; i++) {
+        struct label_mix mix;
+        double sum = 0, gradient[3], ignored[3];
+        double x[3] = {2.2e-3 * shape_random(&seed), 5e-3 * shape_random(&seed), 3e-3 * shape_random(&seed)};
+        labels_mix(&labels, x, &mix);
+        for (int l = 0; l < mix.count; l++) {
+            sum += mix.share[l];
+        }
+        assert_true(fabs(sum - 1) < 1e-12);
+        double value = labels_difference(&labels, x, 1, 2, gradient);
+        assert_true(fabs(value - (label_share(&mix, 1) - label_share(&mix, 2))) < 1e-12);
+        for (int d = 0; d < 3; d++) {
+            double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
+            low[d] -= step;
+            high[d] += step;
+            double slope = (labels_difference(&labels, high, 1, 2, ignored) -
+                            labels_difference(&labels, low, 1, 2, ignored)) /
+                           (2 * step);
+            assert_true(fabs(slope - gradient[d]) < 1e-3 * 1e3);
+        }
+    }
+    free(shape.label);
+}
+
+TEST(what_is_lost)
+{
+    struct label_shape shape;
+    int64_t lost[64], total = 0;
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        total += shape.label[v] == 2;
+    }
+    struct label_cells_options options = {.spacing = 8e-3, .keep = all_kept};
+    struct label_cells mesh = make(&labels, &options);
+    GOOD(label_cells_lost(&labels, options.keep, &mesh, lost, &error));
+    assert_true((double)lost[2] > 0.7 * (double)total && lost[2] <= total);
+    label_cells_free(&mesh);
+    options.spacing = 2e-3;
+    mesh = make(&labels, &options);
+    GOOD(label_cells_lost(&labels, options.keep, &mesh, lost, &error));
+    assert_int_equal(lost[2], 0);
+    label_cells_free(&mesh);
+    free(shape.label);
+}
+
+/* A thin label that is left out cuts the cylinder in two: the coarse lattice fills the gap. */
+TEST(what_is_filled)
+{
+    struct label_shape shape;
+    static const bool keep[3] = {false, true, false};
+    int64_t lost[3];
+    assert_true(label_shape_make("thin", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int coarse = 0; coarse < 2; coarse++) {
+        struct label_cells_options options = {.spacing = coarse ? 6e-3 : 2e-3, .keep = keep};
+        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
+        GOOD(label_cells_lost(&labels, keep, &mesh, lost, &error));
+        assert_int_equal(lost[0], 0);
+        assert_int_equal(lost[2] > 1000, coarse);
+    }
+    free(shape.label);
+}
+
+TEST(refusals)
+{
+    struct label_shape shape;
+    struct label_cells mesh;
+    assert_true(label_shape_make("layer", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct label_cells_options options = {.spacing = 1e-6, .keep = all_kept};
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "lattice points over the labels");
+    options.spacing = 10;
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT,
+          "no lattice point lies in a label: smaller?");
+    options = (struct label_cells_options){.spacing = 1, .finest = 1e-3, .keep = all_kept};
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "1/128");
+    memset(shape.label, 0, (size_t)(shape.size[0] * shape.size[1] * shape.size[2]) * sizeof *shape.label);
+    options = (struct label_cells_options){.spacing = 1e-3, .keep = all_kept};
+    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "all is outside");
+    free(shape.label);
+}
+
+RUN_TESTS(NULL, NULL)

@@ -1,0 +1,256 @@
+/* Cells from labels: the surface and the parts of a body. */
+#include "approx/parts.h"
+#include "base/vector.h"
+
+#include "label_cells_fixture.h"
+
+/* The surface of a body stays where it is, wherever its labels meet beneath, or are too thin for the lattice:
+ * nodes on the boundary of a sphere of 24 mm. Voxels of 1 mm know it to half a voxel, and the volumes of
+ * labels move it by as much. */
+TEST(surface_over_labels)
+{
+    static const struct {
+        const char *name;
+        double spacing, most; /* mm */
+    } cases[] = {{"sphere", 4, 0.6}, {"sphere", 6, 0.6}, {"two", 4, 1},  {"two", 5, 1},   {"two", 6, 1},
+                 {"four", 4, 1},     {"four", 5, 1},     {"four", 6, 1}, {"shell", 4, 1}, {"shell", 5, 1.3}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct label_shape shape;
+        struct labels labels;
+        FREED_BY(label_cells_free)
+        struct label_cells mesh = make_of_shape(cases[i].name, 1, cases[i].spacing, &shape, &labels);
+        for (int64_t k = 0; k < mesh.facet_count * 3; k++) {
+            const double *x = mesh.x + 3 * (int64_t)mesh.facet[k];
+            double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+            assert_true(fabs(r - 24e-3) < 1e-3 * cases[i].most);
+        }
+        free(shape.label);
+    }
+}
+
+/* Nodes at which the cells of the body fall into parts without a common face. */
+static int64_t count_hinges(const struct label_cells *mesh)
+{
+    struct cells cells = cells_of(mesh);
+    int64_t hinges = 0;
+    int32_t *across = zeros(cells.count * 4, sizeof *across);
+    SCRATCH int32_t *part =
+        calloc((size_t)cells.count * 4, sizeof *part); /* of each corner: the least cell reached */
+    assert_true(across != NULL && part != NULL);
+    GOOD(cells_across(&cells, across, &error));
+    for (int64_t i = 0; i < cells.count * 4; i++) {
+        part[i] = (int32_t)(i / 4);
+    }
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int64_t i = 0; i < cells.count * 16; i++) {
+            int64_t corner = i / 4, face = i / 16 * 4 + i % 4, next = across[face];
+            for (int64_t k = 4 * next; next >= 0 && face != corner && k < 4 * next + 4; k++) {
+                if (cells.node[k] == cells.node[corner] && part[k] < part[corner]) {
+                    part[corner] = part[k];
+                    changed = true;
+                }
+            }
+        }
+    }
+    int32_t *least = zeros(cells.node_count, sizeof *least);
+    for (int64_t i = 0; i < cells.count * 4; i++) {
+        int32_t *of_node = &least[cells.node[i]];
+        hinges += *of_node != 0 && *of_node != part[i] + 1 && part[i] == i / 4;
+        *of_node = *of_node == 0 ? part[i] + 1 : *of_node;
+    }
+    return hinges;
+}
+
+/* Gaps narrower than the lattice are filled where parts of one body would hang together by nodes alone. */
+TEST(parts_are_joined)
+{
+    int64_t hinges = 0;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct label_shape shape;
+        assert_true(label_shape_make("blobs", seed, millimetre, &shape));
+        struct labels labels = labels_of(&shape);
+        struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept, .largest = true};
+        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
+        check_cells(&mesh);
+        assert_int_equal(count_hinges(&mesh), mesh.hinges);
+        hinges += mesh.hinges;
+        free(shape.label);
+    }
+    assert_true(hinges <= 2);
+}
+
+static int32_t count_bodies(const struct label_cells *mesh)
+{
+    struct cells cells = cells_of(mesh);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
+    GOOD(cells_parts(&cells, part, &count, &error));
+    return count;
+}
+
+/* No node is shared by cells of two connected bodies. */
+static void check_apart(const struct label_cells *mesh)
+{
+    struct cells cells = cells_of(mesh);
+    int32_t count = 0, *part = zeros(cells.count, sizeof *part);
+    int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
+    assert_true(part != NULL && of_node != NULL);
+    GOOD(cells_parts(&cells, part, &count, &error));
+    for (int64_t i = 0; i < 4 * cells.count; i++) {
+        int32_t *body = &of_node[cells.node[i]];
+        assert_true(*body == 0 || *body == part[i / 4] + 1);
+        *body = part[i / 4] + 1;
+    }
+}
+
+TEST(parts_that_hang_by_an_edge)
+{
+    struct label_shape shape;
+    int64_t cut = 0;
+    assert_true(label_shape_make("boxes", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    for (int h = 2; h <= 6; h++) {
+        struct label_cells_options options = {.spacing = 1e-3 * h, .keep = all_kept};
+        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
+        check_cells(&mesh);
+        check_apart(&mesh);
+        cut += mesh.pinched;
+    }
+    assert_true(cut > 0);
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        struct label_shape blobs;
+        assert_true(label_shape_make("blobs", seed, millimetre, &blobs));
+        struct labels of_blobs = labels_of(&blobs);
+        struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept};
+        FREED_BY(label_cells_free) struct label_cells mesh = make(&of_blobs, &options);
+        check_apart(&mesh);
+        free(blobs.label);
+    }
+    free(shape.label);
+}
+
+TEST(specks_and_the_largest_body)
+{
+    struct label_shape shape;
+    assert_true(label_shape_make("sphere", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    /* A cube of 5 voxels about a point of the lattice, and one of 10. */
+    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
+        double x[3] = {shape.first[0] + (double)(v % shape.size[0]),
+                       shape.first[1] + (double)(v / shape.size[0] % shape.size[1]),
+                       shape.first[2] + (double)(v / shape.size[0] / shape.size[1])};
+        bool speck = fabs(x[0] + 24) < 2.5 && fabs(x[1] + 24) < 2.5 && fabs(x[2] + 24) < 2.5;
+        bool cube = fabs(x[0] - 24) < 5 && fabs(x[1] - 24) < 5 && fabs(x[2] - 24) < 5;
+        shape.label[v] = speck || cube ? 1 : shape.label[v];
+    }
+    struct label_cells_options options = {.spacing = 6e-3, .keep = all_kept};
+    struct label_cells mesh = make(&labels, &options);
+    check_cells(&mesh);
+    assert_int_equal(mesh.specks, 1);
+    assert_true(mesh.speck_volume > 20e-9 && mesh.speck_volume < 200e-9);
+    assert_int_equal(count_bodies(&mesh), 2);
+    label_cells_free(&mesh);
+    options.largest = true;
+    mesh = make(&labels, &options);
+    assert_int_equal(count_bodies(&mesh), 1);
+    /* The sphere does not grow to make up for the cube. */
+    struct cells cells = cells_of(&mesh);
+    double volume = 0;
+    for (int64_t c = 0; c < cells.count; c++) {
+        volume += cell_volume(&cells, c);
+    }
+    assert_true(fabs(volume / (4.0 / 3 * M_PI * pow(24e-3, 3)) - 1) < 0.01);
+    label_cells_free(&mesh);
+    free(shape.label);
+}
+
+/* Six times the volume of a tetrahedron. */
+static double volume_of(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+    double edge[3][3];
+    vector_subtract(3, b, a, edge[0]);
+    vector_subtract(3, c, a, edge[1]);
+    vector_subtract(3, d, a, edge[2]);
+    return determinant3(edge[0], edge[1], edge[2]);
+}
+
+/* Whether an edge of a facet goes through another one with which it has no node in common. */
+static bool goes_through(const struct label_cells *mesh, const int32_t facet[3], const int32_t other[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const int32_t end[2] = {facet[k], facet[(k + 1) % 3]};
+        const double *p = mesh->x + 3 * (int64_t)end[0], *q = mesh->x + 3 * (int64_t)end[1];
+        const double *x[3];
+        int above = 0;
+        bool meets = false;
+        for (int l = 0; l < 3; l++) {
+            meets = meets || other[l] == end[0] || other[l] == end[1];
+            x[l] = mesh->x + 3 * (int64_t)other[l];
+        }
+        for (int l = 0; l < 3; l++) {
+            above += volume_of(p, q, x[l], x[(l + 1) % 3]) > 0;
+        }
+        bool through = (volume_of(x[0], x[1], x[2], p) > 0) != (volume_of(x[0], x[1], x[2], q) > 0);
+        if (!meets && through && above % 3 == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Pairs of facets of the boundary that go through each other. */
+static int64_t count_crossings(const struct label_cells *mesh)
+{
+    int64_t count = 0;
+    double(*box)[6] = zeros(mesh->facet_count, sizeof *box);
+    for (int64_t f = 0; f < mesh->facet_count; f++) {
+        for (int i = 0; i < 9; i++) {
+            double x = mesh->x[3 * (int64_t)mesh->facet[3 * f + i / 3] + i % 3];
+            box[f][i % 3] = i < 3 ? x : fmin(box[f][i % 3], x);
+            box[f][3 + i % 3] = i < 3 ? x : fmax(box[f][3 + i % 3], x);
+        }
+        for (int64_t g = 0; g < f; g++) {
+            bool near = true;
+            for (int d = 0; d < 3; d++) {
+                near = near && box[f][d] <= box[g][3 + d] && box[g][d] <= box[f][3 + d];
+            }
+            const int32_t *one = mesh->facet + 3 * f, *other = mesh->facet + 3 * g;
+            count += near && (goes_through(mesh, one, other) || goes_through(mesh, other, one));
+        }
+    }
+    return count;
+}
+
+/* Walls of gaps and cavities narrower than the spacing do not pass through each other. */
+TEST(walls_stay_apart)
+{
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        struct label_shape shape;
+        struct labels labels;
+        FREED_BY(label_cells_free) struct label_cells mesh = make_of_shape("waves", seed, 5, &shape, &labels);
+        assert_true(mesh.facet_count > 2000);
+        assert_int_equal(count_crossings(&mesh), 0);
+        free(shape.label);
+    }
+}
+
+/* A label that is left out leaves a cavity, whose wall knows it. */
+TEST(cavities)
+{
+    struct label_shape shape;
+    const bool keep[5] = {false, true, false, true, true};
+    int64_t walls = 0;
+    assert_true(label_shape_make("four", 1, millimetre, &shape));
+    struct labels labels = labels_of(&shape);
+    struct label_cells_options options = {.spacing = 5e-3, .keep = keep};
+    FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
+    check_cells(&mesh);
+    for (int64_t f = 0; f < mesh.facet_count; f++) {
+        assert_true(keep[mesh.side[2 * f]] && !keep[mesh.side[2 * f + 1]]);
+        walls += mesh.side[2 * f + 1] == 2;
+    }
+    assert_true(walls > 50);
+    free(shape.label);
+}
+
+RUN_TESTS(NULL, NULL)

@@ -1,0 +1,488 @@
+/* What supports reach through the cells: convex bodies, gaps, touching bodies, corners and fissures. */
+#include "approx_fixture.h"
+
+#include "approx/edge_paths.h"
+
+/* A body of unit squares or cubes, each of 2 triangles or 6 tetrahedra. Nodes of the same place and sheet are
+ * one. */
+enum { MOST_NODES = 4000, MOST_CELLS = 16000 };
+struct voxels {
+    int dim;
+    int64_t node_count, cell_count;
+    double x[MOST_NODES * 3];
+    int key[MOST_NODES][4]; /* place, and sheet */
+    int32_t cell[MOST_CELLS * 4];
+    struct cells cells;
+};
+static struct voxels body;
+
+/* The sheet that a corner at (i, j, k) of a cube with its lowest corner at `cube` belongs to. */
+typedef int sheet_function(const int *cube, int i, int j, int k);
+typedef bool solid_function(const int *cube);
+
+static int32_t node_at(int i, int j, int k, int sheet)
+{
+    for (int64_t n = body.node_count; n-- > 0;) {
+        const int *key = body.key[n];
+        if (key[0] == i && key[1] == j && key[2] == k && key[3] == sheet) {
+            return (int32_t)n;
+        }
+    }
+    assert_true(body.node_count < MOST_NODES);
+    memcpy(body.key[body.node_count], (int[4]){i, j, k, sheet}, sizeof body.key[0]);
+    const int place[3] = {i, j, k};
+    for (int a = 0; a < body.dim; a++) {
+        body.x[body.node_count * body.dim + a] = place[a];
+    }
+    return (int32_t)body.node_count++;
+}
+
+static void add_cube(const int *cube, sheet_function *sheet)
+{
+    static const int order2[2][2] = {{0, 1}, {1, 0}};
+    static const int order3[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
+    int corners = body.dim + 1;
+    for (int s = 0; s < (body.dim == 2 ? 2 : 6); s++) {
+        const int *order = body.dim == 2 ? order2[s] : order3[s];
+        int at[3] = {cube[0], cube[1], cube[2]};
+        int32_t *v = body.cell + body.cell_count++ * corners;
+        assert_true(body.cell_count < MOST_CELLS);
+        for (int k = 0; k < corners; k++) {
+            v[k] = node_at(at[0], at[1], at[2], sheet(cube, at[0], at[1], at[2]));
+            if (k < body.dim) {
+                at[order[k]]++;
+            }
+        }
+        if (s >= (body.dim == 2 ? 1 : 3)) { /* odd permutations turn the simplex */
+            int32_t swap = v[0];
+            v[0] = v[1];
+            v[1] = swap;
+        }
+    }
+}
+
+static void build(int dim, const int *size, solid_function *solid, sheet_function *sheet)
+{
+    body = (struct voxels){.dim = dim};
+    for (int k = 0; k < (dim == 3 ? size[2] : 1); k++) {
+        for (int j = 0; j < size[1]; j++) {
+            for (int i = 0; i < size[0]; i++) {
+                const int cube[3] = {i, j, k};
+                if (solid(cube)) {
+                    add_cube(cube, sheet);
+                }
+            }
+        }
+    }
+    body.cells = (struct cells){
+        .dim = dim, .node_count = body.node_count, .x = body.x, .count = body.cell_count, .node = body.cell};
+    GOOD(cells_check(&body.cells, &error));
+}
+
+static int one_sheet(const int *cube, int i, int j, int k)
+{
+    (void)cube, (void)i, (void)j, (void)k;
+    return 0;
+}
+
+static bool all_solid(const int *cube)
+{
+    (void)cube;
+    return true;
+}
+
+/* Supports and what they find at points in cells, some of them off the middle. */
+struct found {
+    double radius[MOST_NODES];
+    struct point_grid grid;
+    struct visibility visibility;
+    int64_t count;
+    double *x;
+    int32_t *cell;
+    struct support_options options;
+    struct support_lists lists, nodes;
+};
+static struct found found;
+
+static void find(double radius, bool widen)
+{
+    int dim = body.dim;
+    found = (struct found){.count = body.cell_count, .options = support_defaults(dim)};
+    found.options.widen = widen;
+    found.x = calloc((size_t)(found.count * dim), sizeof *found.x);
+    found.cell = calloc((size_t)found.count, sizeof *found.cell);
+    assert_non_null(found.x);
+    assert_non_null(found.cell);
+    for (int64_t n = 0; n < body.node_count; n++) {
+        found.radius[n] = radius;
+    }
+    for (int64_t c = 0; c < found.count; c++) {
+        static const double share[4] = {0.11, 0.23, 0.31, 0.35};
+        found.cell[c] = (int32_t)c;
+        for (int k = 0; k <= dim; k++) {
+            for (int a = 0; a < dim; a++) {
+                double part = k < dim ? share[k] : dim == 2 ? 0.66 : 0.35;
+                found.x[c * dim + a] += part * body.x[(int64_t)body.cell[c * (dim + 1) + k] * dim + a];
+            }
+        }
+    }
+    GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
+    GOOD(visibility_build(&body.cells, &found.grid, &found.visibility, &error));
+    struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
+    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, found.count, found.x,
+                              "points", &found.lists, &error));
+    inside = (struct visibility_places){.nodes = true};
+    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, body.node_count,
+                              body.x, "nodes", &found.nodes, &error));
+}
+
+static void lose(void)
+{
+    point_grid_free(&found.grid);
+    visibility_free(&found.visibility);
+    support_free(&found.lists);
+    support_free(&found.nodes);
+    free(found.x);
+    free(found.cell);
+}
+
+static bool same_lists(const struct support_lists *a, const struct support_lists *b, int dim)
+{
+    size_t pairs = (size_t)a->ptr[a->count];
+    return a->count == b->count && memcmp(a->ptr, b->ptr, (size_t)(a->count + 1) * sizeof *a->ptr) == 0 &&
+           memcmp(a->idx, b->idx, pairs * sizeof *a->idx) == 0 &&
+           memcmp(a->widen, b->widen, (size_t)a->count * sizeof *a->widen) == 0 &&
+           a->around_count == b->around_count &&
+           (a->around_count == 0 ||
+            (memcmp(a->around_pair, b->around_pair, (size_t)a->around_count * sizeof *a->around_pair) == 0 &&
+             memcmp(a->around_offset, b->around_offset,
+                    (size_t)(a->around_count * dim) * sizeof *a->around_offset) == 0));
+}
+
+/* Convex bodies: nothing changes, also where supports are widened. */
+TEST_IN_EACH_DIM(convex)
+{
+    for (int wide = 0; wide < 2; wide++) {
+        struct support_lists plain;
+        build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
+        find(wide ? 2.3 : 0.9, true);
+        assert_true(wide || found.lists.widened > 0);
+        GOOD(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error));
+        assert_true(same_lists(&plain, &found.lists, dim));
+        assert_int_equal(found.lists.around_count, 0);
+        support_free(&plain);
+        GOOD(support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error));
+        assert_true(same_lists(&plain, &found.nodes, dim));
+        support_free(&plain);
+        lose();
+    }
+}
+
+/* Points whose cells are not told are found in them. */
+static bool of_l(const int *cube)
+{
+    return cube[0] < 4 || cube[1] < 4;
+}
+
+TEST_IN_EACH_DIM(located)
+{
+    FREED_BY(support_free) struct support_lists other = {0};
+    build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
+    find(2.0, true);
+    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, NULL, found.count, found.x,
+                              "points", &other, &error));
+    assert_true(found.lists.around_count > 0);
+    assert_true(same_lists(&other, &found.lists, dim));
+    lose();
+}
+
+/* Two bodies: with a gap between, or face on face; those of the first have x <= 4. */
+static int64_t second_from;
+static bool but_gap(const int *cube)
+{
+    return cube[0] < 4 || cube[0] >= second_from;
+}
+static int sheet_of_side(const int *cube, int i, int j, int k)
+{
+    (void)i, (void)j, (void)k;
+    return cube[0] >= second_from;
+}
+
+static void check_apart(const struct support_lists *lists, const double *x)
+{
+    for (int64_t p = 0; p < lists->count; p++) {
+        int own = 0;
+        if (x == body.x) {
+            own = body.key[p][3];
+        } else {
+            own = x[p * body.dim] > 4.0;
+        }
+        assert_true(lists->ptr[p + 1] > lists->ptr[p]);
+        for (int64_t i = lists->ptr[p]; i < lists->ptr[p + 1]; i++) {
+            assert_int_equal(body.key[lists->idx[i]][3], own);
+        }
+    }
+    assert_int_equal(lists->around_count, 0);
+}
+
+TEST_IN_EACH_DIM(apart)
+{
+    for (second_from = 4; second_from <= 5; second_from++) {
+        build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
+        for (int64_t n = 0; n < body.node_count && second_from == 5; n++) { /* a gap of .05 */
+            body.x[n * dim] -= body.key[n][3] * 0.95;
+        }
+        find(2.1, true);
+        check_apart(&found.lists, found.x);
+        check_apart(&found.nodes, body.x);
+        lose();
+        find(0.9, true); /* widened: not across either */
+        assert_true(found.lists.widened > 0);
+        check_apart(&found.lists, found.x);
+        check_apart(&found.nodes, body.x);
+        lose();
+    }
+}
+
+/* Two lobes that share the nodes of an edge (2D: a node) at x = y = 4. */
+static bool of_lobes(const int *cube)
+{
+    return (cube[0] < 4) == (cube[1] < 4);
+}
+
+TEST_IN_EACH_DIM(lobes)
+{
+    build(dim, (int[3]){8, 8, 3}, of_lobes, one_sheet);
+    find(2.1, true);
+    bool shared_sees_both = false;
+    for (int nodes = 0; nodes < 2; nodes++) {
+        const struct support_lists *lists = nodes ? &found.nodes : &found.lists;
+        const double *x = nodes ? body.x : found.x;
+        for (int64_t p = 0; p < lists->count; p++) {
+            bool of_first = x[p * dim] + x[p * dim + 1] < 8.0, both = false;
+            bool shared = x[p * dim] == 4.0 && x[p * dim + 1] == 4.0;
+            for (int64_t i = lists->ptr[p]; i < lists->ptr[p + 1]; i++) {
+                const int *key = body.key[lists->idx[i]];
+                both = both || (key[0] + key[1] < 8) != of_first;
+                if (!shared && (key[0] != 4 || key[1] != 4)) {
+                    assert_true((key[0] + key[1] < 8) == of_first);
+                }
+            }
+            shared_sees_both = shared_sees_both || (shared && both);
+        }
+    }
+    assert_true(shared_sees_both);
+    lose();
+}
+
+/* The shortest way from p to q around an edge through (cx, cy) along z, in 3D straight when unrolled. */
+static double way_around(int dim, const double *p, const double *q, double cx, double cy)
+{
+    double flat = hypot(p[0] - cx, p[1] - cy) + hypot(q[0] - cx, q[1] - cy);
+    return dim == 2 ? flat : hypot(flat, p[2] - q[2]);
+}
+
+/* Whether the straight way from p to q passes the corner (4, 4) of the L on the empty side. */
+static bool hidden_in_l(const double *p, const double *q)
+{
+    double turn = (q[0] - p[0]) * (4.0 - p[1]) - (q[1] - p[1]) * (4.0 - p[0]);
+    bool opposite = p[0] <= 4.0 && q[1] <= 4.0 && p[1] > 4.0 && q[0] > 4.0;
+    if (p[1] <= 4.0 && q[0] <= 4.0 && p[0] > 4.0 && q[1] > 4.0) {
+        opposite = true;
+        turn = -turn;
+    }
+    return opposite && turn < -1e-9;
+}
+
+/* Around the corner of an L the weights follow the true lengths of the paths. */
+TEST_IN_EACH_DIM(around_corner)
+{
+    int64_t hidden = 0;
+    double radius = dim == 2 ? 3.2 : 2.2;
+    build(dim, (int[3]){8, 8, 5}, of_l, one_sheet);
+    find(radius, false);
+    int64_t next = 0;
+    for (int64_t p = 0; p < found.count; p++) {
+        const double *x = found.x + p * dim;
+        int64_t at = found.lists.ptr[p];
+        for (int32_t n = 0; n < body.node_count; n++) {
+            const double *node = body.x + n * dim;
+            double straight2 = 0.0, length2 = 0.0;
+            for (int a = 0; a < dim; a++) {
+                straight2 += (node[a] - x[a]) * (node[a] - x[a]);
+            }
+            bool listed = at < found.lists.ptr[p + 1] && found.lists.idx[at] == n;
+            bool around = listed && next < found.lists.around_count && found.lists.around_pair[next] == at;
+            double way = way_around(dim, x, node, 4.0, 4.0);
+            if (!hidden_in_l(x, node)) {
+                assert_false(around);
+                assert_true(listed == (straight2 < radius * radius));
+            } else if (listed) {
+                assert_true(around);
+                for (int a = 0; a < dim; a++) {
+                    length2 += pow(found.lists.around_offset[next * dim + a], 2);
+                }
+                assert_true(sqrt(length2) > way * (1.0 - 1e-12));
+                AT_MOST(sqrt(length2), way * (dim == 2 ? 1.0 + 1e-12 : 1.02));
+                hidden++;
+            } else {
+                AT_MOST(radius, way * (dim == 2 ? 1.0 + 1e-12 : 1.02));
+            }
+            next += around;
+            at += listed;
+        }
+    }
+    assert_true(hidden > 30);
+    lose();
+}
+
+/* A ball of voxels, cut from above (z > 0, in 2D y > 0) by a fissure of no width at x = 0, here at 5. */
+static bool of_ball(const int *cube)
+{
+    double sum = 0.0;
+    for (int a = 0; a < body.dim; a++) {
+        sum += pow(cube[a] + 0.5 - 5.0, 2);
+    }
+    return sum < 20.0;
+}
+static int sheet_of_fissure(const int *cube, int i, int j, int k)
+{
+    return i == 5 && (body.dim == 2 ? j : k) > 5 ? 1 + (cube[0] >= 5) : 0;
+}
+
+TEST_IN_EACH_DIM(fissure)
+{
+    build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
+    find(2.0, true);
+    int64_t crossing = 0, away = 0;
+    for (int nodes = 0; nodes < 2; nodes++) {
+        const struct support_lists *lists = nodes ? &found.nodes : &found.lists;
+        const double *x = nodes ? body.x : found.x;
+        for (int64_t p = 0; p < lists->count; p++) {
+            const double *from = x + p * dim;
+            double height = from[dim - 1];
+            bool right = nodes ? body.key[p][3] == 2 || from[0] > 5.0 : from[0] > 5.0;
+            for (int64_t i = lists->ptr[p]; height > 5.0 && i < lists->ptr[p + 1]; i++) {
+                const double *to = body.x + (int64_t)lists->idx[i] * dim;
+                bool to_right = body.key[lists->idx[i]][3] == 2 || to[0] > 5.0;
+                if (to[dim - 1] <= 5.0 || right == to_right) {
+                    continue;
+                }
+                double legs = hypot(from[0] - 5.0, height - 5.0) + hypot(to[0] - 5.0, to[dim - 1] - 5.0);
+                double way = dim == 2 ? legs : hypot(legs, from[1] - to[1]);
+                AT_MOST(way, 2.0 * lists->widen[p]);
+                crossing++;
+            }
+            away += height > 7.0;
+        }
+    }
+    assert_true(crossing > 0 && away > 0);
+    lose();
+}
+
+/* Gradients at points that see around the corner are those of the values, where the neighbours stay. */
+TEST_IN_EACH_DIM(gradients)
+{
+    double worst = 0.0;
+    int64_t compared = 0;
+    build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
+    find(dim == 2 ? 3.4 : 2.4, false);
+    struct neighbours view = support_view(&found.lists);
+    int64_t pairs = found.lists.ptr[found.count], step_pairs[2];
+    double *phi = zeros(pairs, sizeof *phi), *dphi = zeros(pairs * dim, sizeof *dphi);
+    double *moved = zeros(found.count * dim, sizeof *moved);
+    double *stepped[2] = {NULL, NULL};
+    struct support_lists lists[2];
+    const double step = 1e-5;
+    struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
+    GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, found.x, "points", phi, dphi, &error));
+    for (int a = 0; a < dim; a++) {
+        for (int s = 0; s < 2; s++) {
+            for (int64_t i = 0; i < found.count * dim; i++) {
+                moved[i] = found.x[i] + (i % dim == a ? (s ? step : -step) : 0.0);
+            }
+            GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, found.count,
+                                      moved, "points", &lists[s], &error));
+            step_pairs[s] = lists[s].ptr[found.count];
+            stepped[s] = calloc((size_t)step_pairs[s], sizeof(double));
+            assert_non_null(stepped[s]);
+            view = support_view(&lists[s]);
+            GOOD(shape_table(&found.options.mls, body.x, found.radius, &view, moved, "points", stepped[s],
+                             NULL, &error));
+        }
+        int64_t next = 0;
+        for (int64_t p = 0; p < found.count; p++) {
+            int64_t at = found.lists.ptr[p], count = found.lists.ptr[p + 1] - at;
+            bool around = next < found.lists.around_count && found.lists.around_pair[next] < at + count;
+            while (next < found.lists.around_count && found.lists.around_pair[next] < at + count) {
+                next++;
+            }
+            bool same = around;
+            for (int s = 0; s < 2; s++) {
+                int64_t other = lists[s].ptr[p];
+                same = same && lists[s].ptr[p + 1] - other == count &&
+                       memcmp(lists[s].idx + other, found.lists.idx + at,
+                              (size_t)count * sizeof *found.lists.idx) == 0;
+            }
+            for (int64_t i = 0; same && i < count; i++) {
+                double difference =
+                    (stepped[1][lists[1].ptr[p] + i] - stepped[0][lists[0].ptr[p] + i]) / (2.0 * step);
+                worst = fmax(worst, fabs(difference - dphi[(at + i) * dim + a]));
+                compared++;
+            }
+        }
+        for (int s = 0; s < 2; s++) {
+            support_free(&lists[s]);
+            free(stepped[s]);
+        }
+    }
+    assert_true(compared > 300);
+    AT_MOST(worst, 1e-8);
+    lose();
+}
+
+static bool reaches(struct edge_paths *paths, int32_t from, int64_t place)
+{
+    bool reached;
+    edge_paths_begin(paths, from);
+    GOOD(edge_paths_reach(paths, place, &reached, &error));
+    return reached;
+}
+
+/* Places, here the nodes themselves, are within reach round a corner and a fissure's end, not across a gap or
+ * from one lip to the other. */
+TEST_IN_EACH_DIM(paths)
+{
+    struct edge_paths paths;
+    build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
+    GOOD(edge_paths_build(&body.cells, body.node_count, dim, body.x, 1.0, &paths, &error));
+    for (int32_t n = 0; n < body.node_count; n += 5) {
+        for (int64_t p = 0; p < body.node_count; p++) {
+            assert_true(reaches(&paths, n, p));
+        }
+    }
+    edge_paths_free(&paths);
+    second_from = 5;
+    build(dim, (int[3]){9, 5, 3}, but_gap, sheet_of_side);
+    GOOD(edge_paths_build(&body.cells, body.node_count, dim, body.x, 1.0, &paths, &error));
+    for (int32_t n = 0; n < body.node_count; n += 5) {
+        for (int64_t p = 0; p < body.node_count; p++) {
+            assert_int_equal(reaches(&paths, n, p), body.key[n][3] == body.key[p][3]);
+        }
+    }
+    edge_paths_free(&paths);
+    build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
+    GOOD(edge_paths_build(&body.cells, body.node_count, dim, body.x, 1.0, &paths, &error));
+    int other = dim == 3 ? 5 : 0;
+    int32_t low_left = node_at(4, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
+    int32_t low_right = node_at(6, dim == 3 ? other : 6, dim == 3 ? 6 : 0, 0);
+    int32_t high_left = node_at(4, dim == 3 ? other : 8, dim == 3 ? 8 : 0, 0);
+    int32_t high_right = node_at(6, dim == 3 ? other : 8, dim == 3 ? 8 : 0, 0);
+    assert_true(reaches(&paths, low_left, low_right));
+    assert_true(reaches(&paths, low_left, high_left));
+    assert_false(reaches(&paths, high_left, high_right));
+    assert_false(reaches(&paths, high_right, high_left));
+    edge_paths_free(&paths);
+}
+
+RUN_TESTS(NULL, NULL)
