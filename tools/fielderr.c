@@ -168,7 +168,7 @@ static double average_difference(const struct tool *tool, const struct request *
 }
 
 /* The order assumed, or that of the averages of differences of three results: of the whole body, also where a
- * region is asked for, as its error is in part one from elsewhere, and an average over more nodes is
+ * region is comparison for, as its error is in part one from elsewhere, and an average over more nodes is
  * steadier.
  */
 static double choose_order(struct tool *tool, const struct request *request, const struct side *fine,
@@ -229,17 +229,17 @@ int main(int argc, char *argv[])
     struct findings findings;
     tool_begin(&tool, usage, 2, 3, argc, argv);
     struct request request = parse(&tool);
-    const struct comparison_request *asked = &request.comparison;
-    side_read(&tool, tool.operands[0], asked->field, &fine);
-    side_read(&tool, tool.operands[1], asked->field, &coarse);
+    const struct comparison_request *comparison = &request.comparison;
+    side_read(&tool, tool.operands[0], comparison->field, &fine);
+    side_read(&tool, tool.operands[1], comparison->field, &coarse);
     double found = check_coarser(&tool, &request, &fine, &coarse);
-    findings_make(&tool, asked, &fine, &coarse, &findings);
+    findings_make(&tool, comparison, &fine, &coarse, &findings);
     double order = choose_order(&tool, &request, &fine, &coarse, &findings);
     double share = field_error_share(request.ratio, order);
     scale(&findings, share, fine.field.cells.node_count);
     findings.reference = field_largest(fine.field.cells.node_count, fine.field.cols, fine.field.values);
-    print_findings(&findings, &fine.field.cells, asked->percentiles);
-    if (asked->region == NULL && fine.field.cells.count > 0) {
+    print_findings(&findings, &fine.field.cells, comparison->percentiles);
+    if (comparison->region == NULL && fine.field.cells.count > 0) {
         print_quantity("mean", NULL, field_error_mean(&fine.field.cells, findings.comparison.difference));
     }
     print_relative(&findings);
@@ -249,5 +249,5 @@ int main(int argc, char *argv[])
     print_quantity("cells_ratio", NULL, found);
     TOOL_TRY(&tool, print_forces(&fine, &coarse, share, &error));
     print_energy(&fine, &coarse, share);
-    return comparison_end(&tool, asked, &fine, &coarse, &findings, "error");
+    return comparison_end(&tool, comparison, &fine, &coarse, &findings, "error");
 }

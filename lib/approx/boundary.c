@@ -249,14 +249,14 @@ enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, 
                                 const struct neighbours *lists, const double *phi,
                                 struct boundary_averages *averages, struct error *error)
 {
-    int64_t pairs = 0;
+    int64_t entries = 0;
     *averages = (struct boundary_averages){0};
     for (int64_t i = 0; i < count; i++) {
-        pairs += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
+        entries += lists->ptr[nodes[i] + 1] - lists->ptr[nodes[i]];
     }
     RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, pairs, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, entries, error));
     for (int64_t i = 0; i < count; i++) {
         int64_t from = lists->ptr[nodes[i]], length = lists->ptr[nodes[i] + 1] - from;
         averages->node[i] = nodes[i];
@@ -271,7 +271,7 @@ enum status boundary_points_build(const struct face_table *table, const struct f
 {
     int dim = table->dim;
     SCRATCH int64_t *face_of = NULL;
-    int64_t pairs = 0, count = set->count * table->per_face;
+    int64_t entries = 0, count = set->count * table->per_face;
     struct quadrature_rule rule = quadrature_face_rule(dim);
     *averages = (struct boundary_averages){0};
     RETURN_IF_ERROR(NEW_ARRAY(&face_of, set->count, error));
@@ -279,10 +279,10 @@ enum status boundary_points_build(const struct face_table *table, const struct f
     RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
     for (int64_t f = 0; f < set->count; f++) {
         int64_t first = face_of[f] * table->per_face;
-        pairs += table->lists->ptr[first + table->per_face] - table->lists->ptr[first];
+        entries += table->lists->ptr[first + table->per_face] - table->lists->ptr[first];
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, pairs, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, pairs, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, entries, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, entries, error));
     for (int64_t p = 0; p < count; p++) {
         int64_t facet = p / table->per_face, point = face_of[facet] * table->per_face + p % table->per_face;
         int64_t from = table->lists->ptr[point], length = table->lists->ptr[point + 1] - from;

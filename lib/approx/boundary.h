@@ -100,7 +100,7 @@ enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP };
  * touched, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
  * held[table->faces->count]; touched[the same]: held ones, and others that are not free. */
 MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
-                                               const bool *held, const bool *touched, bool *end,
+                                               const bool *held, const bool *constrained, bool *junction,
                                                struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);

@@ -192,7 +192,8 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
 }
 
 enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
-                                    const bool *held, const bool *touched, bool *end, struct error *error)
+                                    const bool *held, const bool *constrained, bool *junction,
+                                    struct error *error)
 {
     int dim = table->dim;
     const int32_t *node = table->faces->node;
@@ -208,10 +209,10 @@ enum status boundary_find_junctions(const struct face_table *table, enum boundar
         for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
             for (int64_t k = i + 1; k < ptr[n + 1]; k++) {
                 const int32_t *f = node + (int64_t)at[i] * dim, *g = node + (int64_t)at[k] * dim;
-                bool ends = (held[at[i]] && !touched[at[k]]) || (held[at[k]] && !touched[at[i]]);
-                if (ends && share_edge(dim, f, g) &&
+                bool meets = (held[at[i]] && !constrained[at[k]]) || (held[at[k]] && !constrained[at[i]]);
+                if (meets && share_edge(dim, f, g) &&
                     of_one_side(table, f, g) == (kind == BOUNDARY_JUNCTION_SMOOTH)) {
-                    end[n] = true;
+                    junction[n] = true;
                 }
             }
         }

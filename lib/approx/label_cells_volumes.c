@@ -28,7 +28,7 @@ struct volumes {
     double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
     double *pressure;     /* labels->count */
     double *matrix;       /* labels->count squared */
-    bool *moves;          /* nodes: of interfaces that are near them */
+    bool *movable;        /* nodes: of interfaces that are near them */
     double *place;        /* nodes: on their interface */
 };
 
@@ -93,7 +93,7 @@ static bool find_pressures(struct volumes *volumes)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double G[LABEL_CELLS_MOST_LABELS][3];
         const uint16_t *label = star->label[n];
-        if (!volumes->moves[n]) {
+        if (!volumes->movable[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -126,7 +126,7 @@ static void correct_volumes(struct volumes *volumes)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double G[LABEL_CELLS_MOST_LABELS][3], target[3] = {0}, length = 0;
         const double *place = volumes->place + n * dim;
-        if (!volumes->moves[n]) {
+        if (!volumes->movable[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -179,15 +179,15 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
     TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
     TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
-    TRY(NEW_ARRAY(&volumes.moves, mesh->node_count, error));
+    TRY(NEW_ARRAY(&volumes.movable, mesh->node_count, error));
     TRY(NEW_ARRAY(&volumes.place, mesh->node_count * mesh->dim, error));
     memcpy(volumes.place, mesh->x, (size_t)(mesh->node_count * mesh->dim) * sizeof(double));
     for (int64_t n = 0; n < mesh->node_count; n++) {
         const double *x = mesh->x + n * mesh->dim;
         double *place = volumes.place + n * mesh->dim;
-        volumes.moves[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
-                           node_project(shaping, n, place) &&
-                           vector_distance(mesh->dim, place, x) <= most_offset * labels_voxel(labels);
+        volumes.movable[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
+                             node_project(shaping, n, place) &&
+                             vector_distance(mesh->dim, place, x) <= most_offset * labels_voxel(labels);
     }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
@@ -199,6 +199,6 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
         correct_volumes(&volumes);
     }
 done:
-    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.moves, volumes.place);
+    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.place);
     return status;
 }

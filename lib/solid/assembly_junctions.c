@@ -18,27 +18,27 @@
  * section of 707 nodes, of the calibration set, begins to. */
 static const double junction_stiffness = 0.85;
 
-/* end[node_count] becomes true at ends of the held part of the boundary: of faces with `least` directions
- * prescribed, toward faces with none. */
-static enum status find_ends(const struct assembly *input, enum boundary_junction kind, int least, bool **end,
-                             struct error *error)
+/* junction[node_count] becomes true at ends of the held part of the boundary: of faces with `least`
+ * directions prescribed, toward faces with none. */
+static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
+                                  bool **junction, struct error *error)
 {
-    SCRATCH bool *held = NULL, *touched = NULL;
+    SCRATCH bool *held = NULL, *constrained = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, least, &held, error));
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, &touched, error));
-    RETURN_IF_ERROR(NEW_ARRAY(end, input->cells.node_count, error));
-    return boundary_find_junctions(&input->face_table, kind, held, touched, *end, error);
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &constrained, error));
+    RETURN_IF_ERROR(NEW_ARRAY(junction, input->cells.node_count, error));
+    return boundary_find_junctions(&input->face_table, kind, held, constrained, *junction, error);
 }
 
 /* softer[cells.count]: cells that have a node on a smooth end, and are not beneath held facets. */
 static enum status mark_cells(const struct assembly *input, bool *softer, struct error *error)
 {
     int corners = input->cells.dim + 1;
-    SCRATCH bool *held = NULL, *end = NULL;
+    SCRATCH bool *held = NULL, *junction = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
-    RETURN_IF_ERROR(find_ends(input, BOUNDARY_JUNCTION_SMOOTH, 1, &end, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
     for (int64_t i = 0; i < input->cells.count * corners; i++) {
-        softer[i / corners] = softer[i / corners] || end[input->cells.node[i]];
+        softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];
     }
     for (int64_t f = 0; f < input->boundary.count; f++) {
         if (held[f]) {
@@ -94,7 +94,7 @@ enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, st
     if (input->cells.dim < 3) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(find_ends(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, at_edge, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, at_edge, error));
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         found = found || (*at_edge)[n];
     }

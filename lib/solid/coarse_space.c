@@ -12,14 +12,14 @@
 
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
-static const double reach = 1.5;
+static const double radius_factor = 1.5;
 /* A way may be so many times as long as the straight one, as in convex bodies all are, before it counts. */
 static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
 /* share[..][c] = lengths of the shortest ways from a node, from neighbour to neighbour; infinite where there
  * is none. */
-static enum status measure_ways(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
+static enum status path_lengths(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
                                 int64_t from, struct queue *queue, struct error *error)
 {
     int dim = coarse->dim;
@@ -55,7 +55,7 @@ static enum status add_centre(struct coarse_space *coarse, const struct neighbou
         coarse->centre[a][c] = place[a];
     }
     if (neighbours != NULL) {
-        RETURN_IF_ERROR(measure_ways(coarse, neighbours, c, from, queue, error));
+        RETURN_IF_ERROR(path_lengths(coarse, neighbours, c, from, queue, error));
     }
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double straight = vector_distance(dim, coarse->X + n * dim, place);
@@ -86,7 +86,7 @@ static enum status pick_centres(struct coarse_space *coarse, const struct neighb
             next = least[n] > least[next] ? n : next;
         }
     }
-    coarse->radius = reach * least[next];
+    coarse->radius = radius_factor * least[next];
     return STATUS_OK;
 }
 

@@ -123,16 +123,16 @@ static enum status match_corners(const struct field_averages_input *input, struc
 static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
 {
     int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
-    int64_t looks = of_faces + averages->corner_count;
+    int64_t uses = of_faces + averages->corner_count;
     RETURN_IF_ERROR(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, looks, error));
-    for (int64_t i = 0; i < looks; i++) {
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, uses, error));
+    for (int64_t i = 0; i < uses; i++) {
         averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
     }
     for (int64_t r = 0; r < rows; r++) {
         averages->corner_ptr[r + 2] += averages->corner_ptr[r + 1];
     }
-    for (int64_t i = 0; i < looks; i++) {
+    for (int64_t i = 0; i < uses; i++) {
         averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
             (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
     }
@@ -144,14 +144,14 @@ enum status field_averages_build(const struct field_averages_input *input, struc
 {
     const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
     int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
-    int64_t looks = input->corner_count * (FACE_ROWS(input->dim) + 1);
+    int64_t uses = input->corner_count * (FACE_ROWS(input->dim) + 1);
     *averages = (struct field_averages){.corner_count = input->corner_count, .row_count = rows};
-    if (rows > INT32_MAX / stride || looks > INT32_MAX) {
+    if (rows > INT32_MAX / stride || uses > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
     }
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, looks, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, uses, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
     RETURN_IF_ERROR(match_corners(input, averages, error));
     return list_corners(input->dim, averages, error);

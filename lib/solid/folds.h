@@ -94,10 +94,11 @@ struct fold_box {
 
 struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
-    const bool *touched; /* node_count, the caller's: nodes where a contact of the body with itself presses,
-                            and facets that meet may pass through each other by a twentieth; NULL: none */
-    const bool *turned;  /* node_count, the caller's: those where it presses on what it did not face at rest;
-                            NULL: none */
+    const bool
+        *in_contact;    /* node_count, the caller's: nodes where a contact of the body with itself presses,
+                        and facets that meet may pass through each other by a twentieth; NULL: none */
+    const bool *turned; /* node_count, the caller's: those where it presses on what it did not face at rest;
+                           NULL: none */
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
     int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */

@@ -100,13 +100,13 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
 }
 
 /* Whether a part of the body stands against a node of the facet. */
-static bool is_touched(const struct folds *folds, int64_t f)
+static bool is_in_contact(const struct folds *folds, int64_t f)
 {
-    bool touched = false;
-    for (int k = 0; k < folds->input.dim && folds->touched != NULL; k++) {
-        touched = touched || folds->touched[folds->input.facet[f * folds->input.dim + k]];
+    bool any = false;
+    for (int k = 0; k < folds->input.dim && folds->in_contact != NULL; k++) {
+        any = any || folds->in_contact[folds->input.facet[f * folds->input.dim + k]];
     }
-    return touched;
+    return any;
 }
 
 /* Whether two facets that meet are through each other by more than a twentieth of the smaller one: so far
@@ -120,7 +120,7 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     double width[2];
     double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
     depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
-    if (is_touched(folds, f) && is_touched(folds, g)) {
+    if (is_in_contact(folds, f) && is_in_contact(folds, g)) {
         return depth > held_share * fmax(width[0], width[1]);
     }
     return depth > FOLD_BEYOND_FACET * fmin(width[0], width[1]);

@@ -156,9 +156,10 @@ static double angle_around(const struct folds *folds, const int32_t *node)
  * other by averages, facets may do so by a twentieth of their length. */
 static double most_angle(const struct folds *folds, const struct fold_ring *ring)
 {
-    const bool *touched = folds->touched;
-    bool touches = touched != NULL && touched[ring->node[0]] && (ring->node[1] < 0 || touched[ring->node[1]]);
-    return full_turn * (1.0 + 1e-6) + (touches ? FOLD_BEYOND_FACET : 0.0);
+    const bool *in_contact = folds->in_contact;
+    bool closed =
+        in_contact != NULL && in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
+    return full_turn * (1.0 + 1e-6) + (closed ? FOLD_BEYOND_FACET : 0.0);
 }
 
 static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)

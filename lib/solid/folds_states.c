@@ -99,7 +99,7 @@ struct fold folds_find_wrapped(const struct folds *folds)
     const struct fold_input *input = &folds->input;
     for (int64_t i = 0; folds->turned != NULL && i < folds->ring_count; i++) {
         int64_t f = folds->rings[i].facet, g = folds->rings[i].other;
-        if (g < 0 || !are_all(input, folds->touched, f) || !are_all(input, folds->touched, g) ||
+        if (g < 0 || !are_all(input, folds->in_contact, f) || !are_all(input, folds->in_contact, g) ||
             !(are_all(input, folds->turned, f) || are_all(input, folds->turned, g)) ||
             !is_corner(input, &folds->rings[i]) || !is_met(folds, &folds->rings[i])) {
             continue;

@@ -112,21 +112,21 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
 
 /* All own rows, by stretches of so many nodes, for which alone S is there. What a node without stiffness has
  * on the diagonal is known when all of S has been seen: then once more. */
-static enum status make_own_rows(const struct solid_system *system, int64_t stretch, struct lower *lower,
+static enum status make_own_rows(const struct solid_system *system, int64_t batch, struct lower *lower,
                                  struct sparse *rows, int64_t *length, struct error *error)
 {
     const struct body_share *share = &system->body.share;
     int64_t begin = share->begin_node, end = share->end_node;
     bool good = false;
-    if (share->ranks != NULL || end - begin <= stretch) {
+    if (share->ranks != NULL || end - begin <= batch) {
         RETURN_IF_ERROR(lower_make(begin, end, lower, error));
         (void)lower_set_least(lower);
         RETURN_IF_ERROR(make_rows(system, begin, end, lower, rows, length, error));
         return STATUS_OK;
     }
     for (int time = 0; time < 2 && !good; time++) {
-        for (int64_t p = begin; p < end; p += stretch) {
-            int64_t last = end - p < stretch ? end : p + stretch;
+        for (int64_t p = begin; p < end; p += batch) {
+            int64_t last = end - p < batch ? end : p + batch;
             RETURN_IF_ERROR(lower_make(p, last, lower, error));
             RETURN_IF_ERROR(make_rows(system, p, last, lower, rows, length, error));
         }
@@ -188,7 +188,7 @@ static int owner(const void *factor, int64_t node)
     return ranks_owner(of->ranks, of->first, node);
 }
 
-enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
+enum status inverse_factor_build_by(const struct solid_system *system, int64_t batch,
                                     struct inverse_factor *factor, struct error *error)
 {
     FREED_BY(lower_free) struct lower lower = {0};
@@ -202,7 +202,7 @@ enum status inverse_factor_build_by(const struct solid_system *system, int64_t s
     RETURN_IF_ERROR(lower_begin(system, &lower, error));
     RETURN_IF_ERROR(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
     RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
-    RETURN_IF_ERROR(make_own_rows(system, stretch, &lower, &by_place, length, error));
+    RETURN_IF_ERROR(make_own_rows(system, batch, &lower, &by_place, length, error));
     RETURN_IF_ERROR(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
     RETURN_IF_ERROR(sort_rows(&system->body, &by_place, &factor->rows, error));

@@ -34,7 +34,7 @@ struct inverse_factor {
 MUST_CHECK enum status inverse_factor_build(const struct solid_system *system, struct inverse_factor *factor,
                                             struct error *error);
 /* The same, with the rows of S of at most so many nodes at once, and those of others that they need. */
-MUST_CHECK enum status inverse_factor_build_by(const struct solid_system *system, int64_t stretch,
+MUST_CHECK enum status inverse_factor_build_by(const struct solid_system *system, int64_t batch,
                                                struct inverse_factor *factor, struct error *error);
 void inverse_factor_free(struct inverse_factor *factor);
 

@@ -67,7 +67,8 @@ static double farthest_apart(const struct measured *measured)
 }
 
 /* How far apart two points are, and their displacements in what is known of both; -1 when that is nothing. */
-static void look(const struct measured *measured, int64_t i, int64_t k, double *distance, double *apart)
+static void differences(const struct measured *measured, int64_t i, int64_t k, double *distance,
+                        double *apart)
 {
     int dim = measured->dim, known = 0;
     double places = 0.0, moves = 0.0;
@@ -113,7 +114,7 @@ enum status measured_compare(const struct measured *measured, double same, struc
             bool both = is_exact(measured, i) && is_exact(measured, k);
             double distance, apart;
             double deviation = hypot(measured->deviation[i], measured->deviation[k]);
-            look(measured, i, k, &distance, &apart);
+            differences(measured, i, k, &distance, &apart);
             if (apart > distance + most_deviations * deviation) {
                 note_pair(both ? exact : others, i, k, distance, apart);
             } else if (both && apart >= 0.0 && distance <= same) {

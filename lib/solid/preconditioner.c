@@ -13,13 +13,13 @@
 static const int64_t nodes_per_coarse_field = 8;
 /* Of the coarse space at most: each costs an evaluation at the begin, and when the body has stiffened. So
  * there are up to 16 centres in two dimensions and 8 in three. */
-static const int64_t most_freedoms = 96;
+static const int64_t most_unknowns = 96;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
 {
-    int64_t fields = system->dim + 1, most = most_freedoms / (fields * system->dim);
+    int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
     return count < most ? count : most;
 }
@@ -279,7 +279,7 @@ static void restrict_move(const struct preconditioner *p, const double *moved, d
 }
 
 /* Both moves in terms of L. */
-static void take_moves(struct preconditioner *p, const double **x, const double **y)
+static void transform_both(struct preconditioner *p, const double **x, const double **y)
 {
     double *scratch = p->on_inverse;
     bool same = *x == *y;
@@ -289,14 +289,14 @@ static void take_moves(struct preconditioner *p, const double **x, const double 
 
 double preconditioner_product_diagonal(struct preconditioner *p, const double *x, const double *y)
 {
-    take_moves(p, &x, &y);
+    transform_both(p, &x, &y);
     return weighted_product(p, x, y);
 }
 
 double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
 {
     double *amount = p->amount, *solved = p->amount + p->size;
-    take_moves(p, &x, &y);
+    transform_both(p, &x, &y);
     double sum = weighted_product(p, x, y);
     if (p->size > 0) {
         restrict_move(p, x, amount);
@@ -315,7 +315,7 @@ void preconditioner_momentum(struct preconditioner *p, const double *velocity, d
                              double *momentum)
 {
     const double *x = velocity, *y = velocity;
-    take_moves(p, &x, &y);
+    transform_both(p, &x, &y);
     restrict_move(p, x, momentum);
     if (p->constraint.rows != NULL) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);

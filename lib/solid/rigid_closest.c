@@ -8,7 +8,7 @@
 enum feature { ON_FACE, ON_CORNER_0, ON_CORNER_1, ON_CORNER_2, ON_EDGE_0, ON_EDGE_1, ON_EDGE_2 };
 
 /* Distances that agree to this part are the same: then a facet is preferred to a rim. */
-static const double tie = 1e-12;
+static const double same = 1e-12;
 
 /* Offsets and distances below this part of the extent are round-off. */
 static const double round_off = 1e-12;
@@ -131,8 +131,8 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     here.rim = on_rim(surface, f, here.feature);
     vector_subtract(dim, x, here.point, away);
     here.distance2 = vector_dot(dim, away, away);
-    if ((here.distance2 < nearest->distance2 * (1.0 - tie) ||
-         (here.distance2 <= nearest->distance2 * (1.0 + tie) && nearest->rim && !here.rim)) &&
+    if ((here.distance2 < nearest->distance2 * (1.0 - same) ||
+         (here.distance2 <= nearest->distance2 * (1.0 + same) && nearest->rim && !here.rim)) &&
         (filter == NULL || filter->admits(filter->context, f, away))) {
         *nearest = here;
     }
@@ -161,7 +161,7 @@ static struct nearest find_nearest(const struct rigid_surface *surface, const do
         int64_t at = waiting[--count];
         const struct rigid_branch *branch = &surface->branch[at];
         double away2 = box_distance2(surface->dim, branch, x);
-        if (away2 > nearest.distance2 * (1.0 + tie) || away2 > reach * reach) {
+        if (away2 > nearest.distance2 * (1.0 + same) || away2 > reach * reach) {
             continue;
         }
         if (branch->second == 0) {

@@ -11,15 +11,15 @@
 
 enum { MOST_MODES = EIGEN_MOST };
 /* A rigid mode is free when the squared norm of G times it is below this share of the largest one. */
-static const double least_seen = 1e-8;
+static const double least_constrained = 1e-8;
 
 /* A body, and the Gram matrix of the conditions on its rigid modes: sum over the rows of value value^T. */
-struct seen {
+struct mode_gram {
     struct box box;
     double matrix[MOST_MODES * MOST_MODES]; /* rows of as many as there are rigid modes */
 };
 
-static int move_count(int dim)
+static int mode_count(int dim)
 {
     return dim == 2 ? 3 : MOST_MODES;
 }
@@ -29,54 +29,54 @@ static double middle(const struct box *box, int a)
     return 0.5 * (box->low[a] + box->high[a]);
 }
 
-/* Rigid move k at X, of the order of 1: translations, then rotations about the centre, in 3D about the axes
+/* Rigid mode k at X, of the order of 1: translations, then rotations about the centre, in 3D about the axes
  * z, x, y. */
-static void rigid_move(const struct box *box, int k, const double *X, double move[3])
+static void rigid_mode(const struct box *box, int k, const double *X, double mode[3])
 {
     int dim = box->dim;
-    memset(move, 0, 3 * sizeof *move);
+    memset(mode, 0, 3 * sizeof *mode);
     if (k < dim) {
-        move[k] = 1.0;
+        mode[k] = 1.0;
         return;
     }
     int a = k - dim, b = (a + 1) % dim; /* turns a towards b */
     double side = box_side(box);
-    move[a] = -(X[b] - middle(box, b)) / side;
-    move[b] = (X[a] - middle(box, a)) / side;
+    mode[a] = -(X[b] - middle(box, b)) / side;
+    mode[b] = (X[a] - middle(box, a)) / side;
 }
 
 /* Add the values of row r on each rigid mode of a body; body NULL: of all nodes. */
-static void look(const struct solid_system *system, const struct constraint_rows *rows, int64_t r,
-                 const int32_t *body, int32_t number, struct seen *seen)
+static void add_row(const struct solid_system *system, const struct constraint_rows *rows, int64_t r,
+                    const int32_t *body, int32_t number, struct mode_gram *gram)
 {
-    int dim = system->dim, moves = move_count(dim);
+    int dim = system->dim, modes = mode_count(dim);
     double value[MOST_MODES] = {0.0};
     struct average average = constraint_rows_average(rows, r);
     for (int64_t i = 0; i < average.length; i++) {
-        for (int k = 0; k < moves && (body == NULL || body[average.idx[i]] == number); k++) {
-            double move[3];
-            rigid_move(&seen->box, k, system->X + (int64_t)average.idx[i] * dim, move);
+        for (int k = 0; k < modes && (body == NULL || body[average.idx[i]] == number); k++) {
+            double mode[3];
+            rigid_mode(&gram->box, k, system->X + (int64_t)average.idx[i] * dim, mode);
             for (int a = 0; a < dim; a++) {
-                value[k] += average.phi[i] * rows->direction[r * dim + a] * move[a];
+                value[k] += average.phi[i] * rows->direction[r * dim + a] * mode[a];
             }
         }
     }
-    for (int i = 0; i < moves; i++) {
-        add_scaled(moves, value[i], value, seen->matrix + i * moves);
+    for (int i = 0; i < modes; i++) {
+        add_scaled(modes, value[i], value, gram->matrix + i * modes);
     }
 }
 
 /* free[count][MOST_MODES]: an orthonormal basis of the null space of the conditions. */
-static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MODES])
+static int free_modes(int dim, const struct mode_gram *gram, double basis[][MOST_MODES])
 {
-    int n = move_count(dim), count = 0;
-    double seen_by[MOST_MODES], vector[MOST_MODES * MOST_MODES], largest = 0.0;
-    eigen_symmetric(n, seen->matrix, seen_by, vector);
+    int n = mode_count(dim), count = 0;
+    double value_of_mode[MOST_MODES], vector[MOST_MODES * MOST_MODES], largest = 0.0;
+    eigen_symmetric(n, gram->matrix, value_of_mode, vector);
     for (int k = 0; k < n; k++) {
-        largest = fmax(largest, seen_by[k]);
+        largest = fmax(largest, value_of_mode[k]);
     }
     for (int k = 0; k < n; k++) {
-        if (!(seen_by[k] > least_seen * largest)) {
+        if (!(value_of_mode[k] > least_constrained * largest)) {
             for (int i = 0; i < n; i++) {
                 basis[count][i] = vector[i * n + k];
             }
@@ -86,14 +86,14 @@ static int free_moves(int dim, const struct seen *seen, double basis[][MOST_MODE
     return count;
 }
 
-/* A rotation of coefficients `move`: its axis, and a point of it. */
-static void put_turn(const struct box *box, const double *move, struct rigid_modes *moves)
+/* A rotation of coefficients `mode`: its axis, and a point of it. */
+static void put_rotation(const struct box *box, const double *mode, struct rigid_modes *modes)
 {
     int dim = box->dim;
-    double w[3] = {0.0, 0.0, 0.0}, t[3] = {move[0], move[1], dim == 3 ? move[2] : 0.0};
-    double *axis = moves->axis[moves->turns], *through = moves->through[moves->turns];
-    for (int k = dim; k < move_count(dim); k++) {
-        w[(k - dim + 2) % 3] = move[k] / box_side(box);
+    double w[3] = {0.0, 0.0, 0.0}, t[3] = {mode[0], mode[1], dim == 3 ? mode[2] : 0.0};
+    double *axis = modes->axis[modes->turns], *through = modes->through[modes->turns];
+    for (int k = dim; k < mode_count(dim); k++) {
+        w[(k - dim + 2) % 3] = mode[k] / box_side(box);
     }
     double length2 = vector_dot(3, w, w);
     for (int a = 0; a < 3; a++) { /* where t + w x (p - centre) = 0 */
@@ -101,16 +101,16 @@ static void put_turn(const struct box *box, const double *move, struct rigid_mod
         axis[a] = w[a] / sqrt(length2);
         through[a] = (a < dim ? middle(box, a) : 0.0) + (w[b] * t[c] - w[c] * t[b]) / length2;
     }
-    moves->turns++;
+    modes->turns++;
 }
 
-/* The free moves as translations, and rotations across them. */
-static void name_moves(int dim, const struct seen *seen, struct rigid_modes *moves)
+/* The free modes as translations, and rotations across them. */
+static void split_modes(int dim, const struct mode_gram *gram, struct rigid_modes *modes)
 {
-    int n = move_count(dim);
+    int n = mode_count(dim);
     double basis[MOST_MODES][MOST_MODES], turning[MOST_MODES * MOST_MODES], mix[MOST_MODES * MOST_MODES];
     double turned[MOST_MODES];
-    int count = free_moves(dim, seen, basis);
+    int count = free_modes(dim, gram, basis);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < count; k++) {
             turning[i * count + k] = 0.0;
@@ -121,16 +121,16 @@ static void name_moves(int dim, const struct seen *seen, struct rigid_modes *mov
     }
     eigen_symmetric(count, turning, turned, mix);
     for (int k = 0; k < count; k++) {
-        double move[MOST_MODES] = {0.0};
+        double mode[MOST_MODES] = {0.0};
         for (int i = 0; i < count; i++) {
             for (int a = 0; a < n; a++) {
-                move[a] += mix[i * count + k] * basis[i][a];
+                mode[a] += mix[i * count + k] * basis[i][a];
             }
         }
-        if (turned[k] > least_seen) {
-            put_turn(&seen->box, move, moves);
+        if (turned[k] > least_constrained) {
+            put_rotation(&gram->box, mode, modes);
         } else {
-            memcpy(moves->along[moves->translations++], move, (size_t)dim * sizeof *move);
+            memcpy(modes->along[modes->translations++], mode, (size_t)dim * sizeof *mode);
         }
     }
 }
@@ -142,8 +142,8 @@ static int64_t first_spring(const struct solid_system *system)
 }
 
 /* Rows from `first` on, on the bodies that they hold. */
-static void look_at_bodies(const struct solid_system *system, const struct constraint_rows *rows,
-                           int64_t first, const int32_t *body, struct seen *seen)
+static void add_rows(const struct solid_system *system, const struct constraint_rows *rows, int64_t first,
+                     const int32_t *body, struct mode_gram *gram)
 {
     for (int64_t r = first; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
@@ -151,60 +151,60 @@ static void look_at_bodies(const struct solid_system *system, const struct const
         for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
             if (body[average.idx[i]] != last && body[average.idx[i]] >= 0) {
                 last = body[average.idx[i]];
-                look(system, rows, r, body, last, &seen[last]);
+                add_row(system, rows, r, body, last, &gram[last]);
             }
         }
     }
 }
 
-/* A node that does not move, at X, adds what it sees of a body. */
-static void look_at_node(int dim, const double *X, struct seen *seen)
+/* A node that does not mode, at X, adds what it sees of a body. */
+static void add_fixed_node(int dim, const double *X, struct mode_gram *gram)
 {
-    int moves = move_count(dim);
-    double move[MOST_MODES][3], value[MOST_MODES];
-    for (int k = 0; k < moves; k++) {
-        rigid_move(&seen->box, k, X, move[k]);
+    int modes = mode_count(dim);
+    double mode[MOST_MODES][3], value[MOST_MODES];
+    for (int k = 0; k < modes; k++) {
+        rigid_mode(&gram->box, k, X, mode[k]);
     }
     for (int a = 0; a < dim; a++) {
-        for (int k = 0; k < moves; k++) {
-            value[k] = move[k][a];
+        for (int k = 0; k < modes; k++) {
+            value[k] = mode[k][a];
         }
-        for (int i = 0; i < moves; i++) {
-            add_scaled(moves, value[i], value, seen->matrix + i * moves);
+        for (int i = 0; i < modes; i++) {
+            add_scaled(modes, value[i], value, gram->matrix + i * modes);
         }
     }
 }
 
 enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
-                               int64_t hinge_count, const struct hinge *hinge, struct rigid_modes *moves,
+                               int64_t hinge_count, const struct hinge *hinge, struct rigid_modes *modes,
                                struct error *error)
 {
-    SCRATCH struct seen *seen = NULL;
+    SCRATCH struct mode_gram *gram = NULL;
     int dim = system->dim;
-    RETURN_IF_ERROR(NEW_ARRAY(&seen, body_count, error));
-    memset(moves, 0, (size_t)body_count * sizeof *moves);
+    RETURN_IF_ERROR(NEW_ARRAY(&gram, body_count, error));
+    memset(modes, 0, (size_t)body_count * sizeof *modes);
     for (int64_t b = 0; b < body_count; b++) {
-        seen[b].box = box_of(dim, 0, NULL);
+        gram[b].box = box_of(dim, 0, NULL);
     }
     for (int64_t n = 0; n < system->node_count; n++) {
         if (body[n] >= 0) {
-            box_add(&seen[body[n]].box, 1, system->X + n * dim);
-            moves[body[n]].nodes++;
+            box_add(&gram[body[n]].box, 1, system->X + n * dim);
+            modes[body[n]].nodes++;
         }
     }
     for (int64_t h = 0; h < hinge_count; h++) {
-        box_add(&seen[hinge[h].body].box, 1, system->X + (int64_t)hinge[h].node * dim);
+        box_add(&gram[hinge[h].body].box, 1, system->X + (int64_t)hinge[h].node * dim);
     }
     for (int64_t h = 0; h < hinge_count; h++) {
-        look_at_node(dim, system->X + (int64_t)hinge[h].node * dim, &seen[hinge[h].body]);
+        add_fixed_node(dim, system->X + (int64_t)hinge[h].node * dim, &gram[hinge[h].body]);
     }
-    look_at_bodies(system, &system->rows, 0, body, seen);
-    look_at_bodies(system, &system->penalties, first_spring(system), body, seen);
+    add_rows(system, &system->rows, 0, body, gram);
+    add_rows(system, &system->penalties, first_spring(system), body, gram);
     for (int64_t b = 0; b < body_count; b++) {
         for (int a = 0; a < dim; a++) {
-            moves[b].centre[a] = middle(&seen[b].box, a);
+            modes[b].centre[a] = middle(&gram[b].box, a);
         }
-        name_moves(dim, &seen[b], &moves[b]);
+        split_modes(dim, &gram[b], &modes[b]);
     }
     return STATUS_OK;
 }
@@ -212,12 +212,12 @@ enum status system_rigid_modes(const struct solid_system *system, int64_t body_c
 bool system_has_rigid_mode(const struct solid_system *system)
 {
     double basis[MOST_MODES][MOST_MODES];
-    struct seen seen = {.box = box_of(system->dim, system->node_count, system->X)};
+    struct mode_gram gram = {.box = box_of(system->dim, system->node_count, system->X)};
     for (int64_t r = 0; r < system->rows.count; r++) {
-        look(system, &system->rows, r, NULL, 0, &seen);
+        add_row(system, &system->rows, r, NULL, 0, &gram);
     }
     for (int64_t r = first_spring(system); r < system->penalties.count; r++) {
-        look(system, &system->penalties, r, NULL, 0, &seen);
+        add_row(system, &system->penalties, r, NULL, 0, &gram);
     }
-    return free_moves(system->dim, &seen, basis) > 0;
+    return free_modes(system->dim, &gram, basis) > 0;
 }

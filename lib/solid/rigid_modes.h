@@ -3,7 +3,7 @@
 
 #include "solid/system.h"
 
-/* The moves that a body can make without meeting a condition. Contacts and springs do not count. */
+/* The rigid motions of a body without meeting a condition. Contacts and springs do not count. */
 struct rigid_modes {
     int64_t nodes;        /* of the body */
     double centre[3];     /* of the box of its nodes, m */
@@ -19,12 +19,12 @@ struct hinge {
     int32_t body, node;
 };
 
-/* moves[body_count]: those of each body; body[node_count] tells the body of each node, negative: of none.
+/* modes[body_count]: those of each body; body[node_count] tells the body of each node, negative: of none.
  * What a condition sees of a body is the part of its average that lies on that body's nodes. At hinges,
  * hinge[hinge_count], whose nodes are of no body, a body does not move. */
 MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,
                                           const int32_t *body, int64_t hinge_count, const struct hinge *hinge,
-                                          struct rigid_modes *moves, struct error *error);
+                                          struct rigid_modes *modes, struct error *error);
 
 /* Whether all nodes as one body can move as a whole without meeting a condition. */
 bool system_has_rigid_mode(const struct solid_system *system);

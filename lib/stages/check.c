@@ -170,14 +170,14 @@ static enum status check_faces(const struct stream *stream, const struct cells *
     const struct {
         const char *name;
         int64_t rows;
-    } asked[] = {{"facepoints.x", face_row_point(&faces, faces.row_count)},
-                 {"face.ptr", faces.row_count + 1},
-                 {"boundary.ptr", faces.boundary_count * OWN_POINTS(faces.dim) + 1}};
-    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
-        const struct section *section = stream_find(stream, asked[i].name);
-        if (section != NULL && section->rows != asked[i].rows) {
+    } expected[] = {{"facepoints.x", face_row_point(&faces, faces.row_count)},
+                    {"face.ptr", faces.row_count + 1},
+                    {"boundary.ptr", faces.boundary_count * OWN_POINTS(faces.dim) + 1}};
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        const struct section *section = stream_find(stream, expected[i].name);
+        if (section != NULL && section->rows != expected[i].rows) {
             return fail(error, STATUS_INPUT, "%s: %lld rows, but the faces ask for %lld", section->name,
-                        (long long)section->rows, (long long)asked[i].rows);
+                        (long long)section->rows, (long long)expected[i].rows);
         }
     }
     return STATUS_OK;

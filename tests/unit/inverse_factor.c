@@ -154,7 +154,7 @@ static void same_bits(const struct sparse *a, const struct sparse *b)
 /* L does not depend on how many rows of S are there at once, also where nodes have hardly any stiffness. */
 TEST(stretches_make_no_difference)
 {
-    static const int64_t stretches[] = {1, 7, 60, 124};
+    static const int64_t batches[] = {1, 7, 60, 124};
     for (int weak = 0; weak < 2; weak++) {
         struct cube cube;
         build(&cube, true);
@@ -166,9 +166,9 @@ TEST(stretches_make_no_difference)
         }
         FREED_BY(inverse_factor_free) struct inverse_factor whole = {0};
         GOOD(inverse_factor_build(system, &whole, &error));
-        for (size_t k = 0; k < sizeof stretches / sizeof *stretches; k++) {
+        for (size_t k = 0; k < sizeof batches / sizeof *batches; k++) {
             FREED_BY(inverse_factor_free) struct inverse_factor factor = {0};
-            GOOD(inverse_factor_build_by(system, stretches[k], &factor, &error));
+            GOOD(inverse_factor_build_by(system, batches[k], &factor, &error));
             same_bits(&factor.rows, &whole.rows);
         }
         assert_true((memcmp(whole.rows.value, cube.factor.rows.value, sizeof(double)) != 0) == (weak == 1));

@@ -261,7 +261,7 @@ TEST_IN_EACH_DIM(invariance)
     }
 }
 
-/* What the normal equations decide agrees with the careful way to round-off. */
+/* What the normal equations decide agrees with the orthogonal factorisation to round-off. */
 TEST(normal_equations)
 {
     enum { STRIDE = MOST + MLS_PADDING };

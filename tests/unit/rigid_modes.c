@@ -1,4 +1,4 @@
-/* Rigid moves that conditions leave free: of nodes held one by one, in 2D and 3D, of several bodies. */
+/* Rigid modes that conditions leave free: of nodes held one by one, in 2D and 3D, of several bodies. */
 #include "unit.h"
 
 #include "solid/rigid_modes.h"
@@ -43,14 +43,14 @@ static void hold_all(struct held *held, int32_t node)
     }
 }
 
-static void expect(struct held *held, int64_t body, int translations, int turns, struct rigid_modes *moves)
+static void expect(struct held *held, int64_t body, int translations, int turns, struct rigid_modes *modes)
 {
     struct rigid_modes all[4];
     GOOD(system_rigid_modes(&held->system, held->system.node_count / (held->system.dim == 2 ? 4 : 8),
                             held->body, 0, NULL, all, &error));
-    *moves = all[body];
-    assert_int_equal(moves->translations, translations);
-    assert_int_equal(moves->turns, turns);
+    *modes = all[body];
+    assert_int_equal(modes->translations, translations);
+    assert_int_equal(modes->turns, turns);
     if (held->body[held->system.node_count - 1] == 0) {
         assert_int_equal(system_has_rigid_mode(&held->system), translations + turns > 0);
     }
@@ -60,24 +60,24 @@ TEST(in_the_plane)
 {
     for (double from = 0.0; from < 20.0; from += 10.0) { /* wherever the origin is */
         struct held held;
-        struct rigid_modes moves;
+        struct rigid_modes modes;
         begin(&held, 2, 1, from);
-        expect(&held, 0, 2, 1, &moves);
-        NEAR_TO(moves.centre[0], from + 0.1, 1e-12);
+        expect(&held, 0, 2, 1, &modes);
+        NEAR_TO(modes.centre[0], from + 0.1, 1e-12);
         hold_all(&held, 1); /* a hinge */
-        expect(&held, 0, 0, 1, &moves);
-        NEAR_TO(moves.through[0][0], from + 0.2, 1e-9);
-        NEAR_TO(moves.through[0][1], from, 1e-9);
+        expect(&held, 0, 0, 1, &modes);
+        NEAR_TO(modes.through[0][0], from + 0.2, 1e-9);
+        NEAR_TO(modes.through[0][1], from, 1e-9);
         hold(&held, 0, 0); /* in line with it */
-        expect(&held, 0, 0, 1, &moves);
+        expect(&held, 0, 0, 1, &modes);
         hold(&held, 0, 1);
-        expect(&held, 0, 0, 0, &moves);
+        expect(&held, 0, 0, 0, &modes);
         constraint_rows_free(&held.system.rows);
         begin(&held, 2, 1, from);
         hold(&held, 0, 0); /* a slide along y */
         hold(&held, 2, 0);
-        expect(&held, 0, 1, 0, &moves);
-        NEAR_TO(fabs(moves.along[0][1]), 1.0, 1e-12);
+        expect(&held, 0, 1, 0, &modes);
+        NEAR_TO(fabs(modes.along[0][1]), 1.0, 1e-12);
         constraint_rows_free(&held.system.rows);
     }
 }
@@ -85,37 +85,37 @@ TEST(in_the_plane)
 TEST(in_space)
 {
     struct held held;
-    struct rigid_modes moves;
+    struct rigid_modes modes;
     begin(&held, 3, 1, 5.0);
-    expect(&held, 0, 3, 3, &moves);
+    expect(&held, 0, 3, 3, &modes);
     hold_all(&held, 0);
-    expect(&held, 0, 0, 3, &moves);
+    expect(&held, 0, 0, 3, &modes);
     for (int k = 0; k < 3; k++) { /* every axis goes through that node */
         double apart[3], along = 0.0, off = 0.0;
         for (int a = 0; a < 3; a++) {
-            apart[a] = 5.0 - moves.through[k][a];
-            along += apart[a] * moves.axis[k][a];
+            apart[a] = 5.0 - modes.through[k][a];
+            along += apart[a] * modes.axis[k][a];
         }
         for (int a = 0; a < 3; a++) {
-            off += pow(apart[a] - along * moves.axis[k][a], 2);
+            off += pow(apart[a] - along * modes.axis[k][a], 2);
         }
         NEAR_TO(sqrt(off), 0.0, 1e-9);
     }
     hold_all(&held, 1); /* the edge along x from (5, 5, 5): it turns about that */
-    expect(&held, 0, 0, 1, &moves);
-    NEAR_TO(fabs(moves.axis[0][0]), 1.0, 1e-9);
-    NEAR_TO(moves.through[0][1], 5.0, 1e-9);
-    NEAR_TO(moves.through[0][2], 5.0, 1e-9);
+    expect(&held, 0, 0, 1, &modes);
+    NEAR_TO(fabs(modes.axis[0][0]), 1.0, 1e-9);
+    NEAR_TO(modes.through[0][1], 5.0, 1e-9);
+    NEAR_TO(modes.through[0][2], 5.0, 1e-9);
     hold(&held, 2, 2);
-    expect(&held, 0, 0, 0, &moves);
+    expect(&held, 0, 0, 0, &modes);
     constraint_rows_free(&held.system.rows);
     begin(&held, 3, 1, 0.0);
     for (int32_t n = 0; n < 4; n++) { /* a face that slides on a plane */
         hold(&held, n, 2);
     }
-    expect(&held, 0, 2, 1, &moves);
-    NEAR_TO(fabs(moves.axis[0][2]), 1.0, 1e-9);
-    NEAR_TO(moves.along[0][2], 0.0, 1e-9);
+    expect(&held, 0, 2, 1, &modes);
+    NEAR_TO(fabs(modes.axis[0][2]), 1.0, 1e-9);
+    NEAR_TO(modes.along[0][2], 0.0, 1e-9);
     constraint_rows_free(&held.system.rows);
 }
 
@@ -126,23 +126,23 @@ TEST(hinges)
     static const struct hinge hinge[] = {{1, 0}, {1, 2}, {1, 4}};
     static const int turns[] = {3, 1, 0};
     struct held held;
-    struct rigid_modes moves[2];
+    struct rigid_modes modes[2];
     begin(&held, 3, 2, 5.0);
     for (int count = 1; count <= 3; count++) {
         held.body[hinge[count - 1].node] = -1;
-        GOOD(system_rigid_modes(&held.system, 2, held.body, count, hinge, moves, &error));
-        assert_int_equal(moves[1].translations, 0);
-        assert_int_equal(moves[1].turns, turns[count - 1]);
-        assert_int_equal(moves[0].translations, 3);
+        GOOD(system_rigid_modes(&held.system, 2, held.body, count, hinge, modes, &error));
+        assert_int_equal(modes[1].translations, 0);
+        assert_int_equal(modes[1].turns, turns[count - 1]);
+        assert_int_equal(modes[0].translations, 3);
         if (count == 2) { /* nodes 0 and 2: along y */
-            NEAR_TO(fabs(moves[1].axis[0][1]), 1.0, 1e-9);
-            NEAR_TO(moves[1].through[0][0], 5.0, 1e-9);
-            NEAR_TO(moves[1].through[0][2], 5.0, 1e-9);
+            NEAR_TO(fabs(modes[1].axis[0][1]), 1.0, 1e-9);
+            NEAR_TO(modes[1].through[0][0], 5.0, 1e-9);
+            NEAR_TO(modes[1].through[0][2], 5.0, 1e-9);
         }
     }
     hold_all(&held, 0); /* a condition at a node of no body */
-    GOOD(system_rigid_modes(&held.system, 2, held.body, 1, hinge, moves, &error));
-    assert_int_equal(moves[1].turns, 3);
+    GOOD(system_rigid_modes(&held.system, 2, held.body, 1, hinge, modes, &error));
+    assert_int_equal(modes[1].turns, 3);
     constraint_rows_free(&held.system.rows);
 }
 
@@ -150,21 +150,21 @@ TEST(hinges)
 TEST(several_bodies)
 {
     struct held held;
-    struct rigid_modes moves;
+    struct rigid_modes modes;
     begin(&held, 2, 3, 0.0);
     for (int32_t n = 0; n < 4; n++) {
         hold_all(&held, n);
         hold_all(&held, n + 8);
     }
-    expect(&held, 0, 0, 0, &moves);
-    expect(&held, 2, 0, 0, &moves);
-    expect(&held, 1, 2, 1, &moves);
-    NEAR_TO(moves.centre[0], 0.4, 1e-12);
-    assert_int_equal(moves.nodes, 4);
+    expect(&held, 0, 0, 0, &modes);
+    expect(&held, 2, 0, 0, &modes);
+    expect(&held, 1, 2, 1, &modes);
+    NEAR_TO(modes.centre[0], 0.4, 1e-12);
+    assert_int_equal(modes.nodes, 4);
     static const int32_t both[2] = {1, 4};
     static const double half[2] = {0.5, 0.5}, along_x[2] = {1.0, 0.0};
     GOOD(constraint_rows_add(&held.system.rows, 2, both, half, along_x, 0.0, 0, 0, 1, &error));
-    expect(&held, 1, 1, 1, &moves);
+    expect(&held, 1, 1, 1, &modes);
     constraint_rows_free(&held.system.rows);
 }
 

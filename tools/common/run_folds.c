@@ -27,11 +27,11 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     body.slides = folds->slides;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->touched, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->turned, cells->node_count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
-    folds->folds.touched = folds->touched;
+    folds->folds.in_contact = folds->in_contact;
     folds->folds.turned = folds->turned;
     return STATUS_OK;
 }
@@ -95,7 +95,7 @@ void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
     FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
-             run->folds.touched, run->folds.turned);
+             run->folds.in_contact, run->folds.turned);
 }
 
 void run_folds_forget(struct run *run)
@@ -162,7 +162,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     evaluate_field(&run->model->assembly, u, folds);
-    mark_stopped(run, folds->stopped, folds->touched, folds->turned);
+    mark_stopped(run, folds->stopped, folds->in_contact, folds->turned);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;

@@ -26,8 +26,8 @@ struct run_folds {
                             normal alone */
     double *field;       /* scratch: node_count * dim */
     int64_t *node_first; /* the nodes at which each process evaluates it */
-    bool *stopped, *touched, *turned; /* scratch: node_count */
-    bool reported;                    /* in the message that ends the run */
+    bool *stopped, *in_contact, *turned; /* scratch: node_count */
+    bool reported;                       /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };

@@ -17,7 +17,7 @@ struct bodies {
     int64_t *cell;             /* count: one of its cells, whose region names it */
     bool *touches;             /* count: a contact acts on it, with a rigid surface or a body that stays */
     bool *stays;               /* count: it is held in some direction, or touches */
-    struct rigid_modes *moves; /* count */
+    struct rigid_modes *modes; /* count */
 };
 
 /* of_node[n]: the first node of its body; then its number. Nodes in no cell are bodies of their own. */
@@ -74,7 +74,7 @@ static enum status find_touching(const struct solid_system *system, struct bodie
         }
     }
     for (int64_t b = 0; b < bodies->count; b++) {
-        bodies->stays[b] = bodies->touches[b] || bodies->moves[b].translations + bodies->moves[b].turns < all;
+        bodies->stays[b] = bodies->touches[b] || bodies->modes[b].translations + bodies->modes[b].turns < all;
     }
     while (more) {
         more = false;
@@ -95,19 +95,19 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
     join_cells(cells, bodies);
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->cell, bodies->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->touches, bodies->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&bodies->moves, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->modes, bodies->count, error));
     for (int64_t c = 0; c < cells->count; c++) {
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
     RETURN_IF_ERROR(
-        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->moves, error));
+        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->modes, error));
     return find_touching(system, bodies, error);
 }
 
 static void bodies_free(struct bodies *bodies)
 {
-    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->moves);
+    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->modes);
 }
 
 /* A direction in words, its largest component positive, round-off taken out. */
@@ -125,25 +125,25 @@ static void direction_text(int dim, const double *direction, char text[96])
 }
 
 /* "may move along (1, 0), may turn about (0, 0.1)" */
-static void moves_text(int dim, double size, const struct rigid_modes *moves, char *text, size_t room)
+static void modes_text(int dim, double size, const struct rigid_modes *modes, char *text, size_t room)
 {
     char what[96], where[96];
-    snprintf(text, room, "%s", moves->translations == dim ? "may move along any direction" : "");
-    for (int k = 0; k < moves->translations && moves->translations < dim; k++) {
-        direction_text(dim, moves->along[k], what);
+    snprintf(text, room, "%s", modes->translations == dim ? "may move along any direction" : "");
+    for (int k = 0; k < modes->translations && modes->translations < dim; k++) {
+        direction_text(dim, modes->along[k], what);
         text_append(text, room, "%smay move along %s", text[0] != '\0' ? ", " : "", what);
     }
-    if (moves->turns == (dim == 2 ? 1 : 3) && moves->translations == dim) {
+    if (modes->turns == (dim == 2 ? 1 : 3) && modes->translations == dim) {
         text_append(text, room, " and turn about any axis");
         return;
     }
-    for (int k = 0; k < moves->turns; k++) {
+    for (int k = 0; k < modes->turns; k++) {
         double through[3];
         for (int a = 0; a < dim; a++) {
-            through[a] = fabs(moves->through[k][a]) > 1e-9 * size ? moves->through[k][a] : 0.0;
+            through[a] = fabs(modes->through[k][a]) > 1e-9 * size ? modes->through[k][a] : 0.0;
         }
         point_text(dim, through, where);
-        direction_text(dim, moves->axis[k], what);
+        direction_text(dim, modes->axis[k], what);
         text_append(text, room, "%smay turn about %s%s%s%s", text[0] != '\0' ? ", " : "",
                     dim == 2 ? "" : "the axis through ", where, dim == 2 ? "" : " along ",
                     dim == 2 ? "" : what);
@@ -159,7 +159,7 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
         RETURN_IF_ERROR(stream_regions(model->stream, &model->assembly.cells, &regions, error));
-        point_text(model->assembly.cells.dim, bodies->moves[b].centre, place);
+        point_text(model->assembly.cells.dim, bodies->modes[b].centre, place);
         snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
                  regions.names.name[regions.of_cell[bodies->cell[b]]], place);
     }
@@ -172,7 +172,7 @@ struct hinged {
     int32_t *of_node; /* the part of each node; NO_PART, or SHARED by parts */
     struct hinge *hinge;
     int64_t hinge_count;
-    struct rigid_modes *moves; /* of each part, the others being held */
+    struct rigid_modes *modes; /* of each part, the others being held */
 };
 enum { NO_PART = -1, SHARED = -2 };
 
@@ -196,19 +196,19 @@ static enum status hinged_find(const struct model *model, const struct folds *fo
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&hinged->hinge, hinged->hinge_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&hinged->moves, folds->body_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&hinged->modes, folds->body_count, error));
     for (int64_t i = 0, h = 0; i < corners; i++) {
         if (hinged->of_node[cells->node[i]] == SHARED) {
             hinged->hinge[h++] = (struct hinge){folds->part[i / (cells->dim + 1)], cells->node[i]};
         }
     }
     return system_rigid_modes(&model->system, folds->body_count, hinged->of_node, hinged->hinge_count,
-                              hinged->hinge, hinged->moves, error);
+                              hinged->hinge, hinged->modes, error);
 }
 
 static void hinged_free(struct hinged *hinged)
 {
-    FREE_ALL(hinged->of_node, hinged->hinge, hinged->moves);
+    FREE_ALL(hinged->of_node, hinged->hinge, hinged->modes);
 }
 
 /* Note the largest part that may turn where it is joined to the rest, and how many more there are. What a
@@ -224,15 +224,15 @@ static void note_hinged(const struct run *run, const struct bodies *bodies)
     TOOL_TRY(run->tool, hinged_find(model, folds, &hinged, &error));
     for (int64_t p = 0; p < folds->body_count && hinged.hinge_count > 0; p++) {
         int32_t node = cells->node[folds->bodies[p].cell.item * (cells->dim + 1)];
-        if (hinged.moves[p].translations + hinged.moves[p].turns > 0 &&
+        if (hinged.modes[p].translations + hinged.modes[p].turns > 0 &&
             !bodies->touches[bodies->of_node[node]]) {
             first = count++ == 0 ? p : first;
         }
     }
     if (count > 0) {
         char what[512], place[96], more[64] = "";
-        moves_text(cells->dim, model->assembly.extent, &hinged.moves[first], what, sizeof what);
-        point_text(cells->dim, hinged.moves[first].centre, place);
+        modes_text(cells->dim, model->assembly.extent, &hinged.modes[first], what, sizeof what);
+        point_text(cells->dim, hinged.modes[first].centre, place);
         TOOL_TRY(run->tool, stream_regions(model->stream, cells, &regions, &error));
         if (count > 1) {
             snprintf(more, sizeof more, "; %lld such parts in all", (long long)count);
@@ -250,7 +250,7 @@ static int64_t count_free(const struct bodies *bodies, int64_t first)
 {
     int64_t count = 0;
     for (int64_t b = first; b < bodies->count; b++) {
-        count += !bodies->touches[b] && bodies->moves[b].translations + bodies->moves[b].turns > 0;
+        count += !bodies->touches[b] && bodies->modes[b].translations + bodies->modes[b].turns > 0;
     }
     return count;
 }
@@ -261,12 +261,12 @@ void run_check_rigid_modes(struct run *run)
     const struct model *model = run->model;
     TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
     for (int64_t b = 0; b < bodies.count; b++) {
-        const struct rigid_modes *moves = &bodies.moves[b];
+        const struct rigid_modes *modes = &bodies.modes[b];
         char body[256], what[512];
-        if (moves->translations + moves->turns == 0) {
+        if (modes->translations + modes->turns == 0) {
             continue;
         }
-        moves_text(model->assembly.cells.dim, model->assembly.extent, moves, what, sizeof what);
+        modes_text(model->assembly.cells.dim, model->assembly.extent, modes, what, sizeof what);
         TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
         if (!bodies.touches[b]) {
             int64_t more = count_free(&bodies, b + 1);

@@ -9,7 +9,7 @@
 
 /* Near a stable equilibrium, with damping, moves fall. Near one that is not stable they fall until the mode
  * that leaves it has grown, and then rise exponentially. So a body has left an equilibrium when, under a load
- * that is held, the largest of the last looks' moves has risen by this factor over what it was at an
+ * that is held, the largest of the last samples' moves has risen by this factor over what it was at an
  * estimated error below `near_error`; moves below a share of the displacement are round-off. */
 static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
@@ -48,24 +48,24 @@ void run_stability_follow(struct run *run, const struct progress *progress)
 {
     struct run_stability *stability = &run->stability;
     const struct solid_system *system = &run->model->system;
-    int64_t last = (stability->looks + RUN_STABILITY_LOOKS - 1) % RUN_STABILITY_LOOKS;
+    int64_t last = (stability->samples + RUN_STABILITY_SAMPLES - 1) % RUN_STABILITY_SAMPLES;
     if (stability->left || run->scene->analysis == SCENE_DYNAMIC || has_touched(system)) {
         return;
     }
     if (progress->time != stability->load || !isfinite(progress->move)) {
         stability->load = progress->time;
         stability->least = INFINITY;
-        stability->looks = 0;
+        stability->samples = 0;
     }
-    if (!isfinite(progress->move) || (stability->looks > 0 && progress->move == stability->move[last])) {
-        return; /* nothing new: an interruption comes between two looks */
+    if (!isfinite(progress->move) || (stability->samples > 0 && progress->move == stability->move[last])) {
+        return; /* nothing new: an interruption comes between two samples */
     }
-    stability->move[stability->looks++ % RUN_STABILITY_LOOKS] = progress->move;
-    if (stability->looks < RUN_STABILITY_LOOKS) {
+    stability->move[stability->samples++ % RUN_STABILITY_SAMPLES] = progress->move;
+    if (stability->samples < RUN_STABILITY_SAMPLES) {
         return;
     }
     double move = 0.0;
-    for (int i = 0; i < RUN_STABILITY_LOOKS; i++) {
+    for (int i = 0; i < RUN_STABILITY_SAMPLES; i++) {
         move = fmax(move, stability->move[i]);
     }
     if (move < stability->least && progress->error < near_error) {
@@ -93,9 +93,9 @@ enum status run_stability_state(struct run *run, const struct state *state, stru
 {
     struct run_stability *s = &run->stability;
     const struct state_value values[] = {
-        {"load", STATE_NUMBERS, &s->load, 1},       {"move", STATE_NUMBERS, s->move, RUN_STABILITY_LOOKS},
+        {"load", STATE_NUMBERS, &s->load, 1},       {"move", STATE_NUMBERS, s->move, RUN_STABILITY_SAMPLES},
         {"least", STATE_NUMBERS, &s->least, 1},     {"near", STATE_NUMBERS, s->near, parameter_count(run)},
-        {"looks", STATE_COUNTS, &s->looks, 1},      {"left", STATE_FLAGS, &s->left, 1},
+        {"looks", STATE_COUNTS, &s->samples, 1},    {"left", STATE_FLAGS, &s->left, 1},
         {"negative", STATE_FLAGS, &s->negative, 1}, {"since", STATE_NUMBERS, &s->since, 1},
         {"node", STATE_COUNTS, &s->node, 1}};
     return state_visit(state, "stability", values, sizeof values / sizeof *values, error);

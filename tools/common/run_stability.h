@@ -9,16 +9,16 @@
 struct run;
 
 /* Looks whose largest move counts: one alone may catch a node that turns back. */
-enum { RUN_STABILITY_LOOKS = 4 };
+enum { RUN_STABILITY_SAMPLES = 4 };
 
 struct run_stability {
     /* The state nearest to equilibrium since the load is held; while no contact has
      * pressed. */
-    double load;                      /* that is held */
-    double move[RUN_STABILITY_LOOKS]; /* of the last looks, m: in turn */
-    int64_t looks;                    /* since then */
-    double least;                     /* the smallest value so far of the largest of these moves, m */
-    double *near;                     /* the parameters when `least` was found, node_count * dim */
+    double load;                        /* that is held */
+    double move[RUN_STABILITY_SAMPLES]; /* of the last samples, m: in turn */
+    int64_t samples;                    /* since then */
+    double least;                       /* the smallest value so far of the largest of these moves, m */
+    double *near;                       /* the parameters when `least` was found, node_count * dim */
     /* What was seen first. */
     bool left;     /* the body has left `near`, which is kept, */
     bool negative; /* or: the stiffness has a negative eigenvalue */
