@@ -29,12 +29,12 @@ struct adaptive_points {
     int64_t unresolved; /* cells that change by more than the tolerance even at the last level */
 };
 
-/* K_ij = integral(grad phi_i . grad phi_j) over a cell, by the rule on its subcells; a subcell whose rule on
- * the halves of its edges (4 triangles, 8 tetrahedra) gives another K by c, in the Frobenius norm, is split
- * as long as the sum of c over the cell exceeds tolerance |K|, those of largest c first. Points are those of
- * the subcells not split. radius[node_count]: support radii. Threads share the work; the result does not
- * depend on their number. Errors: as support_build and shape_table, and STATUS_INPUT for a rule that does not
- * exist. */
+/* For each cell K_ij = integral(grad phi_i . grad phi_j) is computed by the rule on its subcells. Splitting a
+ * subcell at the middles of its edges (4 triangles, 8 tetrahedra) changes K by c, in the Frobenius norm.
+ * Subcells are split, those of largest c first, while the sum of c over the cell exceeds tolerance |K|. The
+ * points are those of the subcells that are not split. radius[node_count]: support radii. Threads share the
+ * work; the result does not depend on their number. Errors: as support_build and shape_table, and
+ * STATUS_INPUT for a rule that does not exist. */
 MUST_CHECK enum status adaptive_points_build(const struct adaptive_options *options,
                                              const struct cells *cells, const double *radius,
                                              struct adaptive_points *points, struct error *error);

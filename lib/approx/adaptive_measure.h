@@ -21,7 +21,7 @@ struct leaves {
     struct leaf *leaf;
 };
 
-/* What refining needs to know. */
+/* The input of the refinement. */
 struct refinement {
     const struct adaptive_options *options;
     const struct cells *cells;

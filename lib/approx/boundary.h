@@ -43,8 +43,8 @@ struct boundary_averages {
     int64_t *sample_ptr;   /* count + 1: the quadrature points that each average is made of */
     double *sample_x;      /* sample_ptr[count] * dim, m */
     double *sample_share;  /* their shares, sum 1 for each average */
-    int64_t *sample_point; /* of boundary averages: which of the points of boundary_points_build of the same
-                              set each is */
+    int64_t *sample_point; /* of boundary averages: the index of each sample among the points of
+                              boundary_points_build of the same set */
 };
 
 /* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of
@@ -52,10 +52,10 @@ struct boundary_averages {
 MUST_CHECK enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                                struct boundary_averages *averages, struct error *error);
 
-/* The same, and after the boundary averages an average over each whole side of the set: a part of it within
- * which facets that share an edge (2D: a node) turn by less than 45 degrees. Boundary averages are split
- * between sides, or not: a boundary average round an edge then holds both sides together. To be freed, as
- * the averages, also on failure. */
+/* As boundary_averages_build, followed by one average over each whole side of the set. A side is a part of
+ * the set within which facets that share an edge (2D: a node) turn by less than 45 degrees. With `split` a
+ * node on an edge between two sides has a boundary average for each side; without it, one for both. The sides
+ * and the averages are to be freed, also on failure. */
 struct boundary_sides {
     int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
     int64_t group_count;        /* of groups */
@@ -68,16 +68,16 @@ MUST_CHECK enum status boundary_sides_build(const struct face_table *table, cons
                                             struct boundary_sides *sides, struct error *error);
 void boundary_sides_free(struct boundary_sides *sides);
 
-/* Values at the nodes by the boundary's own quadrature: the mean over the facets of the set at each node,
- * weighted by their size, of the value there of the linear function through a facet's quadrature points. The
- * surface with these corners is continuous, follows a linear field exactly, and what a uniform traction on it
- * puts on the corners is passed on as the quadrature of (17) has it. One entry per node; areas, normals as
- * above. */
+/* Values at the nodes, extrapolated from the quadrature points of the facets: on each facet of the set at a
+ * node the linear function through its quadrature points is evaluated at the node, and the mean over these
+ * facets, weighted by their size, is taken. The surface with these corners is continuous and follows a linear
+ * field exactly. A uniform traction on it is distributed over the nodes as the quadrature of (17) distributes
+ * it. One entry per node; areas and normals as above. */
 MUST_CHECK enum status boundary_corners_build(const struct face_table *table, const struct facet_set *set,
                                               struct boundary_averages *averages, struct error *error);
 
-/* The same with node values, Phi_a u = u_h(x_a), from a table at the nodes: one entry per node of the set;
- * areas, normals as above. Splits where the boundary turns are not made. */
+/* Node values, Phi_a u = u_h(x_a), from a table at the nodes: one entry per node of the set, also where the
+ * boundary turns sharply; areas and normals as above. */
 MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, const struct facet_set *set,
                                             const struct neighbours *node_lists, const double *node_phi,
                                             struct boundary_averages *averages, struct error *error);
@@ -93,12 +93,14 @@ MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
 
-/* Ends of held faces: smooth, on a side that goes on; sharp, at an edge between two sides. */
+/* Junctions of the prescribed and the free boundary: smooth, within a side; sharp, at an edge between two
+ * sides. */
 enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP };
 
-/* end[table->node_count] becomes true at the nodes where a held face of the boundary meets one that is not
- * touched, across an edge (2D: a node) at which it turns by less than 45 degrees (smooth) or by more (sharp).
- * held[table->faces->count]; touched[the same]: held ones, and others that are not free. */
+/* Set junction[table->node_count] at the nodes where a held face and a free face of the boundary share an
+ * edge (2D: a node) at which the boundary turns by less than 45 degrees (smooth) or by more (sharp).
+ * held[table->faces->count]: the prescribed faces; constrained[table->faces->count]: these and all others
+ * that are not free. */
 MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
                                                const bool *held, const bool *constrained, bool *junction,
                                                struct error *error);

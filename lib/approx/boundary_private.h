@@ -3,15 +3,15 @@
 
 #include "approx/boundary.h"
 
-/* face_of[i]: the face of the table that facet i of the set is. STATUS_INPUT where it is none, or a node of
- * it is not there. */
+/* face_of[i]: the index in the table of facet i of the set. STATUS_INPUT where a facet is no face of the
+ * table, or has a node that does not exist. */
 MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set,
                                            int64_t *face_of, struct error *error);
 
 /* Outward unit normal (three components, in 2D the last one 0) and size, m or m2, of a facet. */
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size);
 
-/* One corner of a facet: which part it belongs to. */
+/* A corner of a facet, and the part that it belongs to. */
 struct corner {
     int32_t node;
     int32_t vertex; /* of the facet */

@@ -22,11 +22,11 @@ struct faces {
     int64_t count;
     int64_t boundary_count; /* those on the boundary come first */
     int32_t *node;          /* count * dim, oriented outward from the first cell */
-    int32_t *cell; /* count * 2: the cell it is oriented by (the lower index), and the one beyond or -1 */
-    int64_t row_count, own_count; /* rows that averages over the faces are made of, see face_rows.h, and how
-                                     many of them are of a face of its own */
-    int32_t *row; /* count * FACE_ROWS: equal where they are the face's own, else that of the edge from each
-                     node to the next one; NULL: face f has row f */
+    int32_t *cell; /* count * 2: the first cell (the lower index), and the one beyond the face or -1 */
+    int64_t row_count, own_count; /* rows of the face averages (face_rows.h); the first own_count of them
+                                     belong to one face each */
+    int32_t *row; /* count * FACE_ROWS: the face's own row, repeated; or the rows of its edges, from each node
+                     to the next one; NULL: face f has row f */
 };
 
 /* Check indices and that every volume is positive; the message names the first bad cell. */
@@ -57,8 +57,7 @@ MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only
                                    struct error *error);
 void faces_free(struct faces *faces);
 
-/* found[count]: the face on the boundary that each facet[count * dim] is, whichever way it is turned; -1:
- * none.
+/* found[count]: the face on the boundary with the nodes of each facet[count * dim], in any order; -1: none.
  */
 MUST_CHECK enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet,
                                   int64_t *found, struct error *error);

@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-/* spacing[node_count], m: of the cells where they are given (cells->count > 0), of the nearest nodes for
- * nodes of no cell. */
+/* spacing[node_count], m: the mean length of the cell edges at each node; at a node of no cell, and without
+ * cells, the mean distance to the nearest nodes. */
 MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing, struct error *error);
 
 /* outside[count]: whether a point of x[count * dim] is farther from every cell than `within` times the
@@ -17,8 +17,8 @@ MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing,
 MUST_CHECK enum status field_outside(const struct cells *cells, const double *spacing, double within,
                                      int64_t count, const double *x, bool *outside, struct error *error);
 
-/* How far from the cells, in spacings, values are still given: landmarks and nodes of another mesh lie a
- * little beyond a boundary that is curved. */
+/* The distance from the cells, in spacings, up to which fields are extrapolated: landmarks and nodes of
+ * another mesh may lie a little beyond a curved boundary. */
 #define FIELD_MARGIN 1.0
 
 /* Lists and values of shape functions at points. */
@@ -27,11 +27,11 @@ struct field_table {
     double *phi; /* lists.ptr[lists.count] */
 };
 
-/* Supports and shape functions at x[count * dim] on a cloud with radius[node_count], m, within reach through
- * the cells where there are any. Moving least squares fit: the nodal values are taken as the parameters of
- * the approximation, u_h = sum_j phi_j u_j, as everywhere in this library; linear fields (quadratic ones with
- * mls2) are reproduced. `what` names the points in messages. The shape
- * functions are options->mls, or others (unless NULL) on the same supports. */
+/* Supports and shape functions at x[count * dim] on a cloud with radius[node_count], m. Where there are
+ * cells, neighbours are those visible through them (visibility.h). Moving least squares fit: the nodal values
+ * are taken as the parameters of the approximation, u_h = sum_j phi_j u_j, as everywhere in this library;
+ * linear fields (quadratic ones with mls2) are reproduced. `what` names the points in messages. The shape
+ * functions are *shapes, or options->mls where that is NULL. */
 MUST_CHECK enum status field_table_build(const struct support_options *options, const struct mls *shapes,
                                          const struct cells *cells, const double *radius, int64_t count,
                                          const double *x, const char *what, struct field_table *table,

@@ -23,7 +23,8 @@ struct field_statistics {
     double *sorted;     /* count, ascending, for field_percentile */
 };
 
-/* Of difference[index[i]], i < count. Any NaN among them makes all of them NaN; of no differences, too. */
+/* Statistics of difference[index[i]], i < count. All of them are NaN if one difference is NaN, or if there is
+ * none. */
 MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
                                         struct field_statistics *statistics, struct error *error);
 void field_statistics_free(struct field_statistics *statistics);
@@ -36,8 +37,8 @@ struct nodal_field {
     struct cells cells;
     int64_t cols;
     const double *values;
-    /* Of a field u_h = sum phi_j d_j that was solved for, what it is made of; else NULL: the values are taken
-     * as the parameters of MMLS with the default supports. */
+    /* Parameters, supports and shape functions of a field u_h = sum phi_j d_j that was solved for; else NULL:
+     * the values are taken as the parameters of MMLS with the default supports. */
     const double *parameters; /* d_j: cells.node_count * cols */
     const double *radius;     /* supports of the nodes, m */
     const struct support_options *support;

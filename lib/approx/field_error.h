@@ -26,17 +26,17 @@
 /* Error of the finer one by the difference of two fields: 1 / (r^p - 1), ratio > 1, order > 0. */
 double field_error_share(double ratio, double order);
 
-/* Order by the differences of three fields: of the fine from the middle one, and of that from the coarse
- * one; limited to the bounds. The most for a coarse difference that is no finite number. */
+/* Observed order from three fields: `fine` is the difference of the fine and the middle one, `coarse` that of
+ * the middle and the coarse one. It is limited to the bounds; it is the upper bound where `coarse` is not
+ * finite. */
 double field_error_order(double fine, double coarse, double ratio);
 
-/* How many times as many cells per direction the finer of two meshes of one body has; nodes, where one has no
- * cells. */
+/* Ratio of the numbers of cells per direction of two meshes of one body; of nodes, where one has no cells. */
 double field_error_ratio(const struct cells *fine, const struct cells *coarse);
 
 /* Mean over the body of a value at its nodes, linear in the cells; cells with a node whose value is NaN are
- * left out. Of graded clouds the plain average over the nodes is mostly that of the places with many nodes.
- * NaN where nothing is left. */
+ * left out. The average over the nodes of a graded cloud would be dominated by the regions with many nodes.
+ * NaN where no cell is left. */
 double field_error_mean(const struct cells *cells, const double *value);
 
 /* squared[cells->count] = integral over the cell of |G - grad u|^2, G the recovered gradient of u, linear in

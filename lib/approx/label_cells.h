@@ -48,8 +48,8 @@ struct label_cells {
     int64_t facet_count;
     int32_t *facet;  /* facet_count * dim: the boundary, oriented outward */
     int32_t *side;   /* facet_count * 2: the label within, and the one beyond that is not kept */
-    int64_t pinched; /* nodes at which bodies hung together by a node or an edge alone: they are cut apart */
-    int64_t hinges;  /* nodes by which, or by an edge, alone parts of one body hang together there */
+    int64_t pinched; /* nodes at which two bodies shared no more than a node or an edge: they are cut apart */
+    int64_t hinges;  /* nodes at which parts of one body share no more than a node or an edge */
     int64_t specks;  /* bodies about a single point of the lattice: they are left out, */
     double speck_volume; /* m3 */
     int64_t

@@ -65,12 +65,12 @@ struct octree {
                                         NULL for the finest */
 };
 
-/* What a cube of the finest level is to be of: a level at least, and whether all that touch a cube of that
- * level there are to be as well. */
+/* The refinement that is wanted at a cube of the finest level: the level at least, and whether all cubes that
+ * touch it must have that level, too. */
 #define OCTREE_WISH(level, around) ((uint8_t)(2 * (level) + (around)))
 
-/* Split the cubes of an octree so that the wishes of the finest cubes hold, and cubes that touch differ by
- * one level at most. count[] are multiples of 2^(levels - 1); wish[] is changed. */
+/* Refine an octree so that wish[] of the finest cubes holds, and cubes that touch differ by at most one
+ * level. count[] are multiples of 2^(levels - 1); wish[] is changed. */
 MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struct octree *octree,
                                    struct error *error);
 void octree_free(struct octree *octree);
@@ -160,8 +160,9 @@ struct label_cells_keeping {
     int32_t *from;  /* cell_count */
 };
 
-/* Where parts hang together by a node or an edge alone: take cells between interfaces into the body that join
- * them, or leave out those that hang there. No node leaves its interface. */
+/* Resolve places where parts share no more than a node or an edge (non-manifold boundary): add cells all of
+ * whose nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
+ * interface. */
 void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star);
 
 /* Cut bodies, whose numbers stand in group[], apart where they touch by a node or an edge. */
@@ -189,14 +190,15 @@ MUST_CHECK enum status label_cells_rims(const struct label_cells_options *option
                                         struct error *error);
 
 /* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
- * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. Of cells
- * around the body no more is asked than that they are not. */
+ * bounds, or its quality (approx/quality.h) is just not poor, and negative where it is inverted. Cells around
+ * the body need only not be inverted. */
 double star_score(const struct shaping *shaping, int64_t node);
 double shaping_score(const struct shaping *shaping, int64_t cell);
 
-/* Move a node to a place where the cells at it would score less than before and than `least`, by moving the
- * nodes of the body around it, but those of rims and those that are apart, out of the way: those of
- * interfaces within these. False, and all as it was, where that does not help. */
+/* Move a node to `target`, where the cells at it would score less than before and than `least`, by also
+ * moving the body's nodes around it. Nodes on interfaces stay on them; nodes of rims and nodes that have
+ * others at the same place are not moved. Returns false, with all nodes as before, where that does not help.
+ */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
 /* Move x onto the interface of the labels; false where there is none near. */

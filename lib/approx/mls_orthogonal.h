@@ -6,7 +6,7 @@
 /* Rows of scratch per neighbour: monomials, QR copy of them, weight, slope, projection, row, image. */
 #define MLS_ROWS (2 * MLS_MAX_BASIS + 4 + 3)
 
-/* A row is so much longer than the number of neighbours: for the rows of H, and for whole vectors. */
+/* Padding of a row beyond the number of neighbours: for the rows of H, and to whole vectors. */
 #define MLS_PADDING 16
 
 /* Values and, unless NULL, gradients by orthogonal factorisation (equation (3) of lib/README.md), or why

@@ -11,10 +11,11 @@
 #define LANES 4
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 
-/* Before the loops over monomials: in full, so that what they index stays in registers. */
+/* Unroll the loops over monomials completely, so that the arrays they index stay in registers. */
 #define UNROLL _Pragma("GCC unroll 10")
 
-/* Monomials of degree at most 4, of which the moment matrix of the quadratic basis is made. */
+/* Number of monomials of degree at most 4 in 3D: the distinct entries of the moment matrix of the quadratic
+ * basis. */
 #define MLS_MOMENTS 35
 
 /* moment_index[k][l]: the moment that is the entry (k, l) of the moment matrix, in the order of

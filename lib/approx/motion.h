@@ -1,19 +1,17 @@
-/* The motion of a body that nodal displacements describe, between the nodes too, and its inverse.
+/* The deformation x = X + u(X) of a body, interpolated from nodal displacements, and its inverse.
  *
  * In a cell the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear N_a of the
  * cell's nodes and the gradients G_a there: of the field, where it is known, or of a quadratic moving least
- * squares fit. It takes the nodal
- * values at the nodes, is continuous across faces, and reproduces quadratic fields where the gradients are
- * theirs: half the gradient term makes up for the error of linear interpolation, sum_a N_a u_a = u + sum_a
- * N_a (X - X_a) H (X
- * - X_a) / 2. */
+ * squares fit. It takes the nodal values at the nodes, and is continuous across faces. It reproduces a
+ * quadratic field of Hessian H where the G_a are its gradients, as linear interpolation gives sum_a N_a u_a =
+ * u + sum_a N_a (X - X_a) H (X - X_a) / 2. */
 #pragma once
 
 #include "approx/cells.h"
 #include "approx/support.h"
 
-/* The field that nodal values are those of, u(X) = sum_j phi_j(X) parameters_j: its gradients are taken
- * instead of those of a fit. All the caller's. */
+/* The field u(X) = sum_j phi_j(X) parameters_j whose nodal values are given. Its gradients are used instead
+ * of those of a fit. The arrays are the caller's. */
 struct motion_source {
     const struct support_options *support;
     const struct mls *shapes; /* of phi */
@@ -44,9 +42,9 @@ int64_t motion_folded(const struct motion *motion, int64_t *first);
 /* moved[dim]: the place that X[dim] in this cell moves to. */
 void motion_place(const struct motion *motion, int64_t cell, const double *X, double *moved);
 
-/* X[dim]: the place that moves to x, found by Newton's method from the inverse of the cell that holds x when
- * its moved nodes span it, and through faces on to other cells where X lies in these. Returns whether
- * |place(X) - x|
+/* X[dim]: the place that moves to x. `cell` contains x when it is spanned by its moved nodes. Newton's method
+ * starts from the inverse of its linear interpolant, and goes on in the cell beyond a face where X lies
+ * there. Returns whether |place(X) - x|
  * <= tolerance was reached; if not, X is the place by linear interpolation in this cell. *residual: |place(X)
  * - x| at the end, m. */
 bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,

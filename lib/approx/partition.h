@@ -4,10 +4,10 @@
  *
  * METIS rather than Scotch: one call on plain arrays, balanced to a bound that is asked for, the same result
  * for the same graph and seed, and no state beside. Every node has an owner. A cell belongs to the part that
- * owns most of its vertices, of several the one that owns the first of these vertices. What a part evaluates
- * are its own cells with their faces; for that it needs the nodes whose supports reach them (the halo). To
- * compute supports and shape functions at its own cells as in the whole body, it needs as well all cells at
- * these nodes, and the cells around these. */
+ * owns most of its vertices, of several the one that owns the first of these vertices. A part evaluates its
+ * own cells and their faces, which needs the nodes whose supports reach them (the halo). To compute the same
+ * supports and shape functions there as in the whole body, it also needs all cells at these nodes, and the
+ * cells around those. */
 #pragma once
 
 #include "approx/cells.h"
@@ -23,8 +23,8 @@ MUST_CHECK enum status cell_stars_build(const struct cells *cells, struct cell_s
                                         struct error *error);
 void cell_stars_free(struct cell_stars *stars);
 
-/* work[cells->count]: how many nodes have supports that reach the box of each cell: what an evaluation of the
- * cell costs, to a factor. The grid has the nodes with the radii of their supports. Threaded. */
+/* work[cells->count]: the number of nodes whose supports meet the box of each cell. The cost of evaluating
+ * the cell is proportional to it. The grid has the nodes with the radii of their supports. Threaded. */
 MUST_CHECK enum status partition_work(const struct cells *cells, const struct point_grid *grid, int32_t *work,
                                       struct error *error);
 

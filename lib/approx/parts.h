@@ -27,10 +27,11 @@ MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int
 MUST_CHECK enum status boundary_sides(const double *x, const struct faces *boundary, double degrees,
                                       int32_t *part, int32_t *count, struct error *error);
 
-/* Grow a choice by `rings` rings of neighbours; with `rings` negative shrink it, by those of what is not
- * chosen. Of items, chosen[count]: neighbours have a node in common; of nodes, chosen[node_count]: an item.
- * item[count * corners] indexes node_count nodes. Beyond edge[edge_count], the nodes at the end of the items,
- * nothing is chosen: a choice shrinks there, too. */
+/* Grow a selection by `rings` rings of neighbours; with `rings` negative, shrink it by growing its
+ * complement. With `of_items` the selection is of items, chosen[count], and neighbours share a node; else it
+ * is of nodes, chosen[node_count], and neighbours share an item. item[count * corners] indexes node_count
+ * nodes. edge[edge_count] are the nodes at the border of the items, beyond which nothing is chosen: a
+ * selection shrinks from there, too. */
 MUST_CHECK enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
                                    int64_t edge_count, const int32_t *edge, int rings, bool of_items,
                                    bool *chosen, struct error *error);

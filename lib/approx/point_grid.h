@@ -18,7 +18,7 @@ struct point_grid_level {
     int32_t *node;        /* nodes of each bin, ascending */
     double *place;        /* following node: coordinates and radius, dim + 1 each */
     int64_t *touch_start; /* CSR over bins, NULL unless point_grid_list_touching was called: */
-    int32_t *touch; /* the places in `node` of the nodes whose supports touch each bin, by their nodes */
+    int32_t *touch; /* the places in `node` of the nodes whose supports meet each bin, ascending by node */
 };
 
 /* Node coordinates and radii are the caller's and must outlive the grid. */

@@ -1,5 +1,5 @@
-/* Quadrature on background cells and on their faces. All weights are positive: a negative one makes negative
- * masses, which explicit dynamics does not bear. */
+/* Quadrature on background cells and on their faces. All weights are positive, since negative ones could give
+ * negative lumped masses. */
 #pragma once
 
 #include "approx/cells.h"

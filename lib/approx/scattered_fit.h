@@ -21,7 +21,7 @@ struct scattered_fit {
     const double *row; /* count * row_size; coordinates in units of `unit` */
     double unit;       /* m; scales coordinates and values */
     struct edge_paths
-        *paths;         /* unless NULL, only rows within reach of a node count (scattered_fit_evaluate) */
+        *paths;         /* unless NULL, only rows connected to a node are used (scattered_fit_evaluate) */
     double *x, *radius; /* what scattered_fit_build() makes: the points, count * dim, in a grid */
     struct point_grid grid;
 };
@@ -31,10 +31,10 @@ struct scattered_fit {
 MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct error *error);
 void scattered_fit_free(struct scattered_fit *fit);
 
-/* values[value_count] at x[dim] (m), a place beside node `from`. With `paths` only rows within reach of that
- * node are used; STATUS_INPUT if there are none. *distance receives the distance to the nearest point and
- * *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller can
- * refuse to extrapolate far. */
+/* values[value_count] at x[dim] (m), a place near node `from`. With `paths` only rows connected to that node
+ * are used (edge_paths.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest
+ * point and *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller
+ * can refuse to extrapolate far. */
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
                                               double *values, double *distance, double *spacing,
                                               struct error *error);

@@ -9,8 +9,8 @@
  *
  *   h_new = h (e / e_K)^(1 / (1 + dim / 2)),    sum e_K^2 (h_new / h)^2 = s sum e_K^2,
  *
- * with e such that the second holds, also where bounds on h_new prevent the first; but for cells that already
- * are about as small as any may be. */
+ * with e such that the second equation holds, even where bounds on h_new override the first. Cells that
+ * already have about the least admitted size are left out of it. */
 #pragma once
 
 #include "approx/cells.h"
@@ -20,7 +20,7 @@
 #define SIZE_FIELD_LEAST 0.25
 #define SIZE_FIELD_MOST 2.0
 
-/* Most that the size changes per length: so much two neighbouring cells differ at most. */
+/* Bound on the gradient of the size: the largest relative difference of neighbouring cells. */
 #define SIZE_FIELD_GRADATION 0.3
 
 struct size_field_request {
@@ -37,7 +37,7 @@ struct size_field {
         *outer;     /* node_count * dim, m: nodes of the boundary moved outward by half their spacing, so that
                        a  finer mesh of a curved body lies within the cells and the layer beyond the boundary */
     double nodes;   /* that a mesh of these sizes has, about */
-    double unbound; /* and without the limit */
+    double unbound; /* the same without the limit most_nodes */
 };
 
 /* Sizes by squared[cells->count], the squares of the errors of the cells. Where all are zero

@@ -12,13 +12,13 @@ struct support_options {
     int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
     bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
-    enum visibility_rule visibility; /* what else a neighbour must be, besides near */
+    enum visibility_rule visibility; /* whether neighbours must be visible through the cells */
     const int32_t
-        *side;            /* by cells: of each cell, from 0, on which side of the interfaces it is, at which
-                             supports stop; NULL: no interfaces. See support_space.h, support_build ignores it */
-    const int32_t *owner; /* by cells, with sides: of each node, the part that it belongs to (partition.h); */
-    int32_t part;   /* supports of what is not of this part do not stop at interfaces, as its halo may hold
-                       too little of a side for them; NULL: a whole body. support_build ignores it */
+        *side; /* with cells: the side of the interfaces that each cell is on, from 0; supports stop at
+                  interfaces. NULL: no interfaces. Used by support_space.h; support_build ignores it */
+    const int32_t *owner; /* with cells and sides: the part that each node belongs to (partition.h). */
+    int32_t part;   /* Supports of points of other parts do not stop at interfaces, as the halo may hold too
+                       little of a side. owner NULL: the whole body. support_build ignores both */
     struct mls mls; /* what the lists are for */
 };
 
@@ -55,8 +55,9 @@ MUST_CHECK enum status support_radii(const struct support_options *options, int6
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      int64_t count, const double *x, const char *what,
                                      struct support_lists *lists, struct error *error);
-/* The same with neighbours that are within reach through the cells only: of the points, which lie in these
- * cells. Without reach (NULL) within their radii as the crow flies. */
+/* The same where neighbours must be visible through the cells, or connected around corners within their
+ * radius (visibility.h). `places` are the cells that the points lie in. With visibility NULL all nodes within
+ * their radius are neighbours. */
 MUST_CHECK enum status support_build_within(const struct support_options *options,
                                             const struct point_grid *grid,
                                             const struct visibility *visibility,
@@ -64,14 +65,14 @@ MUST_CHECK enum status support_build_within(const struct support_options *option
                                             const double *x, const char *what, struct support_lists *lists,
                                             struct error *error);
 
-/* A body that neighbours are looked for in. */
+/* A body in which neighbours are searched. */
 struct support_body {
     const struct point_grid *grid;
     const struct visibility *visibility; /* as above */
     const int32_t *node; /* the numbers of its nodes in the lists, ascending; NULL: their own */
 };
-/* The same with neighbours of each point in one of several bodies: number body_of[p], or the first where
- * body_of is NULL. The places are nodes and cells of that body. */
+/* The same for several bodies: the neighbours of point p are nodes of the body number body_of[p], or of the
+ * first one where body_of is NULL. The places are nodes and cells of that body. */
 MUST_CHECK enum status support_build_among(const struct support_options *options, int64_t body_count,
                                            const struct support_body *body, const int32_t *body_of,
                                            const struct visibility_places *places, int64_t count,

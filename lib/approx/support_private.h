@@ -5,7 +5,7 @@
 
 #define SUPPORT_WIDEN_LIMIT 8.0
 
-/* What lists are made of. */
+/* The input of a search for neighbours. */
 struct search {
     const struct support_options *options;
     int dim;
@@ -30,12 +30,12 @@ struct worker {
     int64_t order_room, gradient_room;
 };
 
-/* Append the neighbours of point p to the worker's list. The radii are widened until the support serves, at
- * most by SUPPORT_WIDEN_LIMIT; *serves: whether it does. */
+/* Append the neighbours of point p to the worker's list. The radii are widened until the support is
+ * admissible, at most by SUPPORT_WIDEN_LIMIT; *serves: whether it is. */
 MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
                                     double *widen, bool *serves, struct error *error);
 
-/* The number of the body that neighbours of point p are looked for in. */
+/* The number of the body in which neighbours of point p are searched. */
 static inline int32_t search_body(const struct search *search, int64_t p)
 {
     return search->body_of != NULL ? search->body_of[p] : 0;

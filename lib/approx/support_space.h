@@ -1,4 +1,4 @@
-/* Where supports reach: the nodes of a body with their radii, within reach through its cells.
+/* The nodes of a body with their support radii, and their visibility through its cells.
  *
  * Where cells have sides (support_options.side), each side is a body of its own, with the nodes of the
  * interface: a neighbour of a point is a node of the cells on the point's side. So shape functions have a
@@ -16,17 +16,17 @@ struct support_side {
     int32_t *local; /* cell_count * (dim + 1): the cells, by nodes of the side; NULL: the body's */
     double *x, *radius;
     struct point_grid grid;
-    struct visibility visibility; /* where neighbours are within reach through cells */
+    struct visibility visibility; /* where neighbours must be visible through cells */
 };
 
 /* The arrays of the cells and the radii are the caller's and must outlive this. */
 struct support_space {
     struct cells cells;
     const double *radius;
-    bool by_cells;            /* neighbours are within reach through the cells; else by distance */
+    bool by_cells;            /* neighbours must be visible through the cells; else all within their radius */
     const int32_t *cell_side; /* the caller's: cells.count, or NULL: one side */
     int64_t side_count;
-    struct support_side *side; /* side_count, and behind them, of a part with sides, the whole: for points
+    struct support_side *side; /* side_count; for a part of a body with sides one more, the whole: for points
                                   that are not its own */
     const int32_t *owner;      /* the caller's: cells.node_count, or NULL: no part, or no sides */
     int32_t part;

@@ -3,10 +3,11 @@
 
 #include "approx/cells.h"
 
-/* The thickness of a body at a facet of the boundary is the way from the facet's middle straight into the
- * body, to where that leaves it through a facet that faces the other way, to 60 degrees. It counts in lengths
- * of the facet's edges (2D: the facet); and only where it is below the bound also in mean lengths of the
- * edges of the cells on the way: behind long facets of a boundary with few nodes there may be many cells. */
+/* The thickness of a body at a boundary facet is the length of the ray from the facet's middle along its
+ * inward normal to where it leaves the body, through a facet whose normal is opposite to within 60 degrees.
+ * It is measured in lengths of the facet's edges (2D: of the facet). A facet counts as thin if the thickness
+ * is below the bound in this measure and also in mean edge lengths of the cells on the ray, as behind long
+ * facets of a boundary with few nodes there may be many cells. */
 struct thin_report {
     double share;    /* part of the boundary, by area or length, where that is less than the bound */
     double least;    /* the least thickness; the bound where there is none below it */

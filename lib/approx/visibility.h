@@ -1,4 +1,5 @@
-/* What a point reaches through the cells of the body, so that supports do not act across gaps.
+/* Which nodes are visible from a point, or connected to it, through the cells of the body, so that supports
+ * do not act across gaps.
  *
  * A node is in sight of a point when the straight segment between them stays within the cells, from face to
  * face (visibility: Belytschko, Lu and Gu 1994). Around a re-entrant corner the distance is the length of the
@@ -12,8 +13,8 @@
 #include "approx/cells.h"
 #include "approx/point_grid.h"
 
-/* Which nodes are neighbours: those within reach through the cells, where there are cells; or all that are
- * near. */
+/* Which nodes within their radius are neighbours: those visible or connected through the cells, where there
+ * are cells; or all. */
 enum visibility_rule { VISIBILITY_CELLS, VISIBILITY_DISTANCE, VISIBILITY_RULE_COUNT };
 
 /* Names for command lines and headers: "cells", "distance". */
@@ -59,7 +60,7 @@ struct visibility {
 /* Errors: STATUS_INPUT for cells that share a face with more than one other; STATUS_SYSTEM (memory). */
 MUST_CHECK enum status visibility_build(const struct cells *cells, const struct point_grid *grid,
                                         struct visibility *visibility, struct error *error);
-/* Only `across` and the stars: what ways from node to node take. Errors as above. */
+/* Only `across` and the stars, for paths along edges (edge_paths.h). Errors as above. */
 MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct visibility *visibility,
                                               struct error *error);
 void visibility_free(struct visibility *visibility);
@@ -115,18 +116,18 @@ void visibility_shadows_free(struct visibility_shadows *shadows);
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct visibility_work {
-    int64_t point;   /* the number of the point that is looked from, */
+    int64_t point;   /* the number of the current point, */
     int64_t node;    /* the node that it is, or -1, */
     const double *x; /* and its place */
     double from[3];  /* itself; or for a point outside, its place in the nearest cell */
     bool outside;
     const int32_t *cell;       /* the cells that it lies in */
     int64_t cell_count;        /* -1: not looked for yet */
-    struct index_list own;     /* what `cell` may view */
+    struct index_list own;     /* storage for `cell` */
     uint32_t serial;           /* of the point */
     uint32_t *mark;            /* node_count: 2 serial, and 1 more for a node that is hidden */
-    double *length;            /* node_count: of the shortest path, infinite: none, or none yet; */
-    int32_t *before;           /* the node before on that path, -1: the point itself */
+    double *length;            /* node_count: of the shortest path found so far, infinite: none */
+    int32_t *before;           /* the previous node on that path, -1: the point itself */
     struct index_list reached; /* nodes that the last search for paths may have put a length down for */
     struct index_list hidden, stack, visited;
     int64_t changed; /* candidates of the last filter that were out of sight */
@@ -136,7 +137,7 @@ struct visibility_work {
 };
 void visibility_work_free(struct visibility_work *work);
 
-/* The point to evaluate next: point p, at x. */
+/* Set the current point: point p, at x. */
 MUST_CHECK enum status visibility_begin(const struct visibility *visibility,
                                         const struct visibility_places *places, int64_t p, const double *x,
                                         struct visibility_work *work, struct error *error);

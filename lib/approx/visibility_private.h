@@ -27,21 +27,24 @@ MUST_CHECK enum status pair_list_file(const struct pair_list *pairs, int64_t row
                                       int32_t **idx, struct error *error);
 void pair_list_free(struct pair_list *pairs);
 
-/* Whether the segment from x, in any of the cells, to a node stays within cells that follow each other by
- * faces. For node -1, no cell's, work->visited is left with the cells around x that hang together. */
+/* *arrives: whether the segment from x to a node can be followed through faces of cells, beginning in any of
+ * the given cells, which contain x. With node = -1, a node of no cell, work->visited receives the cells
+ * around x that are connected by faces. */
 MUST_CHECK enum status visibility_walk(const struct visibility *visibility, const double *x,
                                        const int32_t *cell, int64_t cell_count, int32_t node,
                                        struct visibility_work *work, bool *arrives, struct error *error);
 
-/* Mark the nodes that are hidden from point p, which is that of `work`, of those nearer than their radius: by
- * the facets, and by a walk where these leave it undecided. *hidden: how many. */
+/* Mark the nodes that are hidden from point p, the current one, among those nearer than their radius: by the
+ * facets, and where these do not decide, by following the segment through the cells. *hidden: their number.
+ */
 MUST_CHECK enum status visibility_mark_shadows(const struct visibility *visibility,
                                                const struct visibility_shadows *shadows, int64_t p,
                                                struct visibility_work *work, int64_t *hidden,
                                                struct error *error);
 
-/* Set the cells of work to those that contain x; or to the nearest, and work->from to the place in it from
- * which is looked instead. Of the cells at the nodes whose supports contain x; none: none. */
+/* Set the cells of `work` to those that contain x, or else to the nearest one, and work->from to the nearest
+ * place in it. Only cells at nodes whose supports contain x are searched; without such nodes there are none.
+ */
 MUST_CHECK enum status visibility_locate(const struct visibility *visibility, const double *x,
                                          struct visibility_work *work, struct error *error);
 

@@ -1,6 +1,6 @@
-/* How threads share a long loop: in chunks. How many there are and where they begin depends on the length of
- * the loop alone, so that a sum of the chunks' sums, added in their order, has the same bits for any number
- * of threads. A loop that is not worth a second thread is one chunk: a plain sum. */
+/* Division of a long loop into chunks for threads. The number of chunks and their limits depend only on the
+ * length of the loop. So the sum of the chunks' partial sums, added in their order, has the same bits for any
+ * number of threads. A loop too short for a second thread is one chunk. */
 #pragma once
 
 #include <stdint.h>
@@ -13,12 +13,13 @@ struct chunks {
     int threads;   /* worth using, at least 1 */
 };
 
-/* Cut a loop over so many items, of which `worthwhile` are worth the while of a thread: waking one costs some
- * ten microseconds. */
+/* Divide a loop over `items`. There is at most one thread for every `worthwhile` items, as waking a thread
+ * costs some ten microseconds. */
 struct chunks chunks_of(int64_t items, int64_t worthwhile);
 
-/* The same of a loop whose items know nothing of each other, so that it may be cut anywhere: a chunk for each
- * thread. `work` is that of all items, of which `worthwhile` is worth the while of a thread. */
+/* Divide a loop whose items are independent, so that its chunks may depend on the number of threads: one
+ * chunk per thread. `work` is the work of all items; there is at most one thread for every `worthwhile` of
+ * it. */
 struct chunks chunks_for_threads(int64_t items, int64_t work, int64_t worthwhile);
 
 /* First item of a chunk; that of chunk `count` is `items`. */

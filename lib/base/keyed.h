@@ -1,4 +1,4 @@
-/* Faces of simplices, and what is found by its nodes. */
+/* Faces of simplices, and items sorted by a key of node indices. */
 #pragma once
 
 #include <stdint.h>
@@ -6,8 +6,8 @@
 /* face[dim]: the nodes of the face opposite a vertex of a cell, node[dim + 1], oriented outward. */
 void simplex_face(int dim, const int32_t *node, int vertex, int32_t *face);
 
-/* Node indices node[dim] of a face in ascending order, in 2D -1 last: what tells it, whichever way it is
- * turned. */
+/* The node indices node[dim] of a face in ascending order, in 2D -1 last. The key identifies the face
+ * whatever its orientation. */
 void face_key(int dim, const int32_t *node, int32_t key[3]);
 
 /* An item by its key. */
@@ -19,6 +19,7 @@ struct keyed {
 /* Ascending keys, items of one key by their numbers. */
 void keyed_sort(int64_t count, struct keyed *keyed);
 
-/* Of those that are sorted: where the key of the first one ends; the first one of a key, or -1. */
+/* In a sorted array: the index behind the last item that has the key of item `first`; the index of the first
+ * item with a key, or -1. */
 int64_t keyed_end(int64_t count, const struct keyed *keyed, int64_t first);
 int64_t keyed_find(int64_t count, const struct keyed *keyed, const int32_t key[3]);

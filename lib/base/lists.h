@@ -5,19 +5,18 @@
 
 #include <stdint.h>
 
-/* List items 0, 1, ... by the rows that they belong to, each item to `per` of them: row[items * per]; -1:
- * none. (*ptr)[rows + 1] and (*idx)[(*ptr)[rows]], ascending in each row, are the caller's to free, also on
+/* List the items 0, 1, ... by rows. Item i belongs to the `per` rows row[i * per] and following; -1: none.
+ * (*ptr)[rows + 1] and (*idx)[(*ptr)[rows]], ascending in each row, are the caller's to free, also on
  * failure. */
 MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t rows, int64_t **ptr,
                                     int32_t **idx, struct error *error);
 
-/* Below, at or above 0 as the first numbers that differ, of `count` in each list, ascend, are none or
- * descend.
+/* Lexicographic comparison of two lists of `count` numbers: negative if a comes before b, 0 if they are
+ * equal, else positive.
  */
 int compare_numbers(int count, const int32_t *a, const int32_t *b);
 
-/* The first place from `low` on whose number is not below `least`, of ascending[low .. high); `high` where
- * there is none. */
+/* Binary search: the first i in [low, high) with ascending[i] >= least; `high` if there is none. */
 int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least);
 
 /* An item by its place along a line. */

@@ -9,7 +9,8 @@
  * count < 0, or count * size overflows). A count of 0 gives a valid pointer. Release with free(). */
 void *array_new(int64_t count, size_t size);
 
-/* The same, where most pages may never be written: memory is taken when they are. */
+/* The same for an array most of whose pages may never be written. A page takes memory when it is first
+ * written. */
 void *array_new_untouched(int64_t count, size_t size);
 
 /* Resize an array from malloc, array_grow or NULL to `count` elements; new bytes are not zeroed. On failure
@@ -20,8 +21,8 @@ void *array_grow(void *array, int64_t count, size_t size);
  * former owner then frees nothing: put(array_take(&x)). */
 void *array_take(void *pointer);
 
-/* Let go of the whole pages of some bytes that are not needed for now, or not at all: of a mapped file they
- * are read again when they are needed, elsewhere they become zeros. */
+/* Release the memory of the whole pages within [begin, begin + bytes). Pages of a mapped file are read again
+ * on the next access; others become zeros. */
 void memory_give_back(const void *begin, size_t bytes);
 
 /* *pointer = array_new(count, sizeof **pointer); evaluates to a status, with an error naming the array. */
@@ -58,7 +59,8 @@ void free_all(size_t count, void *const array[]);
 #define SCRATCH __attribute__((cleanup(scratch_free)))
 void scratch_free(void *pointer);
 
-/* For another local variable, empty to begin with: function(&variable) is called there. */
+/* The same for another local variable, initialised as empty: function(&variable) is called when its function
+ * is left. */
 #define FREED_BY(function) __attribute__((cleanup(function)))
 
 /* Memory of one owner, freed all at once. */

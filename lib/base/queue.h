@@ -1,5 +1,5 @@
-/* Ends of ways by their lengths, the shortest first: a binary heap, for the shortest ways through a graph
- * (Dijkstra's algorithm). Zero-initialised it is empty. */
+/* Priority queue of path ends, shortest path first: a binary heap, for shortest paths through a graph
+ * (Dijkstra's algorithm). A zero-initialised queue is empty. */
 #pragma once
 
 #include "base/status.h"

@@ -1,5 +1,5 @@
-/* Rows of a large table of which each process has read some, and needs others: from where they were read they
- * go to where they are needed, so that no process ever has all. */
+/* Redistribution of the rows of a large table. Each process has read some rows and needs others. A row is
+ * sent from the process that has read it to those that need it, so that no process holds the whole table. */
 #pragma once
 
 #include "base/ranks.h"
@@ -15,12 +15,12 @@ struct read_rows {
     const int32_t *reader; /* row_count: the process that has read each row */
 };
 
-/* Set wanted[row_count] of the rows that have a column of this process: `owner` tells whose a column is. All
- * processes call this together. */
+/* Set wanted[r] for each row r with an entry in a column of this process; owner(context, column) is the
+ * process that a column belongs to. Collective. */
 MUST_CHECK enum status read_rows_with(const struct read_rows *rows,
                                       int (*owner)(const void *context, int64_t column), const void *context,
                                       bool *wanted, struct error *error);
 
-/* The rows that are wanted here, wanted[row_count]; others are empty. All processes call this together. */
+/* Fetch the rows r with wanted[r]; the other rows of `fetched` are empty. Collective. */
 MUST_CHECK enum status read_rows_fetch(const struct read_rows *rows, const bool *wanted,
                                        struct sparse *fetched, struct error *error);

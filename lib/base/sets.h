@@ -1,5 +1,5 @@
-/* Sets of numbers 0, 1, ... that are joined (union and find): first[i] is an earlier member of the set of i,
- * or i itself, which it is at first. */
+/* Disjoint sets of the numbers 0, 1, ... (union-find). first[i] is i or an earlier member of the set of i; at
+ * the beginning first[i] = i. */
 #pragma once
 
 #include <stdint.h>
@@ -21,7 +21,7 @@ static inline void set_join(int32_t first[], int32_t a, int32_t b)
     first[a > b ? a : b] = a > b ? b : a;
 }
 
-/* first[node_count]: the nodes that cells connect, node[cells * corners], are joined. */
+/* Initialise first[node_count], and join the nodes of each cell, node[cells * corners]. */
 static inline void set_join_cells(int64_t node_count, int64_t cells, int corners, const int32_t *node,
                                   int32_t first[])
 {

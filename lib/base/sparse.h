@@ -1,6 +1,6 @@
-/* Sparse matrices by rows (CSR), which act on fields: the rows of a vector are numbers, or the components of
- * a displacement or force. Each row is summed by one thread and in one order, so that any number of threads
- * gives the same bits. */
+/* Sparse matrices by rows (CSR), applied to nodal fields: an entry of a vector is a number, or the `width`
+ * components of a displacement or force. Each row is summed by one thread and in one order, so that any
+ * number of threads gives the same bits. */
 #pragma once
 
 #include "base/status.h"
@@ -15,7 +15,7 @@ struct sparse {
     double *value; /* ptr[row_count] */
 };
 
-/* Room for so many rows and entries: the caller fills in ptr, idx and value. */
+/* Allocate a matrix; the caller fills in ptr, idx and value. */
 MUST_CHECK enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries,
                                   struct sparse *matrix, struct error *error);
 

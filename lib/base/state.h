@@ -1,8 +1,8 @@
-/* The state of a run, by name, so that it can be put away and taken up again where it was.
+/* The state of a run as named arrays, so that it can be saved and restored (checkpoints).
  *
- * Each module that keeps something from step to step has a function MODULE_state that lists it. One list
- * serves both ways: the visitor either copies the values, or replaces them by those that were kept. What a
- * run computes afresh in each step, or from its input, is no state. */
+ * Each module that keeps values from step to step has a function MODULE_state that lists them. The same list
+ * serves to save and to restore: the visitor either copies the values, or replaces them by those that were
+ * saved. What a run computes afresh in each step, or from its input, is no state. */
 #pragma once
 
 #include "base/status.h"
@@ -27,10 +27,10 @@ struct state {
     void *context;
 };
 
-/* Goes through the state of what `owner` points to. */
+/* Visits the state of *owner. */
 typedef enum status state_function(void *owner, const struct state *state, struct error *error);
 
-/* Visit `count` values, with "prefix." in front of their names unless it is NULL. STATUS_INPUT for a negative
- * count that was kept. */
+/* Visit `count` values, with "prefix." in front of their names unless it is NULL. STATUS_INPUT for a restored
+ * count that is negative. */
 MUST_CHECK enum status state_visit(const struct state *state, const char *prefix,
                                    const struct state_value values[], int64_t count, struct error *error);

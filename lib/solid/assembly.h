@@ -24,17 +24,18 @@ struct load {
 struct contact_condition {
     const char *where; /* as of a condition */
     struct facet_set facets;
-    struct facet_set opposite; /* unless empty: they may touch these, or themselves where both are the same */
-    bool whole;                /* they are the whole boundary, of which nothing needs to face anything */
-    int sign;                  /* as of the contact, with opposite facets */
-    const double *corners;     /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
+    struct facet_set opposite; /* unless empty: the facets may come into contact with these, or with
+                                  themselves where both are the same */
+    bool whole; /* the facets are the whole boundary: it is no error that none faces another one at rest */
+    int sign;   /* as of the contact, with opposite facets */
+    const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
     int64_t rigid_count;
     bool flip;
     double stiffness; /* Pa/m; 0: that of a layer of cells */
     struct rigid_motion motion;
 };
 
-/* Materials: those of the sections, and more where a section has its own at each point. */
+/* Materials: one for each section, or one for each integration point of a section with a table. */
 struct material_list {
     struct material *items; /* count */
     int64_t count;
@@ -60,7 +61,8 @@ struct assembly {
     const double *boundary_phi, *node_phi;
     const int32_t *face_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
                                    empty in others; NULL: all have all */
-    /* Called, unless NULL, when `lists`, phi and dphi are not needed any more: the larger part of memory. */
+    /* Called, unless NULL, when `lists`, phi and dphi, which take most of the memory, are no longer needed.
+     */
     void (*copied)(void *context);
     void *context;
 
@@ -99,20 +101,21 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* The contacts of the system anew, as at rest: those of `input`, which may have become other ones. Errors:
- * as assembly_build. */
+/* Replace the contacts of the system by those of `input`, which may have changed, in their initial state.
+ * Errors: as assembly_build. */
 MUST_CHECK enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
                                                struct error *error);
 
-/* The parts of assembly_build, in their own files: displacements, measured points, loads,
- * contacts, and softer cells at the ends of what is held by averages (of smoothed cells). */
+/* The parts of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
+ * reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
                                            struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
-/* The weight of the body where face_reader is given: after the body is built, which has what is needed. */
+/* Add the weight of the body where face_reader is given. It needs rows that only the built body has fetched.
+ */
 MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
                                                  struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
@@ -129,18 +132,18 @@ bool assembly_has_gravity(const struct assembly *input);
 /* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 
-/* held[boundary.count]: whether all nodes of that face are those of facets that one condition names, which
- * prescribes at least so many directions. The caller's to free. */
+/* held[boundary.count]: whether all nodes of each face belong to facets of one condition that prescribes at
+ * least `least` directions. The caller's to free. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
-/* slides[boundary.count]: whether such a condition prescribes the displacement along the normal alone, so
- * that the face stays on its plane. The caller's to free. */
+/* slides[boundary.count]: whether such a condition prescribes only the displacement along the normal, so that
+ * the face stays in its plane. The caller's to free. */
 MUST_CHECK enum status assembly_sliding_faces(const struct assembly *input, bool **slides,
                                               struct error *error);
 
-/* The modulus of penalties, Pa: that of pressure waves, but at most `factor` times the shear modulus, so that
- * it does not grow with the bulk modulus; the largest of the body's materials. */
+/* The modulus of penalties, Pa: the P-wave modulus, but at most `factor` times the shear modulus, so that it
+ * does not grow with the bulk modulus; the largest value of the body's materials. */
 double assembly_penalty_modulus(const struct solid_system *system, double factor);
 
 /* field[node_count * dim] = u_h at the nodes. */

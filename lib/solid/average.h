@@ -9,7 +9,7 @@
 struct average {
     int64_t length;
     const int32_t *idx; /* length: nodes, */
-    const double *phi;  /* length: and their weights; both somebody else's */
+    const double *phi;  /* length: and their weights; both arrays are the caller's */
 };
 
 /* Average a of a boundary. */

@@ -38,8 +38,8 @@ struct body_input {
     const struct ranks *ranks;                   /* processes that compute the body together; NULL: one */
 };
 
-/* Points are worked on so many at a time; weight, material, J and F have as many entries more, which are
- * read and not used. */
+/* Points are processed in groups of this size. weight, material, J and F are padded by as many entries, which
+ * are read but not used. */
 #define BODY_POINT_PADDING 8
 
 /* The most points of a block. */
@@ -140,25 +140,26 @@ struct deformation {
  * N, in 2D N/m. With an inverted point the forces mean nothing. */
 struct deformation body_force(struct body *body, const double *u, double *force);
 
-/* The same of the nodes of this process alone; and a vector of the nodes[node_count * dim] of which each
- * process has the values of its own nodes: afterwards all have all. */
+/* body_own_force: the same for the nodes of this process only. body_gather completes on all processes a
+ * vector[node_count * dim] of which each has the values at its own nodes. */
 struct deformation body_own_force(struct body *body, const double *u, double *force);
 void body_gather(struct body *body, double *vector);
 
-/* Let changes of volume meet no modulus above `most` shear moduli; INFINITY: as the materials have it. What
- * the limit leaves out the pressures make up for by augmentations, from none (augmented Lagrangian: Simo and
- * Taylor 1991). Without nodal volumes: nothing. */
+/* Limit the bulk modulus to `most` shear moduli; INFINITY: no limit. Augmentations of the nodal pressures,
+ * which begin at zero, supply the rest (augmented Lagrangian: Simo and Taylor 1991). Without nodal volumes
+ * this has no effect. */
 void body_limit_bulk(struct body *body, double most);
 bool body_is_limited(const struct body *body);
 
-/* Hold the nodal pressures of the last evaluation from here on. Where the body gives way these are right
- * after few augmentations; where it is confined each takes on limited / bulk only of what they lack.
- * `steady`: the load has been the same at the last two; where what these have changed is a geometric sequence
- * its limit is held (Aitken's extrapolation). Returns what the pressures still lack, about, as a part of them
- * or of the stress of shear by `strain`, whichever is more; INFINITY: not known yet. */
+/* Augmentation: the nodal pressures of the last evaluation become the held ones. Where the body can change
+ * its volume, few augmentations suffice; where it is confined, each one supplies only the share limited /
+ * bulk of what the pressures lack. `steady`: the load was the same at the last two augmentations; where their
+ * changes form a geometric sequence, its limit is held (Aitken's extrapolation). Returns an estimate of what
+ * the pressures still lack, relative to the pressures or to the shear stress at `strain`, whichever is
+ * larger; INFINITY: not known yet. */
 double body_augment(struct body *body, bool steady, double strain);
 
-/* Pressures that lack less are right. */
+/* The largest relative lack of the pressures in an accepted state. */
 #define NODAL_PRESSURE_LACK 1e-3
 
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */

@@ -34,10 +34,11 @@ struct body_share {
     struct halo rows;             /* forces on rows, for own nodes */
 };
 
-/* Share out the blocks of a body that are cut, and its nodes. */
+/* Distribute the blocks of a body, which are known, and its nodes over the processes. */
 MUST_CHECK enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error);
 
-/* Share out the nodal volumes, and list the strains that they need. When A is there: what the pressures need.
+/* Distribute the nodal volumes, and list the strains that they need. body_share_pressures, once A is known,
+ * lists what the pressures need.
  */
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
 MUST_CHECK enum status body_share_pressures(struct body *body, struct error *error);
@@ -59,12 +60,12 @@ bool body_share_has_node(const struct body *body, int64_t node);
 
 void body_share_free(struct body_share *share);
 
-/* To be called by all threads of a parallel region together: all have all items; and halos. */
+/* ranks_gather and halo exchanges inside a parallel region, to be called by all its threads. */
 void body_share_gather(const struct body_share *share, void *items, size_t size, const int64_t *first);
 void body_share_begin(const struct body_share *share, struct halo *halo, int width, const double *x);
 void body_share_finish(const struct body_share *share, struct halo *halo, int width, double *x);
 void body_share_exchange(const struct body_share *share, struct halo *halo, int width, double *x);
 
-/* The nodal pressures of all at the last evaluation, here; and the state of all points. */
+/* Collect the nodal pressures of all processes at the last evaluation; and the state of all points. */
 void body_share_collect_pressures(struct body *body);
 void body_share_collect(struct body *body);

@@ -1,10 +1,11 @@
 /* The coarse space of the preconditioner, equation (25) of lib/README.md: a partition of unity times the
- * linear polynomials. A few centres, nodes far from each other, have shares that sum to one (Shepard), by
- * their distance; each share is a field, and so is its product with each coordinate. Linear fields are
- * contained exactly. The construction works on any cloud, however thin.
+ * linear polynomials. A few nodes far from each other are centres. At each node the shares of the centres,
+ * weights by distance, sum to one (Shepard). The basis of the coarse space, the coarse fields, are the shares
+ * and their products with the coordinates. It contains all linear fields. The construction works on any
+ * cloud, however thin.
  *
- * The distance is the straight one, or half of the shortest way from neighbour to neighbour where that is
- * more: the two lips of a slit are far from each other. */
+ * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour
+ * where that is more, so that the two lips of a slit are far from each other. */
 #pragma once
 
 #include "approx/shape.h"
@@ -15,11 +16,11 @@
 enum { COARSE_MOST_CENTRES = 16 };
 enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 
-/* A number for each centre; 0 behind the last. */
+/* A number for each centre; 0 beyond centre_count. */
 typedef double of_centres[COARSE_MOST_CENTRES];
 
-/* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or a coordinate of the way
- * from there over the radius. */
+/* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or coordinate m - 1 relative
+ * to the centre, divided by the radius. */
 struct coarse_space {
     int dim;
     int64_t node_count;

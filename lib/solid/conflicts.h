@@ -1,5 +1,6 @@
-/* Where facets of two conditions meet, they share nodes: each prescribes a value there. The one that comes
- * first holds the node (held_directions.h), so that another value would be left out silently. */
+/* Conflicting constraints. Where facets of two conditions meet, both prescribe a value at the shared nodes.
+ * Only the first one is imposed there (held_directions.h), so that a different value of the other would be
+ * ignored silently. */
 #pragma once
 
 #include "solid/assembly.h"
@@ -21,10 +22,10 @@ MUST_CHECK enum status nodal_constraints_add(struct nodal_constraints *nodal_con
                                              struct error *error);
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
-/* Two conditions that prescribe values of one node along one direction, further apart than a tenth of the
- * largest value that either prescribes, are an error that names them. Of those that are nearer, as measured
- * values at a rim may be, the first is reported in `note`, which is empty when all agree. The condition with
- * fewer directions takes precedence, or else the one that comes first. */
+/* Two conditions that prescribe different values at one node along one direction are an error, which names
+ * them, if the values differ by more than a tenth of the largest value that either prescribes. Of smaller
+ * differences, as between measured values, the first is reported in `note`, which is empty when all agree.
+ * The condition with fewer directions takes precedence, or else the one that comes first. */
 MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);

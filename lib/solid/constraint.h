@@ -14,9 +14,9 @@
 
 enum { LISTS_FOR_THREAD = 500 }; /* of rows; see chunks_of */
 
-/* Rows as they are collected: row r prescribes direction . (sum_j phi_j u_j) = target * factor(curve, time),
- * where the sum is over the pairs of a list. Rows that follow each other share a list where they can: an
- * average that is held along several directions is taken once. */
+/* The rows while they are collected. Row r prescribes direction . (sum_j phi_j u_j) = target * factor(curve,
+ * time), where the sum is over the pairs of a list. Rows that follow each other share a list where they can:
+ * an average that is held along several directions is taken once. */
 struct constraint_rows {
     int dim;
     int64_t count, capacity;
@@ -61,8 +61,8 @@ struct constraint_nodes {
     double *on_list;                    /* list_count * dim: scratch */
 };
 
-/* Weights are divided by mass[node_count] unless that is NULL; other nodes than wanted[node_count], unless
- * that is NULL, get nothing. */
+/* Weights are divided by mass[node_count] unless that is NULL. With wanted[node_count] other than NULL, only
+ * the nodes n with wanted[n] have rows. */
 MUST_CHECK enum status constraint_nodes_build(const struct constraint_rows *rows, int64_t node_count,
                                               const double *mass, const bool *wanted,
                                               struct constraint_nodes *nodes, struct error *error);
@@ -92,9 +92,9 @@ struct constraint {
     double *multiplier;   /* count: of the last projection, N s2 in the step's scaling */
 };
 
-/* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Rows that depend on others are dropped
- * (factor.dropped): they are met when their targets agree with the others', see constraint_violation, and
- * bear no force until constraint_share_out. */
+/* Factor G M^-1 G^T; `inverse` and `inverse_rows` NULL: M is diagonal. Linearly dependent rows are dropped
+ * (factor.dropped). They hold if their targets are consistent with those of the others
+ * (constraint_violation), and have no force before constraint_share_out. */
 MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
                                         const double *mass, const struct inverse_factor *inverse,
                                         const struct constraint_rows *inverse_rows,
@@ -117,8 +117,8 @@ MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, 
  */
 void constraint_project(struct constraint *constraint, const double *factor, double *u);
 
-/* force[count]: forces along the rows that hold the body, none on the rows that were dropped, become those
- * with the same effect and the least norm, sum_r (G M^-1 G^T)_rr force_r^2: rows that say the same share the
+/* force[count]: the forces of the rows, zero on the rows that were dropped, are replaced by those with the
+ * same nodal forces and the least norm sum_r (G M^-1 G^T)_rr force_r^2, so that dependent rows share the
  * force. */
 MUST_CHECK enum status constraint_share_out(const struct constraint *constraint, double *force,
                                             struct error *error);

@@ -46,7 +46,7 @@ struct field_averages_input {
     int64_t node_count, corner_count;
     const int32_t *place;           /* node_count: the body's index of each of the caller's nodes */
     struct average_table tables[2]; /* faces, nodes */
-    bool lets_go; /* idx and phi of the faces are not needed once they are copied: memory_give_back */
+    bool lets_go; /* release the memory of idx and phi of the faces once they are copied (memory_give_back) */
 };
 
 /* Set which rows each corner uses, and which corners use each row. */

@@ -6,7 +6,7 @@
 /* Matrices of the points of a block: row k of component k, points along it. */
 typedef double block_rows[9][BLOCK_MOST_POINTS];
 
-/* Each works on the rows, nodes or block of that number. */
+/* Each function processes the rows, stripe or block of that number. */
 struct force_kernels {
     const char *name;
     /* y = A x for rows begin .. end - 1, of vectors VECTOR_STRIDE(dim) apart. */

@@ -5,14 +5,15 @@
 #include "solid/inverse_factor.h"
 #include "solid/scalar_stiffness.h"
 
-/* Rows one behind the other. */
+/* Consecutive rows. */
 struct lower_piece {
     int32_t *idx;
     double *value;
     int64_t count, capacity; /* entries */
 };
 
-/* S up to its diagonal, by rows: those of a stretch of own nodes, and such others as are needed. */
+/* The lower triangle of S with its diagonal, by rows: those of a range of own nodes, and the others that are
+ * needed. */
 struct lower {
     struct scalar_stiffness stiffness;
     int64_t *begin, *end; /* of each row in its piece; none: the same */

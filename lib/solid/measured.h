@@ -1,5 +1,5 @@
-/* Displacements measured at any points of a body: springs that hold what is known to a standard deviation,
- * points that contradict each other, and conditions that leave each other too little to decide.
+/* Displacements measured at any points of a body: springs for those that are known to a standard deviation,
+ * points that contradict each other, and conditions that are nearly linearly dependent.
  *
  * A spring adds a term of weighted least squares to the elastic energy: e (u_h - u)^2 / (2 sigma^2) for a
  * component u that was measured with the standard deviation sigma. The equilibrium is then the most probable

@@ -11,8 +11,8 @@
  *   F = sum_i w_i F_i / W,   F_h = sum_i w_i F_h,i / W,   W = sum_i w_i,
  *
  * and J of these. The stresses on the members' own gradients are by the transpose w_i / W sum_j P_j, so that
- * there still is an energy. What is linear stays exact, and as gradients of the interpolant differ by a
- * matrix of rank one across a face, the volume of two cells is that between their vertices. */
+ * there still is an energy. Linear fields stay exact. Gradients of the interpolant differ by a matrix of rank
+ * one across a face; so for two cells det F_h gives the volume between their vertices. */
 #pragma once
 
 #include "solid/kernel.h"
@@ -23,7 +23,8 @@ enum { MERGED_MOST_CELLS = 16 };
 /* root[point_count]: a cell of the group of each of the caller's cells, itself where it is alone. */
 MUST_CHECK enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error);
 
-/* Let members of a group follow each other in the body's order, which is given, and note the groups. */
+/* Reorder the body's points, whose order is known, so that the members of a group follow each other, and list
+ * the groups. */
 MUST_CHECK enum status merged_cells_order(const int64_t *root, struct body *body, struct error *error);
 
 /* Replace the rows of F and F_h of merged cells of a block, and det F and J of these. */

@@ -12,9 +12,9 @@
  * so that pi = A^-1 b. With one point in the middle of a cell C is the mean over the cell of (N_a - mean of
  * N_a) (N_b - mean of N_b): the pressure projection of Dohrmann and Bochev 2004. A pressure that is smooth
  * meets k; one that varies from node to node meets a modulus of the order of mu / epsilon, as C grows up to N
- * / (d + 2). Without C, patterns of pressure that no displacement answers would lock the body; with it the
- * error is of the order of the spacing squared (Bochev, Dohrmann and Gunzburger 2006). A body with kappa <= s
- * does not lock: it has no nodal pressures.
+ * / (d + 2). Without C spurious pressure modes would lock the body; with it the error is of the order of the
+ * spacing squared (Bochev, Dohrmann and Gunzburger 2006). A body with kappa <= s does not lock: it has no
+ * nodal pressures.
  *
  * A change of volume of wave number k on nodes at distance h has about the stiffness
  *
@@ -26,10 +26,10 @@
  *
  *   p_q = ( sum_a N_a(q) pi_a + s_q y_q ) y'(J_q).
  *
- * At edges between clamped and free sides the pressure is singular. A nodal pressure there cannot follow it,
- * the displacement of the clamped side does not answer, and the body would be too stiff. Nodes at such edges
- * own no nodal volume: the other nodes of their cells share it, N_a being scaled to the sum 1, as multipliers
- * of mortar methods are constant in the last element of an interface (Bernardi, Maday and Patera 1994). And
+ * At edges between clamped and free sides the pressure is singular. A nodal pressure cannot approximate it,
+ * the displacement of the clamped side is fixed, and the body would be too stiff. Nodes at such edges own no
+ * nodal volume: the other nodes of their cells share it, N_a being scaled to the sum 1, as multipliers of
+ * mortar methods are constant in the last element of an interface (Bernardi, Maday and Patera 1994). And
  * where a nodal volume has a cell at an edge, s acts on it as a whole, not on its points: with theta_a = 1 of
  * these volumes, 0 of others, the first term of the energy is
  *

@@ -4,10 +4,10 @@
  * Their corners are at X_a + sum_j Phi_aj u_j with the values of boundary_corners_build, so that the surface
  * is continuous, and follows the field by the boundary's own quadrature. The closest point of it to a contact
  * point is sought among the facets that face the point: their normals are opposed, by more than 120 degrees,
- * and the point is behind them by no more than it may be. What faces it through the body is left out by the
- * state of rest: facets of the same body that were near there, each behind the other. A facet that shares a
- * corner with the point's own is never far from the point, whether that has gone through it or not: the point
- * must have come from its front. */
+ * and the point is behind them by no more than it may be. Facets that face it through the body are excluded
+ * by the reference state: facets of the same body that were near there, each behind the other. A facet that
+ * shares a corner with the point's own facet is always near, whether the point has penetrated it or not. It
+ * counts only if the point came from its front. */
 #pragma once
 
 #include "approx/boundary.h"
@@ -41,7 +41,7 @@ void opposite_free(struct opposite *opposite);
 /* Move the facets to parameters u. */
 void opposite_move(struct opposite *opposite, const double *u);
 
-/* A point that seeks: of a facet of the body, at rest and now. */
+/* A point whose closest opposite facet is searched: a point of a facet of the body, at rest and now. */
 struct seeker {
     const double *x;           /* now, m */
     const double *rest;        /* m */

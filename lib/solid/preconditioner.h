@@ -2,9 +2,9 @@
  * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
  *
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
- * step, and modes as large as the body decide how many steps are needed. On a few smooth fields Z
- * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto moves that the
- * conditions admit, and A near P^T K P along the coarse fields,
+ * step, and the modes of the lowest frequencies determine the number of steps. On a few smooth fields Z
+ * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto motions that
+ * satisfy the homogeneous conditions, and A made of the stiffness Z^T P^T K P Z (below equation (25)),
  *
  *   M^-1 = P (B + Z A^-1 Z^T) P^T
  *
@@ -13,12 +13,13 @@
  *
  *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
  *
- * for moves x, y that the conditions admit. Of smoothed cells B = L^T D^-1 L, with the factor L of
+ * for x and y that satisfy the homogeneous conditions. Of smoothed cells B = L^T D^-1 L, with the factor L of
  * inverse_factor.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
  *
- * so that the slowest modes left are those that the coarse fields do not resolve. In the terms of linear
- * systems, a two-level additive preconditioner with deflated constraints. Any positive definite A is sound;
- * what it has of the contacts must follow them, because a mode that suddenly becomes stiff would be unstable.
+ * so that the slowest modes left are those that the coarse fields do not resolve. For linear systems this is
+ * a two-level additive preconditioner with deflated constraints. Any positive definite A is admissible. Its
+ * contact part must be updated as contacts close, because a mode that suddenly becomes stiffer than A would
+ * be unstable.
  */
 #pragma once
 
@@ -30,7 +31,7 @@
 struct preconditioner {
     int dim;
     int64_t node_count;
-    double *stiffness;                  /* node_count: of which D was set, N/m (2D: N/m2), */
+    double *stiffness;                  /* node_count: that D was set from, N/m (2D: N/m2), */
     double *at_rest;                    /* and with an inverse factor what it is at rest */
     double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
     struct inverse_factor factor;       /* node_count 0: none */
@@ -66,7 +67,7 @@ struct preconditioner {
     double *amount;              /* 2 * size: scratch */
 };
 
-/* Memory, coarse fields and inverse factor for a system; `coarse` false: none of both, M = D. */
+/* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
 MUST_CHECK enum status preconditioner_build(struct solid_system *system, bool coarse,
                                             struct preconditioner *preconditioner, struct error *error);
 void preconditioner_free(struct preconditioner *preconditioner);
@@ -76,8 +77,8 @@ MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditi
                                                const struct solid_system *system, const double *stiffness,
                                                struct error *error);
 
-/* Measure the stiffness along the coarse fields at u, by differences: size + 1 evaluations of the body, whose
- * last evaluation is then another. Follows the contacts. */
+/* Measure the stiffness along the coarse fields at u by differences. This takes size + 1 evaluations of the
+ * body, so that its last evaluation is not the one before. A follows the contacts. */
 MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditioner,
                                               struct solid_system *system, const double *u,
                                               struct error *error);
@@ -85,9 +86,9 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
 /* Whether D has changed so much that the coarse fields should be measured again. */
 bool preconditioner_is_stale(const struct preconditioner *preconditioner);
 
-/* force += what the contact nodes that A counts in may add to K at the last evaluation, against `move`: the
- * stiffness of those that do not press and may close, and that along the surface of those in a crease. move,
- * force: node_count * dim. */
+/* force += K_c move, with the stiffness K_c that the contact nodes counted in A may add to K at the last
+ * evaluation: that of the nodes that are open and may close, and that along the surface of nodes in a crease.
+ * move, force: node_count * dim. */
 void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
@@ -111,10 +112,10 @@ void preconditioner_smooth(struct preconditioner *preconditioner, const double *
 double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
                                        const double *y);
 
-/* x . M y of moves that the conditions admit. */
+/* x . M y for x and y that satisfy the homogeneous conditions. */
 double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
 
-/* What another run needs to go on: see base/state.h. Afterwards, in a run that was restored,
+/* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
  * preconditioner_restore.
  */
 MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,

@@ -1,4 +1,4 @@
-/* What a condition prescribes: at a place, and of an average. */
+/* The displacements that a condition prescribes, at a place and for an average. */
 #pragma once
 
 #include "solid/conflicts.h"
@@ -7,7 +7,7 @@
 #include "approx/scattered_fit.h"
 #include "approx/edge_paths.h"
 
-/* One condition, and where it goes. */
+/* A condition, and the system that its rows are added to. */
 struct prescription {
     const struct assembly *input;
     const struct condition *condition;
@@ -16,27 +16,29 @@ struct prescription {
     struct held_directions *held;                /* by the conditions before */
     bool *shared; /* group_count * dim: conditions before hold that component at some of the group's nodes */
     int32_t number;           /* of the condition */
-    struct scattered_fit fit; /* CONDITION_TABLE: of its points, with the ways to them */
+    struct scattered_fit fit; /* CONDITION_TABLE: of its points, with their connection to the nodes */
     double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
     bool penalties;           /* adding constraint penalties, not exact rows */
     double modulus, layer;    /* of the constraint penalties: Pa, and the size of the cells there, m */
 };
 
-/* What a condition asks of one average: the displacement, or its component along the normal. */
+/* The displacements that a condition prescribes for one average, along some directions: all components, or
+ * that along the normal. */
 struct demand {
     int count;
     double direction[9]; /* count * dim, unit */
     double value[3];     /* count: m */
 };
 
-/* How many directions the condition prescribes at a place; all of them? */
+/* The number of directions that the condition prescribes at a place; whether it is dim. */
 int prescription_directions(const struct condition *condition, int dim);
 bool prescription_is_full(const struct prescription *p);
 
 /* STATUS_INPUT where two rows of a condition's table stand at one place with unlike displacements. */
 MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);
 
-/* What the condition asks of average a; or, of the same directions, at its node. */
+/* The displacements that the condition prescribes for average a; or, along the same directions, at its node.
+ */
 MUST_CHECK enum status prescription_demand(const struct prescription *p,
                                            const struct boundary_averages *averages, int64_t a, bool at_node,
                                            struct demand *demand, struct error *error);

@@ -6,8 +6,8 @@
 struct progress {
     int64_t step;
     double time;  /* s; 0..1 of the load in relaxation */
-    double move;  /* relaxation: largest of a node between the last two looks, m; INFINITY where the
-                     iteration went back between these */
+    double move;  /* relaxation: largest motion of a node between the last two calls, m; INFINITY where the
+                     iteration went back in between */
     double error; /* relaxation: estimated remaining error relative to the displacement; dynamics: error of
                      the energy balance relative to the largest energy */
     double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A box around facets, and two branches that share them out, or none. */
+/* A node of a tree of boxes: the box around some facets, divided between two branches; or a leaf. */
 struct rigid_branch {
     double low[3], high[3]; /* m */
     int64_t first, end;     /* its facets: in_order[first] to before in_order[end] */
@@ -53,8 +53,8 @@ struct rigid_contact {
     double weight[3]; /* and the weights of its corners there, sum 1 */
 };
 
-/* What may be the closest facet: `considers` is asked for facets that may be within reach, and then `admits`
- * for facet f whose closest point to x is x - away. */
+/* A filter of the facets that may be the closest one. `considers` is called for facets that may be within
+ * reach, then `admits` for a facet f whose closest point to x is x - away. */
 struct rigid_filter {
     bool (*considers)(void *context, int64_t f);
     bool (*admits)(void *context, int64_t f, const double *away);

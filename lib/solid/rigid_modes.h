@@ -3,7 +3,8 @@
 
 #include "solid/system.h"
 
-/* The rigid motions of a body without meeting a condition. Contacts and springs do not count. */
+/* The rigid motions of a body that violate no condition. Contacts do not count; springs of measured points
+ * count as conditions. */
 struct rigid_modes {
     int64_t nodes;        /* of the body */
     double centre[3];     /* of the box of its nodes, m */
@@ -20,11 +21,11 @@ struct hinge {
 };
 
 /* modes[body_count]: those of each body; body[node_count] tells the body of each node, negative: of none.
- * What a condition sees of a body is the part of its average that lies on that body's nodes. At hinges,
- * hinge[hinge_count], whose nodes are of no body, a body does not move. */
+ * Of a condition's average, the part on the nodes of a body constrains that body. A body is fixed at its
+ * hinges, hinge[hinge_count], whose nodes are of no body. */
 MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,
                                           const int32_t *body, int64_t hinge_count, const struct hinge *hinge,
                                           struct rigid_modes *modes, struct error *error);
 
-/* Whether all nodes as one body can move as a whole without meeting a condition. */
+/* Whether the nodes, taken as one body, have a free rigid-body mode. */
 bool system_has_rigid_mode(const struct solid_system *system);

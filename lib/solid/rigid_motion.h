@@ -1,6 +1,6 @@
 /* The motion of a rigid surface: a rotation about an axis that stays where it is, then a translation, each
- * scaled by a load curve. The rotation is finite and exact. The surface itself is never touched: a point is
- * taken into the frame in which the surface rests, and what is found there is taken back. */
+ * scaled by a load curve. The rotation is finite and exact. The surface itself is not changed: a point is
+ * transformed to the frame in which the surface is at rest, and results are transformed back. */
 #pragma once
 
 #include "base/status.h"
@@ -38,6 +38,6 @@ void rigid_place_from_rest(const struct rigid_place *place, int dim, const doubl
 /* A direction at rest, turned with the surface; in place. */
 void rigid_place_turn(const struct rigid_place *place, int dim, double *direction);
 
-/* Length of the way of a point of the surface that is at X at rest, as the factors go from 0 to 1, at the
- * most, m. */
+/* An upper bound of the length of the path of a point of the surface, at X at rest, as the factors go from 0
+ * to 1, m. */
 double rigid_motion_way(const struct rigid_motion *motion, int dim, const double *X);

@@ -1,16 +1,16 @@
-/* The sparse operator B of the force loop, equation (12) of lib/README.md, and its transpose, from one table
- * by rows: y = B x gathers, and y = B^T x adds each entry to the sum of its column. A column is summed by one
- * thread, in the order of the rows, so that any number of threads and of processes gives the same bits. */
+/* The sparse operator B of the force loop, equation (12) of lib/README.md: apply y = B x, and transposed
+ * apply y = B^T x, from one table by rows. A column is summed by one thread, in the order of the rows, so
+ * that any number of threads and of processes gives the same bits. */
 #pragma once
 
 #include "base/sparse.h"
 
-/* The columns that one thread sums. */
+/* The columns whose sums in B^T x one thread computes. */
 struct row_stripe {
     int64_t begin, end;
     int64_t row_count;
-    int32_t *row; /* the rows with entries there, ascending: r, all of whose entries are there, or -1 - r, */
-    struct sparse cut; /* of which the next row of this table has those that are */
+    int32_t *row; /* the rows with entries in these columns, ascending: r if it has no others, else -1 - r; */
+    struct sparse cut; /* of each of the latter, in order, the entries in these columns */
 };
 
 struct row_operator {
@@ -27,8 +27,8 @@ MUST_CHECK enum status row_operator_finish(struct row_operator *rows, int64_t be
                                            struct error *error);
 void row_operator_free(struct row_operator *rows);
 
-/* Some columns of B, ascending, as rows. range[2 * rows], of row_operator_ranges; slot[columns]: scratch,
- * which receives the row of each of these. */
+/* Some columns of B, ascending, as the rows of a matrix. range[2 * rows], of row_operator_ranges;
+ * slot[columns]: scratch, which receives the row of each of these. */
 MUST_CHECK enum status row_operator_transpose(const struct row_operator *rows, const int32_t *range,
                                               const int32_t *column, int64_t count, int32_t *slot,
                                               struct sparse *transposed, struct error *error);

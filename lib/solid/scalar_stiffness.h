@@ -8,8 +8,8 @@
 
 struct solid_system;
 
-/* Fields are the rows of the averages over the faces, then the values at the nodes. Bonds are the averages
- * that penalties act on. */
+/* Fields: the rows of the averages over the faces, then the values at the nodes. Bonds: the averages that
+ * penalties act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;

@@ -9,9 +9,9 @@
  * the values at the middles of the face's edges (approx/face_rows.h): there are 1.2 edges for each cell, but
  * two faces, and rows for points are shorter than those for faces.
  *
- * F is the gradient of no continuous piecewise linear map, so that sum V det F is not the volume within the
- * boundary: under a pressure the field would buckle within the cells at no cost of volume. With F_h, the
- * gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell is
+ * F is not the gradient of a continuous piecewise linear map, so that sum V det F is not the volume within
+ * the boundary: under pressure the field could buckle within the cells without a change of volume. With F_h,
+ * the gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell is
  * therefore
  *
  *   J = det F_h - cof F_h : (F_h - F).
@@ -54,9 +54,9 @@ struct smoothed_cells_input {
     const int32_t *face_reader; /* row_count: the process that has read each row of the face averages;
                                    the row is empty in others. NULL: every process has all */
     void (*copied)(
-        void *context); /* called when face_ptr, face_idx and face_phi are no longer needed, and
-                           have been let go of (memory_give_back); or NULL. Where each of several processes
-                           has all rows, they are needed until the body is freed, and it is not called */
+        void *context); /* called when face_ptr, face_idx and face_phi are no longer needed, and their memory
+                           has been released (memory_give_back); or NULL. Where each of several processes has
+                           all rows, they are needed until the body is freed, and it is not called */
     void *context;
 };
 
@@ -85,7 +85,7 @@ void smoothed_cells_linear_gradients(const struct body *body, int64_t q, double 
 int64_t smoothed_cells_group(const struct body *body, int64_t q);
 int64_t smoothed_cells_group_end(const struct body *body, int64_t q);
 
-/* The part of these cells' volume that is cell q's. */
+/* The volume of cell q as a share of that of its group. */
 double smoothed_cells_share(const struct body *body, int64_t q);
 
 /* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex

@@ -14,7 +14,8 @@ struct dead_load {
     int32_t curve;
 };
 
-/* Which part of a fluid presses: below its level, above, where it pulls, or all. */
+/* The part of a fluid whose pressure acts: below its level; above it, where the pressure is negative; or all.
+ */
 enum fluid_part { FLUID_BELOW, FLUID_ABOVE, FLUID_ALL };
 
 /* A pressure on facets that follows the deformation: it acts on the deformed facets, whose corners move with
@@ -35,7 +36,7 @@ struct pressure_load {
     int32_t curve;
 };
 
-/* What the parts of a scene have cost so far, s of wall time. */
+/* Wall time spent so far on the parts of a scene, s. */
 struct cost {
     double force, loads, contact, constraints;
 };
@@ -85,15 +86,15 @@ struct solid_system {
 
 void system_free(struct solid_system *system);
 
-/* What the system keeps from step to step, its contacts included. */
+/* The state that the system keeps from step to step, its contacts included. */
 MUST_CHECK enum status system_state(struct solid_system *system, const struct state *state,
                                     struct error *error);
 
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 
-/* Factor the conditions with a mass, which the constraint keeps in view. Conditions that follow from others
- * are left to them; STATUS_VERDICT, naming sections, node and place, when they disagree. */
+/* Factor the conditions with a mass, to which the constraint keeps a pointer. Linearly dependent conditions
+ * are dropped; STATUS_VERDICT, naming sections, node and place, when they are inconsistent. */
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
                                         struct constraint *constraint, struct error *error);
 
@@ -109,7 +110,8 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
-/* Take the step whose state was evaluated last: see contact_accept. Evaluations alone change no state. */
+/* Accept the state that was evaluated last as the next step: see contact_accept. Evaluations alone change no
+ * state. */
 void system_accept(struct solid_system *system);
 
 /* Leaves a system without contacts. */
@@ -144,7 +146,7 @@ MUST_CHECK enum status system_append_penalty(struct solid_system *system, const 
                                              int32_t section, int32_t node, double stiffness,
                                              struct error *error);
 
-/* Once all penalties are there: what they put on nodes. */
+/* Build the transpose of the penalties, once all have been appended. */
 MUST_CHECK enum status system_share_penalties(struct solid_system *system, struct error *error);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
@@ -156,8 +158,8 @@ bool system_has_inverse(const struct solid_system *system);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
  * same critical step (1) however the cloud is graded; contact penalties included. mass[node_count] > 0. With
- * an inverse factor, which knows the stiffness at rest: of each node's part of the cells, of which only the
- * change since rest matters; `rest`: as it was there. */
+ * an inverse factor, which contains the stiffness at rest, it is that of the cells at each node by their
+ * linear shape functions, of which only the change since rest matters; `rest`: at rest. */
 void system_relaxation_mass(struct solid_system *system, bool rest, double *mass);
 
 /* Mean spacing of the nodes, m. */

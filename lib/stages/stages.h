@@ -13,10 +13,11 @@ struct ipoints_options {
     int gauss_points; /* else: points per cell */
     bool adaptive;    /* else: cells subdivided; `refinement` says how */
     struct adaptive_options refinement;
-    bool given_radius; /* refinement.support's radius or factor was asked for: else the stream's radii, if any
-                        */
-    int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the nodes'
-                           box; zeros behind the first: as that one along all axes */
+    bool given_radius;  /* the radius or factor of refinement.support was given; else the stream's radii are
+                           used, if any */
+    int64_t lattice[3]; /* else, when lattice[0] > 0: a regular lattice of evaluation points over the box of
+                           the nodes, of so many along each axis; with zeros behind the first number, that
+                           many along all axes */
 };
 struct ipoints_options ipoints_defaults(void);
 
@@ -30,7 +31,7 @@ MUST_CHECK enum status stage_ipoints(struct stream *stream, const struct ipoints
 MUST_CHECK enum status stage_radii(const struct stream *stream, const struct support_options *options,
                                    int64_t node_count, const double *x, double *radius, struct error *error);
 
-/* What support found, for one of its lists, */
+/* Statistics of one of the lists of support, */
 struct list_report {
     const char *what; /* "points on faces" */
     int64_t points, pairs, fewest, most, widened;
@@ -45,19 +46,19 @@ struct support_report {
     struct list_report list[3];
 };
 
-/* side[cells], allocated: the place of each cell's region in the list of names, with commas between, or
- * behind it. Errors: a region that is not there, or stands twice; no cells. */
+/* side[cells], allocated: the position of each cell's region in the comma-separated list of names, or the
+ * number of names. Errors: a region that is not there, or stands twice; no cells. */
 MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                                         struct error *error);
 
-/* Of a part of a body (part.node), whose each node is and which part it is, for support_options: where
- * supports stop at interfaces, those of what belongs to others do not. */
+/* For a part of a body (part.node): set owner and part of the options, so that supports of points that belong
+ * to other parts do not stop at interfaces. */
 MUST_CHECK enum status stage_own_part(const struct stream *stream, int64_t node_count,
                                       struct support_options *options, struct error *error);
 
 /* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
- * facepoint and node. With sides faces.row and facepoints.x are made anew, as faces at interfaces have points
- * of their own; likewise without, where there were sides before. */
+ * facepoint and node. With sides faces.row and facepoints.x are made again, as faces at interfaces have their
+ * own points; so they are without sides where the stream had some. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
@@ -74,8 +75,8 @@ struct recorded {
 MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                                    struct error *error);
 
-/* As the stream's section of radii tells, PREFIX.radius, and PREFIX.side where there is one, whose view
- * recorded->support.side is; support_defaults() where there is none, or for what it does not tell. */
+/* The settings from the attributes of PREFIX.radius, and a view of PREFIX.side, where it exists, as
+ * recorded->support.side. Settings that are not recorded are those of support_defaults(). */
 MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
                                       struct recorded *recorded, struct error *error);
 
