@@ -71,7 +71,8 @@ enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t
     return match_any_order(dim, a_count, a, b, tolerance, match, matched, error);
 }
 
-void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
+/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
+static void differences(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
 {
     for (int64_t i = 0; i < count; i++) {
         difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
@@ -229,7 +230,7 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     } else {
         RETURN_IF_ERROR(interpolate(a, b, skip_outside, comparison, reference, error));
     }
-    field_difference(count, cols, a->values, reference, comparison->difference);
+    differences(count, cols, a->values, reference, comparison->difference);
     return STATUS_OK;
 }
 

@@ -9,9 +9,6 @@
 MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
                                          const double *b, int32_t *match, bool *matched, struct error *error);
 
-/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
-void field_difference(int64_t count, int64_t cols, const double *a, const double *b, double *difference);
-
 /* The largest Euclidean norm of a row; NaN where any value is NaN. */
 double field_largest(int64_t count, int64_t cols, const double *field);
 

@@ -173,16 +173,10 @@ static enum status build_chunks(const struct search *search, struct support_list
     return failure;
 }
 
-enum status support_build(const struct support_options *options, const struct point_grid *grid, int64_t count,
-                          const double *x, const char *what, struct support_lists *lists, struct error *error)
-{
-    return support_build_within(options, grid, NULL, NULL, count, x, what, lists, error);
-}
-
-enum status support_build_within(const struct support_options *options, const struct point_grid *grid,
-                                 const struct visibility *visibility, const struct visibility_places *places,
-                                 int64_t count, const double *x, const char *what,
-                                 struct support_lists *lists, struct error *error)
+enum status support_build(const struct support_options *options, const struct point_grid *grid,
+                          const struct visibility *visibility, const struct visibility_places *places,
+                          int64_t count, const double *x, const char *what, struct support_lists *lists,
+                          struct error *error)
 {
     const struct support_body body = {.grid = grid, .visibility = visibility};
     return support_build_among(options, 1, &body, NULL, places, count, x, what, lists, error);

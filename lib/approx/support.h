@@ -48,22 +48,16 @@ MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
                                      const double *spacing, double *radius, struct error *error);
 
-/* The lists of points x[count * dim]; `what` names them in messages. Threads share the work; the result does
- * not depend on their number. STATUS_VERDICT, naming the point, when widening up to eightfold does not help;
- * without options->widen unfit supports are left for the shape functions to report. Not finite coordinates
- * are STATUS_INPUT. */
+/* The lists of points x[count * dim]; `what` names them in messages. With `visibility` neighbours must be
+ * visible through the cells, or connected around corners within their radius (visibility.h), and `places` are
+ * the cells that the points lie in; with visibility NULL all nodes within their radius are neighbours.
+ * Threads share the work; the result does not depend on their number. STATUS_VERDICT, naming the point, when
+ * widening up to eightfold does not help; without options->widen unfit supports are left for the shape
+ * functions to report. STATUS_INPUT for coordinates that are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
-                                     int64_t count, const double *x, const char *what,
-                                     struct support_lists *lists, struct error *error);
-/* The same where neighbours must be visible through the cells, or connected around corners within their
- * radius (visibility.h). `places` are the cells that the points lie in. With visibility NULL all nodes within
- * their radius are neighbours. */
-MUST_CHECK enum status support_build_within(const struct support_options *options,
-                                            const struct point_grid *grid,
-                                            const struct visibility *visibility,
-                                            const struct visibility_places *places, int64_t count,
-                                            const double *x, const char *what, struct support_lists *lists,
-                                            struct error *error);
+                                     const struct visibility *visibility,
+                                     const struct visibility_places *places, int64_t count, const double *x,
+                                     const char *what, struct support_lists *lists, struct error *error);
 
 /* A body in which neighbours are searched. */
 struct support_body {

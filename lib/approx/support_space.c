@@ -274,6 +274,6 @@ enum status support_space_lists(const struct support_options *options, const str
         return lists_of_sides(options, space, places != NULL ? places : &unknown, count, x, what, lists,
                               error);
     }
-    return support_build_within(options, &side->grid, space->by_cells ? &side->visibility : NULL, places,
-                                count, x, what, lists, error);
+    return support_build(options, &side->grid, space->by_cells ? &side->visibility : NULL, places, count, x,
+                         what, lists, error);
 }

@@ -49,9 +49,6 @@ MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *ima
  * columns are not orthogonal. */
 bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
 
-/* Add a sentence to image->note. */
-void nifti_note(struct image *image, const char *text);
-
 /* The bytes of a file, compressed or not. Not by zlib's gzread, which takes a file without its checksum for
  * whole where the data end with a block of its own. */
 struct image_source {

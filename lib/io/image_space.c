@@ -52,7 +52,8 @@ void image_to_voxel(const struct image *image, double inverse[3][4])
     }
 }
 
-void nifti_note(struct image *image, const char *text)
+/* Add a sentence to image->note. */
+static void add_note(struct image *image, const char *text)
 {
     text_append(image->note, sizeof image->note, "%s%s", image->note[0] != '\0' ? "; " : "", text);
 }
@@ -178,7 +179,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
                     units);
     }
     if (units == 0) {
-        nifti_note(image, "no unit of length: millimetres taken");
+        add_note(image, "no unit of length: millimetres taken");
     }
     image->unit = unit[units];
     if (header->sform > 0) {
@@ -191,7 +192,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
         image->space = header->qform;
     } else {
         from_sizes(header, matrix);
-        nifti_note(image, "tells neither sform nor qform: first voxel at the origin, axes taken to be RAS");
+        add_note(image, "tells neither sform nor qform: first voxel at the origin, axes taken to be RAS");
     }
     if (image->size[2] == 1) {
         complete_slice(matrix);
@@ -207,7 +208,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
         }
         double half = 0.5 * fmin(column_length(matrix, 0), column_length(matrix, 1));
         if (!(disagreement(image, matrix, other) <= half)) {
-            nifti_note(image, "sform and qform differ by more than half a voxel: sform taken");
+            add_note(image, "sform and qform differ by more than half a voxel: sform taken");
         }
     }
     for (int r = 0; r < 3; r++) {

@@ -125,8 +125,7 @@ void msh_skip_line(struct msh_reader *reader);
 
 /* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
 
-void msh_read_format(struct msh_reader *reader); /* msh_read.c */
-void msh_read_names(struct msh_reader *reader);  /* msh_entities.c */
+void msh_read_names(struct msh_reader *reader); /* msh_entities.c */
 void msh_read_entities(struct msh_reader *reader);
 void msh_read_partitions(struct msh_reader *reader);
 void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */

@@ -95,7 +95,7 @@ static const char *foreign_hint(const char *bytes, size_t size)
 
 /* ---- sections ---- */
 
-void msh_read_format(struct msh_reader *r)
+static void read_format(struct msh_reader *r)
 {
     static const double versions[] = {2.0, 2.1, 2.2, 4.0, 4.1};
     double version = msh_real(r, "version");
@@ -181,7 +181,7 @@ static void read_content(struct msh_reader *r)
         const char *name, *in_mesh1;
         void (*read)(struct msh_reader *reader);
     } needed[MSH_SECTIONS] = {
-        [MSH_FORMAT] = {"$MeshFormat", "", msh_read_format},
+        [MSH_FORMAT] = {"$MeshFormat", "", read_format},
         [MSH_NAMES] = {"$PhysicalNames", "", msh_read_names},
         [MSH_ENTITIES] = {"$Entities", "", msh_read_entities},
         [MSH_PARTITIONS] = {"$PartitionedEntities", "", msh_read_partitions},

@@ -120,11 +120,6 @@ void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int
     }
 }
 
-void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value)
-{
-    constraint_rows_take(rows, 0, rows->list_count, u, value);
-}
-
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
 {
     struct average average = constraint_rows_average(rows, r);

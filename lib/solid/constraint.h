@@ -45,11 +45,10 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
 /* The average that row r prescribes. */
 struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r);
 
-/* value[count]: direction . (sum_j phi_j u_j) of each row; and of row r alone. */
-void constraint_rows_values(const struct constraint_rows *rows, const double *u, double *value);
+/* direction . (sum_j phi_j u_j) of row r. */
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
 
-/* The values of the rows of the lists from `begin` to before `end`. */
+/* The same as value[r] of all rows r of the lists from `begin` to before `end`. */
 void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
                           double *value);
 

@@ -22,7 +22,7 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
         unit[dropped[d]] = 1.0;
         constraint_spread(constraint, unit, u);
         unit[dropped[d]] = 0.0;
-        constraint_rows_values(rows, u, combination);
+        constraint_rows_take(rows, 0, rows->list_count, u, combination);
         envelope_solve(&constraint->factor, combination);
         combination[dropped[d]] -= 1.0;
     }

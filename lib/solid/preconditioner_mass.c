@@ -127,8 +127,8 @@ enum status preconditioner_restore(struct preconditioner *p, const struct solid_
 {
     constraint_free(&p->constraint);
     bool within = p->factor.rows.row_count > 0;
-    RETURN_IF_ERROR(system_constrain_within(system, p->mass, within ? &p->factor : NULL,
-                                            within ? &p->factor_rows : NULL, &p->constraint, error));
+    RETURN_IF_ERROR(system_constrain(system, p->mass, within ? &p->factor : NULL,
+                                     within ? &p->factor_rows : NULL, &p->constraint, error));
     if (p->size > 0) {
         weigh_coarse_space(p);
         RETURN_IF_ERROR(weigh_conditions(p, error));

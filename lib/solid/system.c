@@ -131,15 +131,8 @@ static enum status check_dropped(const struct solid_system *system, struct const
 }
 
 enum status system_constrain(const struct solid_system *system, const double *mass,
+                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
-{
-    return system_constrain_within(system, mass, NULL, NULL, constraint, error);
-}
-
-enum status system_constrain_within(const struct solid_system *system, const double *mass,
-                                    const struct inverse_factor *inverse,
-                                    const struct constraint_rows *inverse_rows, struct constraint *constraint,
-                                    struct error *error)
 {
     enum status status =
         constraint_build(&system->rows, system->node_count, mass, inverse, inverse_rows, constraint, error);

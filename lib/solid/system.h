@@ -93,16 +93,13 @@ MUST_CHECK enum status system_state(struct solid_system *system, const struct st
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 
-/* Factor the conditions with a mass, to which the constraint keeps a pointer. Linearly dependent conditions
- * are dropped; STATUS_VERDICT, naming sections, node and place, when they are inconsistent. */
+/* Factor the conditions with a mass, to which the constraint keeps a pointer; `inverse` and `inverse_rows` as
+ * for constraint_build. Linearly dependent conditions are dropped; STATUS_VERDICT, naming sections, node and
+ * place, when they are inconsistent. */
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
+                                        const struct inverse_factor *inverse,
+                                        const struct constraint_rows *inverse_rows,
                                         struct constraint *constraint, struct error *error);
-
-/* The same with an inverse factor, see constraint_build. */
-MUST_CHECK enum status system_constrain_within(const struct solid_system *system, const double *mass,
-                                               const struct inverse_factor *inverse,
-                                               const struct constraint_rows *inverse_rows,
-                                               struct constraint *constraint, struct error *error);
 
 /* force[node_count * dim] += dead loads and pressures at system->factor, at parameters u. */
 void system_add_loads(const struct solid_system *system, const double *u, double *force);

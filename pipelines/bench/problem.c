@@ -24,7 +24,7 @@ static enum status build_lists(const struct problem *problem, int64_t count, con
     support_free(lists);
     TRY(point_grid_build(&grid, problem->cloud.dim, problem->cloud.node_count, problem->cloud.x,
                          problem->radius, error));
-    TRY(support_build(&problem->options, &grid, count, x, name, lists, error));
+    TRY(support_build(&problem->options, &grid, NULL, NULL, count, x, name, lists, error));
 done:
     point_grid_free(&grid);
     return status;

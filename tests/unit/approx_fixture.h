@@ -93,7 +93,8 @@ static inline enum status tabulate(const struct support_options *options, int64_
         status = point_grid_build(&table->grid, dim, count, x, table->radius, error);
     }
     if (status == STATUS_OK) {
-        status = support_build(options, &table->grid, point_count, points, "points.x", &table->lists, error);
+        status = support_build(options, &table->grid, NULL, NULL, point_count, points, "points.x",
+                               &table->lists, error);
     }
     if (status == STATUS_OK) {
         int64_t pairs = table->lists.ptr[point_count];

@@ -34,7 +34,8 @@ static enum status try_table(struct error *error)
     RETURN_IF_ERROR(faces_build(&cells, false, &faces, error));
     face_rows_points(&faces, cloud.x, points);
     RETURN_IF_ERROR(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
-    RETURN_IF_ERROR(support_build(&options, &grid, 2 * faces.count, points, "points", &lists, error));
+    RETURN_IF_ERROR(
+        support_build(&options, &grid, NULL, NULL, 2 * faces.count, points, "points", &lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
     RETURN_IF_ERROR(shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error));
@@ -71,8 +72,8 @@ static enum status try_reach(struct error *error)
     struct cells cells = {2, cloud.node_count, cloud.x, kept, cloud.cells};
     RETURN_IF_ERROR(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
     RETURN_IF_ERROR(visibility_build(&cells, &grid, &visibility, error));
-    RETURN_IF_ERROR(support_build_within(&options, &grid, &visibility, &places, cells.node_count, cloud.x,
-                                         "nodes", &lists, error));
+    RETURN_IF_ERROR(support_build(&options, &grid, &visibility, &places, cells.node_count, cloud.x, "nodes",
+                                  &lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
     RETURN_IF_ERROR(shape_table(&options.mls, cloud.x, radius, &view, cloud.x, "nodes", phi, NULL, error));

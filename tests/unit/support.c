@@ -77,7 +77,7 @@ TEST_IN_EACH_DIM(lists_against_brute_force)
             }
         }
         GOOD(point_grid_build(&grid, dim, cloud.count, cloud.x, radius, &error));
-        GOOD(support_build(&options, &grid, POINTS, cloud.points, "points.x", &lists, &error));
+        GOOD(support_build(&options, &grid, NULL, NULL, POINTS, cloud.points, "points.x", &lists, &error));
         int64_t fewest = cloud.count, most = 0;
         for (int64_t p = 0; p < POINTS; p++) {
             int64_t at = lists.ptr[p];
@@ -169,7 +169,7 @@ TEST(nearest_with_ties)
         double radius[25];
         GOOD(support_radii(&options, 25, NULL, radius, &error));
         GOOD(point_grid_build(&grid, 2, 25, x, radius, &error));
-        GOOD(support_build(&options, &grid, 1, point, "points.x", &lists, &error));
+        GOOD(support_build(&options, &grid, NULL, NULL, 1, point, "points.x", &lists, &error));
         assert_int_equal(lists.ptr[1], most[i]);
         assert_memory_equal(lists.idx, expected[i], (size_t)most[i] * sizeof(int32_t));
     }

@@ -129,11 +129,11 @@ static void find(double radius, bool widen)
     GOOD(point_grid_build(&found.grid, dim, body.node_count, body.x, found.radius, &error));
     GOOD(visibility_build(&body.cells, &found.grid, &found.visibility, &error));
     struct visibility_places inside = {.cell = found.cell, .points_per_row = 1};
-    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, found.count, found.x,
-                              "points", &found.lists, &error));
+    GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, found.count, found.x,
+                       "points", &found.lists, &error));
     inside = (struct visibility_places){.nodes = true};
-    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, body.node_count,
-                              body.x, "nodes", &found.nodes, &error));
+    GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, body.node_count, body.x,
+                       "nodes", &found.nodes, &error));
 }
 
 static void lose(void)
@@ -167,11 +167,13 @@ TEST_IN_EACH_DIM(convex)
         build(dim, (int[3]){7, 6, 5}, all_solid, one_sheet);
         find(wide ? 2.3 : 0.9, true);
         assert_true(wide || found.lists.widened > 0);
-        GOOD(support_build(&found.options, &found.grid, found.count, found.x, "points", &plain, &error));
+        GOOD(support_build(&found.options, &found.grid, NULL, NULL, found.count, found.x, "points", &plain,
+                           &error));
         assert_true(same_lists(&plain, &found.lists, dim));
         assert_int_equal(found.lists.around_count, 0);
         support_free(&plain);
-        GOOD(support_build(&found.options, &found.grid, body.node_count, body.x, "nodes", &plain, &error));
+        GOOD(support_build(&found.options, &found.grid, NULL, NULL, body.node_count, body.x, "nodes", &plain,
+                           &error));
         assert_true(same_lists(&plain, &found.nodes, dim));
         support_free(&plain);
         lose();
@@ -189,8 +191,8 @@ TEST_IN_EACH_DIM(located)
     FREED_BY(support_free) struct support_lists other = {0};
     build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
     find(2.0, true);
-    GOOD(support_build_within(&found.options, &found.grid, &found.visibility, NULL, found.count, found.x,
-                              "points", &other, &error));
+    GOOD(support_build(&found.options, &found.grid, &found.visibility, NULL, found.count, found.x, "points",
+                       &other, &error));
     assert_true(found.lists.around_count > 0);
     assert_true(same_lists(&other, &found.lists, dim));
     lose();
@@ -401,8 +403,8 @@ TEST_IN_EACH_DIM(gradients)
             for (int64_t i = 0; i < found.count * dim; i++) {
                 moved[i] = found.x[i] + (i % dim == a ? (s ? step : -step) : 0.0);
             }
-            GOOD(support_build_within(&found.options, &found.grid, &found.visibility, &inside, found.count,
-                                      moved, "points", &lists[s], &error));
+            GOOD(support_build(&found.options, &found.grid, &found.visibility, &inside, found.count, moved,
+                               "points", &lists[s], &error));
             step_pairs[s] = lists[s].ptr[found.count];
             stepped[s] = calloc((size_t)step_pairs[s], sizeof(double));
             assert_non_null(stepped[s]);

@@ -89,6 +89,17 @@ static enum status open_temporary(struct output *output, const struct stat *pres
     return STATUS_OK;
 }
 
+/* Close and leave nothing behind; the file that had the name before stays as it was. */
+static void abandon(struct output *output)
+{
+    if (output->descriptor >= 0) {
+        close(output->descriptor);
+    }
+    remove_pending();
+    FREE_ALL(output->temporary, output->target);
+    *output = (struct output){.descriptor = -1, .name = output->name};
+}
+
 enum status output_open(struct output *output, const char *name, struct error *error)
 {
     struct stat present;
@@ -106,26 +117,16 @@ enum status output_open(struct output *output, const char *name, struct error *e
     status = output->target == NULL ? fail_output(output, error)
                                     : open_temporary(output, exists ? &present : NULL, error);
     if (status != STATUS_OK) {
-        output_abandon(output);
+        abandon(output);
     }
     return status;
-}
-
-void output_abandon(struct output *output)
-{
-    if (output->descriptor >= 0) {
-        close(output->descriptor);
-    }
-    remove_pending();
-    FREE_ALL(output->temporary, output->target);
-    *output = (struct output){.descriptor = -1, .name = output->name};
 }
 
 enum status output_end(struct output *output, enum status status, struct error *error)
 {
     int descriptor = output->descriptor;
     if (status != STATUS_OK) {
-        output_abandon(output);
+        abandon(output);
         return fail_in(error, status, "%s", output->name);
     }
     output->descriptor = -1;
@@ -143,7 +144,7 @@ enum status output_end(struct output *output, enum status status, struct error *
             status = fail_output(output, error);
         }
     }
-    output_abandon(output);
+    abandon(output);
     return status;
 }
 
@@ -160,7 +161,7 @@ void target_open(const struct tool *tool, struct target *target, const char *nam
     target->file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     if (target->file == NULL) {
         int cause = errno;
-        output_abandon(&target->output);
+        abandon(&target->output);
         tool_fail(tool, STATUS_SYSTEM, "%s: %s", name, strerror(cause));
     }
     errno = 0;

@@ -19,9 +19,6 @@ MUST_CHECK enum status output_open(struct output *output, const char *name, stru
  * or the writing failed; the message then begins with its name. */
 MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
 
-/* Close and leave nothing behind; the file that had the name before stays as it was. */
-void output_abandon(struct output *output);
-
 /* A file that a tool prints to: its output file, or standard output. */
 struct target {
     FILE *file;       /* to print to */
