@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Subcells measured at a time: bounds the memory, and changes nothing else. */
+/* The number of subcells that are measured at once. It bounds the memory, and does not affect the result. */
 #define BATCH_LEAVES 256
 
 /* Children by pairs of vertices, whose midpoint (or the vertex itself) is a vertex of the child. The

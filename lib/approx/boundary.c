@@ -23,7 +23,7 @@ static enum status allocate(int dim, int64_t parts, int64_t samples, struct boun
     return NEW_ARRAY(&averages->sample_point, samples, error);
 }
 
-/* A dense row over the nodes, with the list of those touched: one average at a time is summed in it. */
+/* A dense row over the nodes with the list of its nonzeros, in which one average at a time is accumulated. */
 struct dense_row {
     double *value;
     int32_t *touched;
@@ -62,8 +62,8 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     return STATUS_OK;
 }
 
-/* The share of quadrature point g in the value at corner `vertex` of the linear function through the points
- * of a facet (there are as many of these as corners, placed alike). */
+/* The weight of quadrature point g in the value at corner `vertex` of the linear function through the points
+ * of a facet. A facet has as many points as corners, arranged in the same way. */
 static double extrapolated(const struct quadrature_rule *rule, int dim, int g, int vertex)
 {
     double own = rule->barycentric[0], other = (1.0 - own) / (dim - 1);
@@ -106,7 +106,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
     return STATUS_OK;
 }
 
-/* From integrals to averages; returns the length of the mean normal. */
+/* Divide the integrals of an average by its area; returns the length of the mean normal. */
 static double normalise(int dim, int64_t part, struct boundary_averages *averages)
 {
     double length2 = 0.0;
@@ -133,8 +133,8 @@ static void put_place(int dim, int64_t a, const double *x, struct boundary_avera
     memcpy(averages->sample_x + sample * dim, x, (size_t)dim * sizeof *x);
 }
 
-/* The parts that averages are made of: boundary averages, split where the boundary turns or not, and, with
- * `sides`, whole sides after them. */
+/* The parts over which averages are taken: one for each node, or each node and side, and, with `sides`, the
+ * whole sides behind them. */
 static enum status collect_parts(const struct face_table *table, const struct facet_set *set,
                                  const int64_t *face_of, bool split, struct boundary_sides *sides,
                                  struct corner *corners, int64_t *parts, struct error *error)

@@ -8,8 +8,8 @@
 
 #include <stdlib.h>
 
-/* Facets that turn by 45 degrees or more at a node belong to different sides; a little less than that, so
- * that round-off does not decide on chamfers. */
+/* Facets that turn by 45 degrees or more at a node belong to different sides; slightly less, so that
+ * round-off does not decide at chamfers of 45 degrees. */
 static const double side_cosine = 0.7072;
 
 enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set, int64_t *face_of,

@@ -90,7 +90,8 @@ static bool project(int dim, int order, const double *const *corner, const doubl
     return determinant > 0.0;
 }
 
-/* The nearest place is in the simplex, or in a face beyond which the projection of x lies. */
+/* The nearest point is in the simplex if the projection of x is; else it is in a face beyond which the
+ * projection lies. */
 double simplex_distance2(int dim, int order, const double *const *corner, const double *x)
 {
     double place[4] = {1.0}, least = INFINITY, nearest[3] = {0.0};
@@ -258,7 +259,8 @@ enum status cells_node_spacing(const struct cells *cells, double *spacing, struc
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = 0.0;
     }
-    /* An edge is seen once per cell at it: interior edges weigh more than boundary edges, evenly enough. */
+    /* An edge counts once for each of its cells, so that interior edges have a larger weight than boundary
+     * edges. */
     for (int64_t c = 0; c < cells->count; c++) {
         const int32_t *v = cells->node + c * (dim + 1);
         for (int i = 0; i <= dim; i++) {

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A way may be so many times as long as the straight one. */
+/* The longest path that connects two nodes, by their distance. */
 static const double most_detour = 2.0;
 
 static void assign_nodes(struct edge_paths *paths, int64_t stride, const double *place, double unit)
@@ -60,7 +60,7 @@ void edge_paths_begin(struct edge_paths *paths, int32_t from)
     }
 }
 
-/* Shortest ways along edges from ways->from, up to that length (Dijkstra 1959). */
+/* Shortest paths along edges from paths->from, up to the length `limit` (Dijkstra 1959). */
 static enum status search(struct edge_paths *paths, double limit, struct error *error)
 {
     const struct visibility *visibility = &paths->visibility;

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number the edges of faces in 3D as they come: edge[count * 3], that from each node to the next one. */
+/* Number the edges of faces in 3D in the order of their first use: edge[count * 3], that from each node to
+ * the next one. */
 static enum status number_edges(int64_t node_count, const struct faces *faces, int32_t *edge, int64_t *edges,
                                 struct error *error)
 {
@@ -34,7 +35,8 @@ static enum status number_edges(int64_t node_count, const struct faces *faces, i
     return STATUS_OK;
 }
 
-/* outer[node_count]: those of faces on the boundary, or between sides. */
+/* outer[node_count]: whether a node belongs to a face on the boundary, or between two sides of an interface.
+ */
 static void mark_outer(const int32_t *side, const struct faces *faces, bool *outer)
 {
     for (int64_t f = 0; f < faces->count; f++) {
@@ -107,7 +109,7 @@ static enum status rows_of_edges(int64_t node_count, const struct faces *faces, 
     return STATUS_OK;
 }
 
-/* Each cell once, without what is beyond the boundary; row r had those up to ptr[r + 1]. */
+/* Remove repeated cells, and -1 for the outside, from each row; row r ended at ptr[r + 1]. */
 static void keep_new_cells(int64_t rows, int64_t *ptr, int32_t *cell)
 {
     int64_t kept = 0, from = 0;

@@ -1,5 +1,5 @@
 /* MLS at points whose moment matrix may be ill-conditioned, by orthogonal (QR) factorisation of the weighted
- * monomials: half as many digits are lost as by the normal equations. */
+ * monomials. It loses half as many digits as the normal equations. */
 #include "approx/mls_orthogonal.h"
 
 #include "approx/weight.h"

@@ -117,7 +117,8 @@ static bool reaches(const struct partition *partition, int32_t j, const struct b
     return square < grid->radius[j] * grid->radius[j];
 }
 
-/* The marks of a node in the pass of one part, above MARKS times its number; all else: not seen. */
+/* The marks of a node while part p is built are stored as MARKS * p plus the mark; other values are of other
+ * parts. */
 enum { SEEN = 1, NEEDED = 2, MARKS = 3 };
 
 static int mark_of(const int32_t *mark, int64_t i, int32_t part)

@@ -5,7 +5,8 @@
 
 #include <metis.h>
 
-/* The graph for METIS: nodes that share a cell; the work of each node is its share of its cells'. */
+/* The graph for METIS: nodes that share a cell are adjacent. The weight of a node is its share of the work of
+ * its cells. */
 struct graph {
     idx_t *ptr, *other, *weight;
 };

@@ -154,8 +154,8 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
-/* Chosen items and nodes take in each other's neighbours, beginning with the nodes of the items or the items
- * of the nodes. */
+/* Extend the selection alternately from items to their nodes and from nodes to their items, beginning with
+ * either. */
 enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
                         int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,
                         struct error *error)

@@ -204,8 +204,8 @@ enum status index_list_reserve(struct index_list *list, int64_t count, struct er
     return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
-/* Append those of the places [first, last) of a level whose supports reach the box; or, with a list of
- * places, of slot[first .. last) those whose supports contain the point low. */
+/* Append those of the places [first, last) of a level whose supports meet the box; or, with a list of places,
+ * those of slot[first .. last) whose supports contain the point `low`. */
 static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
                                                             const int32_t *slot, int64_t first, int64_t last,
                                                             const double *low, const double *high,

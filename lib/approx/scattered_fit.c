@@ -65,7 +65,7 @@ static void insert(struct nearest *nearest, int64_t most, int64_t row, double di
     nearest->row[at] = row;
 }
 
-/* Whether a point is not known to be out of reach. */
+/* Whether a point is connected to the node, or not yet checked. */
 static bool usable(const struct scattered_fit *fit, int64_t row)
 {
     return fit->paths == NULL || fit->paths->verdict[row] != PATH_NONE;
@@ -80,8 +80,8 @@ static int64_t count_usable(const struct scattered_fit *fit, const struct index_
     return count;
 }
 
-/* The nearest points that are not known to be out of reach: those within a radius, doubled until there are
- * enough. */
+/* The nearest points that are connected or not yet checked: those within a radius, which is doubled until
+ * there are enough. */
 static enum status find_nearest(const struct scattered_fit *fit, const double *x, struct nearest *nearest,
                                 struct error *error)
 {
@@ -129,7 +129,7 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
     return status;
 }
 
-/* The nearest points within reach: checks the ways to the nearest, until all of them are. */
+/* The nearest connected points: the connections of the nearest ones are checked until all of them exist. */
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
 {
@@ -224,7 +224,7 @@ static void add_inverse(const struct part *part, const double *v, int64_t count,
     }
 }
 
-/* Take out of the columns of Q what the linear part can do: Q -= U U^T Q. */
+/* Make the columns of Q orthogonal to the linear part: Q -= U U^T Q. */
 static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *Q)
 {
     for (size_t c = 0; c < Q->size2; c++) {
@@ -243,8 +243,8 @@ static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *
 }
 
 /* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
- * quadratic ones. at_x: the basis at x. From the mean, because what the points do not determine is then what
- * vanishes on them. */
+ * quadratic ones. at_x: the basis at x. With coordinates from the mean, the combinations that the points do
+ * not determine are those that vanish on them. */
 static void fill_columns(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
                          double *root, gsl_matrix *linear, gsl_matrix *quadratic, double *at_x)
 {

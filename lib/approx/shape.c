@@ -96,7 +96,7 @@ done:
     return status;
 }
 
-/* The first failure of chunks that threads share, whichever thread meets it. */
+/* The failure of the first chunk that failed, independent of the number of threads. */
 struct failure {
     int64_t chunk;
     enum status status;
@@ -183,8 +183,7 @@ static int64_t merge_row(const struct neighbours *lists, const struct faces *fac
     }
 }
 
-/* Rows [first, last): their values into a scratch array, from there their averages, and a copy of what is on
- * the boundary. */
+/* Evaluate rows [first, last) into a scratch array, average them, and copy the values of boundary faces. */
 static enum status average_rows(const struct tabulation *table, const struct faces *faces, int64_t first,
                                 int64_t last, struct face_averages *averages, struct error *error)
 {

@@ -32,8 +32,8 @@ static double cell_size(const struct cells *cells, const double *spacing, int64_
 }
 
 /* The error that all cells are to have: sum e_K^2 falls to its share, as a cell's part of it falls by the
- * order of the error, twice; by bisection. Cells that the least size keeps from becoming smaller are left
- * out: no others can make up for them. */
+ * order of the error, twice; by bisection. Cells that already have the least size are left out, as refining
+ * others cannot reduce their error. */
 static double equal_error(const struct cells *cells, const double *squared, const double *spacing,
                           const struct size_field_request *request)
 {
@@ -82,7 +82,8 @@ static enum status node_sizes(const struct cells *cells, const double *squared, 
     return STATUS_OK;
 }
 
-/* No larger sizes on the boundary than there are: what its shape needs the errors do not tell. */
+/* Sizes on the boundary do not grow, as the error estimate does not include the error of the boundary's
+ * shape. */
 static void keep_boundary(const struct faces *faces, const double *spacing, double *size)
 {
     for (int64_t i = 0; i < faces->boundary_count * faces->dim; i++) {

@@ -18,8 +18,8 @@ static double neighbour_distance2(const struct point_grid *grid, const double *x
                          : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
 }
 
-/* Keep the `most` nearest of the neighbours in index[count], ties going to the lower index; image[count *
- * dim] or NULL. */
+/* Keep the `most` nearest of the neighbours in index[count], of equally near ones those of lower index;
+ * image[count * dim] or NULL. */
 static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
                                 double *image, int64_t *count, struct worker *worker, struct error *error)
 {
@@ -74,7 +74,7 @@ static double spacing_within(const struct support_options *options, const struct
     return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
-/* Whether a support serves: enough nodes, a well-conditioned moment matrix, bounded gradients. */
+/* Whether a support is admissible: enough nodes, a well-conditioned moment matrix, bounded gradients. */
 static enum status judge(const struct support_options *options, const struct point_grid *grid,
                          const double *x, double widen, const int32_t *index, const double *image,
                          int64_t count, struct worker *worker, bool *serves, struct error *error)
@@ -105,8 +105,8 @@ static enum status judge(const struct support_options *options, const struct poi
     return STATUS_OK;
 }
 
-/* Put down the neighbours of the list from `first` on that are seen around corners: those whose images are
- * not where they are. */
+/* Record the neighbours of the list from `first` on that are connected around corners: those whose image is
+ * not at the node. */
 static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
                                int64_t first, struct worker *worker, struct error *error)
 {

@@ -27,7 +27,8 @@ static double mean_of_least(double *distance, int64_t count, int64_t wanted)
     return sum / (double)wanted;
 }
 
-/* Mean distance to the nearest nodes of one node, asking for ever larger neighbourhoods. */
+/* Mean distance of a node from the nearest nodes, found in neighbourhoods that are doubled until they hold
+ * enough. */
 static enum status spacing_of(const struct point_grid *grid, int64_t node, struct index_list *list,
                               double *spacing, struct error *error)
 {

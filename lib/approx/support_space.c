@@ -147,7 +147,7 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
     }
 }
 
-/* Nodes of others, and points of no cell of the part's own, have the whole for their side. */
+/* Nodes of other parts, and points in no own cell of the part, belong to the side that is the whole. */
 static void sides_of_others(const struct support_space *space, const struct visibility_places *places,
                             int64_t count, int32_t *side)
 {

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-/* A facet faces the other way where its normal's product with the way to it is more. */
+/* A facet counts as opposite where the scalar product of its normal and the ray is larger than this. */
 static const double facing = 0.5;
-/* So many cells are gone through at most: round-off may lead in a circle. */
+/* The most cells that a ray passes: round-off might lead it in a circle. */
 enum { MOST_CELLS = 1000 };
 
 /* Mean length of the edges between `count` nodes: of a facet, or a cell. */

@@ -1,4 +1,5 @@
-/* Preparation of a body for queries of reach: facets, re-entrant corners, and which nodes see which. */
+/* Preparation of a body for queries of visibility: facets, re-entrant corners, and the nodes that are visible
+ * from each node. */
 #include "approx/visibility_private.h"
 
 #include "approx/parts.h"
@@ -120,7 +121,7 @@ static enum status list_shadows(struct visibility *visibility, struct error *err
     return STATUS_OK;
 }
 
-/* Whether the cells at a node hang together by faces at it. */
+/* Whether the cells at a node are connected by faces at it. */
 static enum status hangs_together(const struct visibility *visibility, int32_t node,
                                   struct visibility_work *work, bool *together, struct error *error)
 {
@@ -139,8 +140,8 @@ static enum status hangs_together(const struct visibility *visibility, int32_t n
     return status;
 }
 
-/* Whether the body's angle between two facets is larger than a straight one: up to a full turn, where they
- * lie on each other. */
+/* Whether the interior angle between two facets is larger than 180 degrees; it is 360 where they lie on each
+ * other. */
 static bool is_reentrant(const struct visibility *visibility, const struct ridge *first,
                          const struct ridge *second)
 {

@@ -69,7 +69,7 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
             work->length[node] = INFINITY;
         } else if (visibility->corner[node]) {
             double length = vector_distance(dim, work->from, visibility->cells.x + (int64_t)node * dim);
-            /* From the corner itself nothing is to be had that it does not see. */
+            /* A corner contributes only nodes that are visible from it. */
             work->length[node] =
                 length > VISIBILITY_ON_PLANE * visibility->grid->radius[node] ? length : INFINITY;
         } else {
@@ -90,8 +90,8 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
     return STATUS_OK;
 }
 
-/* The shortest way from p to q over the edge from a to b: its length, unrolled into a plane, and how far
- * along the edge it passes, 0 to 1: 0 where p or q is in line with the edge. */
+/* The shortest path from p to q across the edge from a to b: its length, unrolled into a plane, and the place
+ * where it crosses the edge, 0 to 1; 0 where p or q is on the line of the edge. */
 static double shortest_over_edge(const double *a, const double *b, const double *p, const double *q,
                                  double *passes)
 {
@@ -124,7 +124,8 @@ static double shortest_over_edge(const double *a, const double *b, const double 
            sqrt(off_q * off_q + (along_q - t) * (along_q - t) * length2);
 }
 
-/* Slide a bend at a node along the re-entrant edge there that makes the way between its neighbours shortest.
+/* Slide a bend at a node along that re-entrant edge at the node which makes the path between its neighbours
+ * shortest.
  */
 static void slide(const struct visibility *visibility, const double *before, const double *after,
                   int32_t node, double *bend)

@@ -1,8 +1,9 @@
-/* Shadows of facets: what of the supports of nodes a facet of the boundary may hide.
+/* Shadows of facets: the parts of the supports of nodes that a facet of the boundary may hide.
  *
- * The shadow of a facet from a node beyond its plane is the part of the node's ball from which the node is
- * looked at through the facet. Each shadow looks for the points that it holds, of all points at once, so that
- * the work goes with what is hidden, and not with the facets that might hide something. */
+ * The shadow of a facet from a node beyond its plane is the part of the node's ball in which the segment to
+ * the node passes through the facet. For each shadow the points within it are searched, among all points at
+ * once. So the work is proportional to the number of hidden nodes, not to the number of facets that might
+ * hide them. */
 #include "approx/visibility_private.h"
 
 #include "base/box.h"
@@ -15,8 +16,8 @@
 /* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
 static const double beside_facet = 1e-6;
 
-/* How the segment from x to a node passes a facet: not; through it, out of the body; or too near its rim or
- * its ends to say. */
+/* How the segment from x to a node passes a facet: not; through it, out of the body; or too near the facet's
+ * rim or the segment's ends to decide. */
 enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
 
 /* of_x, of_y: heights of x and of the node at y above the facet; `own`: x lies in the facet's cell and in no
@@ -85,7 +86,7 @@ static struct box box_of_shadow(const struct visibility *visibility, const struc
     return box;
 }
 
-/* The points that shadows are looked for of. */
+/* The points whose shadows are searched. */
 struct shaded {
     struct point_grid grid;
     const int32_t *body_of; /* NULL: all points; else those with this number: */
@@ -124,7 +125,7 @@ static enum status list_points(const struct visibility *visibility, const struct
     return STATUS_OK;
 }
 
-/* All threads' pairs go to `all`, in whatever order: it does not matter to a point. */
+/* Append the pairs of all threads to `all`. Their order does not affect the result at a point. */
 static enum status list_all(const struct visibility *visibility, const struct shaded *points,
                             struct pair_list *all, struct error *error)
 {

@@ -168,9 +168,9 @@ static enum status add_side(const struct prescription *p, const struct boundary_
 }
 
 /* Boundary averages for a condition. With a split, a node on an edge has one average for each side, and the
- * traction may jump there. Without, the field near the edge is as free as elsewhere. No split is needed for a
- * constant displacement, as the only linear field that it admits is rest, without tractions. On curved sides
- * no linear field is exact in either way. */
+ * traction may jump there. Without a split the field near the edge is less constrained. No split is needed
+ * for a constant displacement, which admits no linear field but rest, without tractions. On curved sides no
+ * linear field is exact, with a split or without. */
 static enum status build_averages(const struct prescription *p, struct boundary_averages *averages,
                                   struct boundary_sides *sides, struct error *error)
 {
@@ -270,7 +270,8 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
     FREED_BY(nodal_constraints_free) struct nodal_constraints nodal_constraints = {0};
     FREED_BY(held_free) struct held_directions held = {0};
     RETURN_IF_ERROR(held_build(input->cells.dim, input->cells.node_count, &held, error));
-    /* Conditions that hold few directions come first: what slides along a plane stays on it to its rim. */
+    /* Conditions that prescribe few directions come first, so that what slides along a plane stays on it up
+     * to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
         for (int64_t i = 0; i < input->condition_count; i++) {
             struct prescription p = {.input = input,

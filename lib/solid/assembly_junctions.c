@@ -4,22 +4,22 @@
 
 #include <stdlib.h>
 
-/* Where a held part of the boundary ends, the stress is singular, which cells of finite size do not resolve:
- * the body is too stiff, everywhere. Softer cells at the end take the error away elsewhere (energy
- * correction: Egger, Ruede and Wohlmuth 2014).
+/* Where the prescribed part of the boundary meets the free part, the stress is singular. Cells of finite size
+ * do not resolve it, and the whole body is too stiff. Softer cells at the junction remove the error elsewhere
+ * (energy correction: Egger, Ruede and Wohlmuth 2014).
  *
- * Smooth ends: the side goes on beyond the end, and the displacement grows with the square root of the
- * distance. Cells there have less of their moduli. Those beneath the held facets stay as they are, as the
- * field under an end is held by averages only.
+ * Smooth junctions: the boundary is smooth there, and the displacement grows with the square root of the
+ * distance. Cells at the junction have reduced moduli, except those behind prescribed facets, where only
+ * averages of the field are prescribed.
  *
- * The value: with .76 the force on a bonded punch on a strip is that of a mesh with fine cells at its ends,
- * in the mean over 20 meshes of 11 to 25 cells under the punch, at nu = .3 and at .49. At the ends themselves
- * the largest difference then grows: .85, which leaves a third of the error, is where that of the brain
- * section of 707 nodes, of the calibration set, begins to. */
+ * The value: with .76 the force on a bonded punch on a strip is that of a mesh with fine cells at the ends of
+ * the punch, in the mean over 20 meshes of 11 to 25 cells under it, at nu = .3 and at .49. But the largest
+ * error, which is at the junctions, then grows. With .85, which leaves a third of the error of the force, it
+ * just begins to grow for the brain section of 707 nodes of the calibration set. */
 static const double junction_stiffness = 0.85;
 
-/* junction[node_count] becomes true at ends of the held part of the boundary: of faces with `least`
- * directions prescribed, toward faces with none. */
+/* (*junction)[node_count]: nodes where faces with at least `least` prescribed directions meet faces with
+ * none. */
 static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
                                   bool **junction, struct error *error)
 {
@@ -30,7 +30,7 @@ static enum status find_junctions(const struct assembly *input, enum boundary_ju
     return boundary_find_junctions(&input->face_table, kind, held, constrained, *junction, error);
 }
 
-/* softer[cells.count]: cells that have a node on a smooth end, and are not beneath held facets. */
+/* softer[cells.count]: cells that have a node on a smooth junction, and no prescribed facet. */
 static enum status mark_cells(const struct assembly *input, bool *softer, struct error *error)
 {
     int corners = input->cells.dim + 1;
@@ -48,7 +48,7 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
     return STATUS_OK;
 }
 
-/* Append the material m as cells at smooth ends have it. */
+/* Append the material m with the moduli of cells at smooth junctions. */
 static void add_softened(struct material_list *list, int32_t m)
 {
     struct material *material = &list->items[list->count];
@@ -83,10 +83,9 @@ enum status assembly_soften_junctions(const struct assembly *input, struct mater
     return STATUS_OK;
 }
 
-/* In three dimensions only: triangles are right to .2 % as they are. A clamped side ends where it meets a
- * free one at an edge, and not one that slides, as a plane of symmetry does: there it goes on beyond it. A
- * side that may be in contact counts as free, whether it touches or not: the treatment of edges takes nothing
- * from a pressure that is uniform there. */
+/* In three dimensions only: in two the error is .2 %. Only an edge between a clamped and a free side is a
+ * junction. A side that slides is not free, as it may be a plane of symmetry. A side that may come into
+ * contact counts as free, in contact or not: the treatment of edges does not change a uniform pressure. */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
     bool found = false;

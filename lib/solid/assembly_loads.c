@@ -15,8 +15,8 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return STATUS_OK;
 }
 
-/* The mass that each row of the table over points or faces stands for: of a face, its cells' in equal parts,
- * and of a row its share of the faces. */
+/* The mass of each row of the table over points or faces. A face has an equal part of the mass of each of its
+ * cells, a row its share of the mass of its faces. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
     const struct material_list *materials = &input->materials;
@@ -36,7 +36,7 @@ static enum status share_mass(const struct assembly *input, double **mass, struc
     return STATUS_OK;
 }
 
-/* Whether each process has but some rows of what the weight is summed over. */
+/* Whether each process has only some of the rows that the weight is summed over. */
 static bool weighs_later(const struct assembly *input)
 {
     return input->face_reader != NULL && !input->in_time;
@@ -48,7 +48,7 @@ static enum status add_gravity(const struct assembly *input, struct solid_system
     double *force;
     SCRATCH double *mass = NULL;
     RETURN_IF_ERROR(new_load(system, input->gravity_curve, &force, error));
-    /* In time by the lumped mass, so that a free body falls as one. */
+    /* In dynamics gravity acts on the lumped mass, so that a free body falls without deformation. */
     for (int64_t i = 0; input->in_time && i < system->node_count * dim; i++) {
         force[i] = system->lumped_mass[i / dim] * input->gravity[i % dim];
     }

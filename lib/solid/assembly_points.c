@@ -184,8 +184,8 @@ static enum status set_energy(struct point_condition *p, struct error *error)
     return STATUS_OK;
 }
 
-/* Exact rows from `first` on, one for each component that is known, that leave each other or the sections
- * before too little. */
+/* Find exact rows from `first` on, one for each known component, that are nearly linearly dependent on each
+ * other or on earlier sections. */
 static enum status check_rows(const struct point_condition *p, int64_t first, struct error *error)
 {
     const struct constraint_rows *rows = &p->system->rows;
@@ -241,8 +241,8 @@ static enum status grid_of_rows(const struct point_condition *p, struct point_gr
     return point_grid_build(grid, dim, rows->count, *x, *radius, error);
 }
 
-/* Exact point i beside places that other sections hold, along which the displacement differs by more than
- * they are apart; near: rows. */
+/* Check exact point i against rows of other sections near it (`near`): their displacements must not differ by
+ * more than their distance. */
 static enum status compare_near(const struct point_condition *p, int64_t i, const struct index_list *near,
                                 struct error *error)
 {

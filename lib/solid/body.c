@@ -9,7 +9,7 @@
 #include <omp.h>
 #include <string.h>
 
-/* Points of a block: its part of the operator should take a part of the second cache only. */
+/* Points of a block: its part of the operator should fit into a part of the second-level cache. */
 static int64_t points_of_block(int dim)
 {
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
@@ -20,8 +20,8 @@ static enum material_model model_of(const struct body_input *input, int64_t poin
     return input->materials[input->material[point]].model;
 }
 
-/* Points by law, so that blocks are of one, and along a curve, so that they are compact; nodes along the
- * curve, too. */
+/* Order the points by material law, so that each block has one law, and within a law along a Morton curve, so
+ * that blocks are compact; order the nodes along the curve, too. */
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
     SCRATCH int32_t *model = NULL;
@@ -157,8 +157,8 @@ static enum status copy_gradients(const struct body_input *input, struct body *b
     return STATUS_OK;
 }
 
-/* Waiting for each other costs threads some microseconds a step: each must have more to do than that. A pair
- * has a gradient, or in smoothed cells one value. */
+/* Synchronising threads costs some microseconds a step; each must have more work than that. An entry is a
+ * gradient, or one value for smoothed cells. */
 static int worthwhile_threads(const struct body *body)
 {
     int64_t by_work = 1 + body->pair_count / (body->smoothed ? 30000 * body->dim : 30000);

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Each part of the blocks has sums of its own, so that there are few, whatever the number of threads; fewer
- * blocks than that are one part. */
+/* Each part of the blocks has its own sums. The number of parts is small and independent of the number of
+ * threads; with fewer blocks there is one part. */
 enum { MOST_PARTS = 4, LEAST_BLOCKS = 50 };
 
 /* Who has a block. */
@@ -156,8 +156,8 @@ static int64_t part_of(const struct chunks *parts, int64_t block)
     return p;
 }
 
-/* A part whose blocks several processes have goes from one to the next, so that it is summed in the order of
- * the blocks; then all get all parts. */
+/* A part whose blocks belong to several processes is passed from one to the next, so that it is summed in the
+ * order of the blocks. Then all processes receive all parts. */
 static void sum_parts_of_ranks(struct body *body, int64_t taken, body_visitor *add, bool rest)
 {
     const struct body_share *share = &body->share;

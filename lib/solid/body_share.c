@@ -244,7 +244,7 @@ static enum status order_blocks(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
-/* Of the rows that are summed here those for others, and the rest. */
+/* Divide the rows that are summed here into those that other processes need, and the rest. */
 static enum status order_sums(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;

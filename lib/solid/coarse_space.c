@@ -13,11 +13,12 @@
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
 static const double radius_factor = 1.5;
-/* A way may be so many times as long as the straight one, as in convex bodies all are, before it counts. */
+/* A path counts as the distance where it is longer than this multiple of the Euclidean distance; in convex
+ * bodies none is. */
 static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
-/* share[..][c] = lengths of the shortest ways from a node, from neighbour to neighbour; infinite where there
+/* share[..][c] = lengths of the shortest paths from a node, from neighbour to neighbour; infinite where there
  * is none. */
 static enum status path_lengths(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
                                 int64_t from, struct queue *queue, struct error *error)
@@ -152,7 +153,8 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
 /* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
 typedef of_centres coarse_amounts[4][3];
 
-/* Numbers of eight centres, in one register of the widest processors: longer vectors go through memory. */
+/* Numbers of eight centres, which fit into one register of processors with AVX-512: longer vectors would go
+ * through memory. */
 enum { EIGHT = 8 };
 typedef double eight_centres __attribute__((vector_size(8 * EIGHT), aligned(8), may_alias));
 typedef double four_centres __attribute__((vector_size(32)));

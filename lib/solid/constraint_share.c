@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* null[count * dropped]: for each row that was dropped, the combination of rows that is zero. */
+/* null[count * dropped]: for each dropped row the linear combination of rows that is zero. */
 static enum status null_rows(const struct constraint *constraint, double *null, struct error *error)
 {
     const struct constraint_rows *rows = constraint->rows;

@@ -38,8 +38,8 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
         work += done.work;
         unresolved += done.unresolved;
     }
-    /* A surface that moves onto a body at rest: until the energy is that much, what the balance lacks of the
-     * first touch within a step, an eighth of `unresolved`, is no drift. */
+    /* When a surface moves onto a body at rest, the balance misses up to an eighth of `unresolved` of the
+     * first contact within a step. That is no drift before the energies are that large. */
     d->balance.largest = fmax(d->balance.largest, unresolved / (8.0 * DYNAMICS_MOST_DRIFT));
     d->balance.work += 0.5 * work;
     if (d->options->damping > 0.0) {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A table on its way into the rows of a matrix, from `first_row` on. */
+/* A table that is copied into the rows of a matrix from `first_row` on. */
 struct copy {
     const struct field_averages_input *input;
     const struct average_table *table;
@@ -41,7 +41,7 @@ static void measure_rows(const struct copy *copy, int64_t *length)
     }
 }
 
-/* The table as it comes, so that it can be let go of step by step. */
+/* Copy the table in its own order, so that its memory can be released step by step. */
 static void copy_rows(const struct copy *copy, struct sparse *matrix)
 {
     enum { STEP = 1 << 20 };

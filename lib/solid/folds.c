@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Facets of one plane support: their normals make a product no less than 1 less this. */
+/* Facets belong to one plane support when the scalar product of their unit normals is at least 1 minus this.
+ */
 static const double plane_tolerance = 1e-6;
 
 /* A free facet continues its support, and a facet another one, unless it turns back from it by more than this
@@ -81,7 +82,7 @@ static bool continue_each_other(const struct fold_input *input, int64_t f, int64
     return fold_facet_cosine(input, input->x, f, g) > sqrt(1.0 - least_turn * least_turn);
 }
 
-/* The cells that lie alone between two facets that continue each other. */
+/* Find the cells that are alone between two facets that continue each other. */
 static enum status find_flat_cells(struct folds *folds, const int32_t *part, struct error *error)
 {
     int parts = folds->input.dim == 2 ? 3 : 6;
@@ -147,7 +148,7 @@ static bool in_one_plane(const struct fold_input *input, int64_t f, int64_t g)
     return vector_dot(dim, a, b) >= (1.0 - plane_tolerance) * size;
 }
 
-/* Held facets that meet in one plane are one support, which is called by its first facet. */
+/* Held facets that meet in one plane are one support, numbered by its first facet. */
 static enum status find_supports(struct folds *folds, const struct fold_ring *sides, struct error *error)
 {
     const struct fold_input *input = &folds->input;

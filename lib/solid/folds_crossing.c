@@ -74,7 +74,8 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
     return deepest;
 }
 
-/* 3D: the least way along which one of the facets can be moved off the other, across two of their edges. */
+/* 3D: the least distance by which one facet can be moved off the other along a normal to two of their edges
+ * (separating axes). */
 static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g)
 {
     const int32_t *one = folds->input.facet + f * 3, *other = folds->input.facet + g * 3;
@@ -99,7 +100,7 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
     return least;
 }
 
-/* Whether a part of the body stands against a node of the facet. */
+/* Whether a node of the facet is in contact with another part of the body. */
 static bool is_in_contact(const struct folds *folds, int64_t f)
 {
     bool any = false;
@@ -109,12 +110,11 @@ static bool is_in_contact(const struct folds *folds, int64_t f)
     return any;
 }
 
-/* Whether two facets that meet are through each other by more than a twentieth of the smaller one: so far
- * must one of them be moved to set them apart. Less is no more than what a field at the nodes is uncertain
- * by, as conditions and contacts hold averages: a node on a support is beyond its plane by round-off and
- * more. Where parts of the body press on each other the corner of one may sink into the chord of the other:
- * the contact acts at points, a fifth of a facet away from its ends, and by less than half of the larger
- * facet is still held. */
+/* Whether two facets that cross penetrate each other by more than a twentieth of the smaller one: the depth
+ * is the distance by which one of them must be moved to separate them. A smaller depth is within the
+ * uncertainty of the field at the nodes, as conditions and contacts act on averages. Where parts of the body
+ * are in contact, a corner of one may penetrate the chord of the other, since the contact acts at points a
+ * fifth of a facet away from its ends; contact acts up to half of the larger facet. */
 static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 {
     double width[2];

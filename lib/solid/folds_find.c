@@ -57,7 +57,8 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
     return combine(ranks_count(ranks), folds->found);
 }
 
-/* Whether something presses the cell flat: all nodes are held or stopped, not all of them held. */
+/* Whether the cell is pressed flat against an obstacle: all its nodes are held or stopped, and at least one
+ * is stopped. */
 static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
 {
     bool all = true, any = false;
@@ -98,7 +99,7 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node, doubl
     return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
 }
 
-/* Whether a cell is between facets that continued each other at rest, and do not face each other now. */
+/* Whether a cell is between facets that continue each other at rest, and do not face each other now. */
 static bool is_in_hollow(const struct folds *folds, int64_t cell)
 {
     int32_t r = folds->flat_ring[cell];
@@ -129,7 +130,7 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     return fold;
 }
 
-/* Angle that a cell takes around the ring that its first nodes are; negative where it is inverted. */
+/* Angle of a cell at the ring given by its first nodes; negative where the cell is inverted. */
 static double angle_around(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
@@ -152,8 +153,8 @@ static double angle_around(const struct folds *folds, const int32_t *node)
     return cell_size(folds, node) > 0.0 ? angle : -angle;
 }
 
-/* The angle above which what meets at a ring has passed through itself. Where parts of the body press on each
- * other by averages, facets may do so by a twentieth of their length. */
+/* The sum of angles at a ring above which facets have passed through each other there. Where the body is in
+ * contact with itself, a twentieth more is admitted, since contact acts on averages. */
 static double most_angle(const struct folds *folds, const struct fold_ring *ring)
 {
     const bool *in_contact = folds->in_contact;

@@ -1,4 +1,4 @@
-/* Notes on states that are one of several: sides that have creased, and lips round corners; see folds.h. */
+/* States that are not unique: sides that have creased, and sides wrapped round corners; see folds.h. */
 #include "solid/folds_private.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ struct fold folds_find_closed(struct folds *folds, const double *u)
     return fold;
 }
 
-/* Whether facets meet there at a corner of the body at rest that stands out. */
+/* Whether the facets that meet there form a convex corner of the body at rest. */
 static bool is_corner(const struct fold_input *input, const struct fold_ring *ring)
 {
     int dim = input->dim;

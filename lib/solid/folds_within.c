@@ -1,4 +1,4 @@
-/* A body within another one: boundaries that do not cross do not show it. */
+/* A body within another one, which is not found by crossings of boundaries. */
 #include "solid/folds_private.h"
 
 #include "approx/parts.h"

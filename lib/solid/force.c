@@ -6,7 +6,8 @@
 
 #include <math.h>
 
-/* A law of ln J knows no volume ratio below zero: where it is the cell's own, such a cell counts as inverted.
+/* A law in ln J is undefined for J <= 0. Where it uses the volume ratio of the cell itself, a cell with J <=
+ * 0 counts as inverted.
  */
 static void note_volumes(const struct body *body, struct block *block)
 {
@@ -96,8 +97,8 @@ static void for_blocks(struct body *body, int64_t first, int64_t last,
     }
 }
 
-/* All own blocks; `halo`, values of what the blocks have worked out, is exchanged while those are worked on
- * that no other process needs. NULL: no such values. */
+/* Process all own blocks. The halo of their results is exchanged while the blocks are processed that no other
+ * process needs. NULL: no halo. */
 static void for_all_blocks(struct body *body, void (*work)(struct body *body, int64_t block),
                            struct halo *halo, int width, double *values)
 {

@@ -63,8 +63,8 @@ static void solve_row(const struct lower *lower, int64_t count, const int32_t *l
     }
 }
 
-/* The rows of S that a stretch of rows of L is made of, as far as they are not there; rows->idx has their
- * numbers. */
+/* Make the rows of S that a batch of rows of L needs and that do not exist yet; rows->idx has their numbers.
+ */
 static enum status add_rows(const struct solid_system *system, int64_t first, int64_t last,
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
@@ -110,8 +110,8 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
     return STATUS_OK;
 }
 
-/* All own rows, by stretches of so many nodes, for which alone S is there. What a node without stiffness has
- * on the diagonal is known when all of S has been seen: then once more. */
+/* Make all own rows, in batches of nodes, holding S for one batch at a time. The diagonal entry of nodes
+ * without stiffness is known only when all of S has been computed; then the rows are made again. */
 static enum status make_own_rows(const struct solid_system *system, int64_t batch, struct lower *lower,
                                  struct sparse *rows, int64_t *length, struct error *error)
 {
@@ -135,7 +135,8 @@ static enum status make_own_rows(const struct solid_system *system, int64_t batc
     return STATUS_OK;
 }
 
-/* Rows one behind the other, rows->ptr[] by places in the body's order; those of all processes to all. */
+/* Store the rows consecutively, rows->ptr[] in the body's order, and give the rows of all processes to all.
+ */
 static enum status gather_rows(const struct body_share *share, int64_t *length, struct sparse *rows,
                                struct error *error)
 {

@@ -10,7 +10,7 @@
 
 static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
 
-/* Nodes that are worth the while of a thread, and of a pass over the operator. */
+/* The least number of nodes for a thread, and for a pass over the operator. */
 static const int64_t worthwhile = 1000;
 
 static enum status make_room(struct lower_piece *piece, int64_t more, struct error *error)

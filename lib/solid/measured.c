@@ -66,7 +66,8 @@ static double farthest_apart(const struct measured *measured)
     return sqrt(sum) + most_deviations * sqrt(2.0) * most;
 }
 
-/* How far apart two points are, and their displacements in what is known of both; -1 when that is nothing. */
+/* The distance of two points, and the difference of their displacements in the components that are known for
+ * both; -1 when there is none. */
 static void differences(const struct measured *measured, int64_t i, int64_t k, double *distance,
                         double *apart)
 {

@@ -29,8 +29,8 @@ static void propose(const struct body_input *input, const double *volume, int64_
     }
 }
 
-/* The end of the way from a cell over partners: one without, or the larger of two that are each other's.
- * There are no other circles, as a cell is no larger than the partner of its partner. */
+/* Follow partners from a cell to the end: a cell without partner, or the larger of two that are partners of
+ * each other. There are no other cycles, as a cell is not larger than the partner of its partner. */
 static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell)
 {
     int64_t next = partner[cell];
@@ -122,7 +122,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
     return STATUS_OK;
 }
 
-/* The means of rows over a group of cells, or what their sum puts on each, w_i / W of it. */
+/* Replace the rows of a group of cells by their mean, or by the shares w_i / W of their sum. */
 static void average_rows(const struct body *body, const struct block *block, int64_t begin, int64_t end,
                          bool sum, block_rows rows)
 {

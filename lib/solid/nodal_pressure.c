@@ -18,7 +18,8 @@ enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
 /* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
  * most this part; and x at most that. */
 static const double effect = 2e-5, most_inaccurate = 0.02;
-/* With augmentations what is missing of A^-1 counts by limited by whole bulk modulus; at most this. */
+/* With augmentations an error of A^-1 is reduced by the ratio of the limited to the whole bulk modulus; the
+ * admitted error is at most this. */
 static const double augmented_accuracy = 0.01;
 
 /* Changes of the pressures from augmentation to augmentation are of one rate where the angle between two has
@@ -74,7 +75,8 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
     }
 }
 
-/* Lay out the slices: each as wide as its longest row; what is beyond a row's end is 0 times itself. */
+/* Lay out the slices, each as wide as its longest row. A row is padded with zeros in the column of its
+ * diagonal entry. */
 static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
                            struct error *error)
 {
@@ -148,7 +150,7 @@ static void set_values(struct body *body, struct nodal_pressures *pressures)
     for (int64_t a = 0; a < body->volumes.count; a++) {
         double bound = 0.0;
         int64_t first = pressures->ptr[a / ROWS] * ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
-        /* From the end, as what is beyond a row's end has the column of its own. */
+        /* From the end, as the padding of a row has the column of its diagonal entry. */
         for (int64_t at = end - ROWS + a % ROWS; at >= first; at -= ROWS) {
             pressures->entry[pressures->idx[at]] = at;
         }

@@ -29,8 +29,8 @@ static enum status number_volumes(struct nodal_volumes *volumes, struct placed *
     return STATUS_OK;
 }
 
-/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges leave theirs to the
- * other nodes of the cell, if there are any; returns whether they do. */
+/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges leave their shares
+ * to the other nodes of the cell, if there are any; returns whether they do. */
 static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
 {
     int vertices = body->dim + 1;

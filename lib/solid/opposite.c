@@ -32,7 +32,8 @@ enum status opposite_parts(const struct cells *cells, int32_t *part, struct erro
     return STATUS_OK;
 }
 
-/* 3D: what is beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are none. */
+/* 3D: the facet beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are no
+ * rims. */
 static enum status join_edges(struct opposite *opposite, struct error *error)
 {
     struct rigid_surface *surface = &opposite->surface;
@@ -266,8 +267,8 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
            point_behind * point_behind > least2;
 }
 
-/* Facets that face the point; of the others, how far things may move until they can: to turn by an angle a
- * facet moves by more than the cosine changes, times the lever. */
+/* Admit facets that face the point. For the others, bound the motion before they can: to change the cosine of
+ * its angle by c, a facet must move by more than c times the lever. */
 static bool considers(void *context, int64_t f)
 {
     struct search *search = context;
@@ -343,8 +344,8 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
 
 bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f)
 {
-    /* By the side that a facet faces at rest, along a direction in which few do alike, so that lips lead
-     * whole; else by number. */
+    /* Decided by the component of the normals at rest along a fixed, generic direction, so that all facets of
+     * a lip have the same role; by the facets' numbers where these are equal. */
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = opposite->surface.dim;
     double own = vector_dot(dim, direction, rest_normal),

@@ -1,4 +1,4 @@
-/* The diagonal mass, and what of it and of the conditions the coarse fields feel. */
+/* The diagonal mass, and the matrices of the mass and of the conditions on the coarse fields. */
 #include "solid/preconditioner_private.h"
 
 #include "base/memory.h"

@@ -150,8 +150,8 @@ static double box_distance2(int dim, const struct rigid_branch *branch, const do
     return sum;
 }
 
-/* The nearest facet point within reach: branches in depth, the nearer of two first, but those whose boxes are
- * further away than what is found. */
+/* The nearest point of a facet within reach. The tree is searched depth first, the nearer of two branches
+ * first; branches whose boxes are further away than the point found are skipped. */
 static struct nearest find_nearest(const struct rigid_surface *surface, const double *x, double reach,
                                    const struct rigid_filter *filter)
 {
@@ -194,8 +194,8 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
     return vector_dot(dim, joint, joint) > 0.5 ? joint : normal;
 }
 
-/* Where x lies beside the rim that the nearest point is on: how far beyond it, and the least way to where the
- * surface begins or to its level. */
+/* For a nearest point on a rim: how far x is beyond the rim, and its least distance from being over the
+ * surface or level with it. */
 static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
                          const double *away, double *least_way)
 {

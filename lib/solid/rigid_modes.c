@@ -157,7 +157,7 @@ static void add_rows(const struct solid_system *system, const struct constraint_
     }
 }
 
-/* A node that does not mode, at X, adds what it sees of a body. */
+/* Add the rows of a fixed node at X to the Gram matrix. */
 static void add_fixed_node(int dim, const double *X, struct mode_gram *gram)
 {
     int modes = mode_count(dim);

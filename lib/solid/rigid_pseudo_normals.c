@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The facets meet, but walk along the place where they do in the same direction. */
+/* The error of two facets that meet and traverse their common edge (2D: node) in the same direction. */
 static enum status fail_sides(int64_t one, int64_t other, struct error *error)
 {
     return fail(error, STATUS_INPUT,
@@ -14,7 +14,7 @@ static enum status fail_sides(int64_t one, int64_t other, struct error *error)
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* A facet that stands twice weighs twice, and hides rims. */
+/* The error of a facet that stands twice: it would have twice the weight in normals, and hide rims. */
 static enum status fail_twice(int64_t one, int64_t other, struct error *error)
 {
     return fail(error, STATUS_INPUT, "rigid surface: facets %lld and %lld are the same: remove one",

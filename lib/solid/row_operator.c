@@ -28,7 +28,7 @@ static enum status cut_columns(struct row_operator *rows, const int32_t *count, 
     return STATUS_OK;
 }
 
-/* List row r, with columns from `low` to `high`, in a stripe that has some of these; without arrays only
+/* Add row r, with columns from `low` to `high`, to a stripe that contains some of them; without arrays only
  * count. */
 static void list_row(const struct sparse *table, int64_t r, int32_t low, int32_t high,
                      struct row_stripe *stripe)

@@ -43,7 +43,7 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
 }
 
 /* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are the body's entries.
- * Of several processes the body lacks rows that its cells do not look at, but their tables are here. */
+ * With several processes the body lacks rows that its cells do not use; they are taken from the tables. */
 static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
 {
     const struct body *body = &stiffness->system->body;
@@ -261,7 +261,7 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
     }
 }
 
-/* The cells whose corners look at field f. */
+/* Add the cells whose corners use field f. */
 static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
                       int64_t *touched)
 {

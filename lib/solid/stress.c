@@ -35,7 +35,7 @@ static void point_stress(const struct body *body, int64_t q, const double F[9], 
     }
 }
 
-/* The part in the body's dimensions, times the weight, to place i of a block. */
+/* Store the first dim rows and columns, times the weight, at place i of a block. */
 static void put(const struct body *body, int64_t q, int64_t i, const double stress[9], block_rows P)
 {
     int dim = body->dim;

@@ -94,7 +94,7 @@ static enum status fail_at_row(const struct solid_system *system, int64_t r, dou
         conditions != NULL ? conditions[rows->section[r]].name : "?", rows->node[r], place, with, missed);
 }
 
-/* Whether the constraints that were dropped hold with the others for all loads. */
+/* Check whether the dropped constraints are consistent with the others for all loads. */
 static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
                                  struct error *error)
 {
@@ -175,8 +175,8 @@ static double pressure_at(const struct solid_system *system, const struct pressu
     return presses ? depth : 0.0;
 }
 
-/* Forces of a following pressure: those on a deformed facet are shared by its quadrature points as its area
- * at rest is. */
+/* Forces of a following pressure: the force on a deformed facet is divided among its quadrature points like
+ * its area at rest. */
 static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
                          const double *u, double *residual)
 {
@@ -284,7 +284,7 @@ bool system_has_inverse(const struct solid_system *system)
     return system->dim == 3 && system->body.smoothed && system->node_lists != NULL;
 }
 
-/* What a constraint penalty that holds an average adds to the stiffness of its nodes. */
+/* The stiffness that a constraint penalty on an average adds to its nodes. */
 static void add_to_bound(const struct average *average, double stiffness, double *mass)
 {
     for (int64_t i = 0; i < average->length; i++) {
@@ -315,7 +315,7 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];
     }
-    /* A node that no point feels must still have some mass; it never moves. */
+    /* A node without stiffness needs some mass; no force acts on it. */
     double least = 1e-6 * sum / (double)system->node_count;
     for (int64_t n = 0; n < system->node_count; n++) {
         mass[n] = fmax(mass[n], least);
