@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An edge of a cell that is cut, and what sets the place of its cut among the others: it comes after edges of
- * larger order[0], then of lower order[1], then before those of higher number. */
+/* A cut edge of a cell, and its rank among the cuts of the cell: edges of larger order[0] are cut first;
+ * among equal ones those of lower order[1], then those of lower number. */
 struct bisection {
     int32_t end[2], node;
     double order[2];
@@ -17,8 +17,8 @@ static bool on_interface(const struct cutting *cutting, int32_t node)
     return node >= cutting->lattice->node_count || cutting->lattice->on[node];
 }
 
-/* The label of a piece: that of its points off the interfaces, or where there are none the one at its middle,
- * but of points that are all left out, too, so that gaps stay open. */
+/* The label of a piece: that of its points off the interfaces, or the one at its middle where there are none;
+ * where points off the interfaces are all left out, the piece is left out, too, so that gaps stay open. */
 static int32_t label_of(const struct cutting *cutting, const int32_t *node)
 {
     const struct lattice *lattice = cutting->lattice;

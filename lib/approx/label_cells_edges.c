@@ -17,7 +17,7 @@ static int compare_keys(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* Edges of cells between points of different labels, counted or, where there is room, stored. */
+/* Count the edges of cells between points of different labels; store them, too, if the arrays exist. */
 static int64_t collect(const struct lattice *lattice, uint64_t *key)
 {
     int corners = lattice->dim + 1;
@@ -79,7 +79,7 @@ bool same_side(const struct lattice *lattice, int32_t a, int32_t b)
     return a == b || (!lattice->keep[a] && !lattice->keep[b]);
 }
 
-/* What changes its sign on the way from a label to another: the share of the one less that of the other.
+/* The function whose zero is the interface between two labels: the share of the one less that of the other.
  * Between the body and what is left out it is that of the body's label with the largest share less that of
  * the others', so that a layer of a third label at the surface, too thin for the lattice, does not move the
  * surface. */

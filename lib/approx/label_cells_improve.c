@@ -13,8 +13,8 @@ static const double goal = 1.3;
 /* Cells that score less are improved. In the end nodes that are more than so many voxels off their interface
  * are brought nearer to it, down to that score. */
 static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
-/* Nodes that are cut apart move so much of the way to the middle of their own cells, by at most so many
- * voxels. */
+/* Nodes that were separated move towards the middle of their own cells, by this share of the distance and at
+ * most so many voxels. */
 static const double separation = 0.25, most_separation = 0.5;
 enum { FIT_SWEEPS = 4 };
 

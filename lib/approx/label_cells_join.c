@@ -1,4 +1,4 @@
-/* Where parts of the body hang together by a node or an edge alone. */
+/* Places where parts of the body share no more than a node or an edge. */
 #include "approx/label_cells_private.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -11,7 +11,7 @@
  * lattice's own cells. Under load the walls of sharper ones pass through each other. */
 static const double sharpest = 0.5;
 
-/* Give the cells at a node that hang together by faces there one number; returns how many groups there are.
+/* Number the groups of cells at a node that are connected by faces at it; returns the number of groups.
  */
 static int32_t find_groups(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                            int64_t node)
@@ -67,7 +67,7 @@ struct change {
     int32_t label[CHANGE_MOST];
 };
 
-/* Groups at all nodes of the cells, each once, beyond the first of each. */
+/* The number of groups at the nodes of the cells, each node once, less one for each node. */
 static int64_t pinches_about(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                              const struct change *change)
 {
@@ -95,7 +95,7 @@ static void turn(struct label_cells_keeping *keeping, const struct change *chang
     }
 }
 
-/* Carry out a change where fewer parts hang together by nodes alone then. */
+/* Make a change if it leaves fewer parts that are connected by single nodes only. */
 static bool try_change(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                        const struct change *change)
 {
@@ -219,7 +219,7 @@ static bool is_crevice(const struct label_cells_keeping *keeping, int64_t cell, 
     return walls > dim - 1;
 }
 
-/* Fill the tips of crevices, as long as no more parts hang together by nodes alone then. */
+/* Fill the tips of crevices where this leaves no more parts that are connected by single nodes only. */
 static bool fill_crevices(struct label_cells_keeping *keeping, const struct label_cells_star *star)
 {
     bool changed = false;
@@ -239,7 +239,7 @@ static bool fill_crevices(struct label_cells_keeping *keeping, const struct labe
     return changed;
 }
 
-/* Join the parts at a node, or leave out one that is no more than a tip. */
+/* Join the parts at a node, or leave out a part that is only a tip. */
 static bool join_at(struct label_cells_keeping *keeping, const struct label_cells_star *star, int64_t node)
 {
     struct change change;

@@ -52,7 +52,7 @@ void star_free(struct label_cells_star *star)
 
 /* ---- the boundary ---- */
 
-/* The boundary of the wanted cells, counted or, where there is room, stored. */
+/* Count the boundary facets of the wanted cells; store them, too, if the arrays exist. */
 static int64_t find_facets(const struct label_cells_keeping *keeping, int32_t *facet, int32_t *side)
 {
     int dim = keeping->cells.dim;

@@ -24,7 +24,7 @@ static struct grid grid_of(const struct labels *labels)
     return grid;
 }
 
-/* 1 where the map from the world to the grid keeps orientation, -1 where it mirrors. */
+/* 1 where the map from the world to the grid preserves orientation, else -1. */
 static int sign_of(const struct labels *labels, const struct grid *grid)
 {
     double edge[3][3] = {{0}}, origin[3] = {0}, voxel[2][3];

@@ -37,8 +37,8 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
     return status;
 }
 
-/* The wishes of the cubes of a level become those of their parents, in place: a parent's index is never
- * larger than that of a child. */
+/* Replace the wishes of the cubes of a level by those of their parents, in place: the index of a parent is
+ * not larger than that of its children. */
 static void hand_up(const int64_t fine[3], const int64_t coarse[3], uint8_t *wish)
 {
     for (int64_t i = 0; i < cubes(fine); i++) {

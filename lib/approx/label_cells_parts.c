@@ -1,5 +1,5 @@
-/* Parts of a label, which are there for the names of facets: their rims are lines on the boundary, and within
- * the body there is nothing of them. */
+/* Parts of a label, which only give names to facets: their rims are lines on the boundary, and within the
+ * body they have no interface. */
 #include "approx/label_cells_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -71,7 +71,7 @@ static int64_t find_lone(const struct label_cells_options *options, const struct
     return lone;
 }
 
-/* With each change two edges of the rim give way to one, so there is an end. */
+/* Each change replaces two edges of the rim by one, so the loop terminates. */
 static void straighten(const struct label_cells_options *options, const struct shaping *shaping,
                        const struct facets_at *at)
 {

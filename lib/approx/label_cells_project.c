@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a share is less, its interface is searched for: it is too flat there for Newton's method. */
+/* Below this share the interface is searched for: the share is too flat there for Newton's method. */
 static const double least_share = 0.1;
 
 /* The step of least length that makes the linearised differences zero; false where they do not change. */
@@ -104,7 +104,7 @@ static double search_beyond(const struct labels *labels, const double x[],
     return INFINITY;
 }
 
-/* Move x to the nearest place, of those that search_beyond looks at, where what lies beyond begins. */
+/* Move x to the nearest place, among those of search_beyond, where the label beyond begins. */
 static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double reach,
                           double x[])
 {

@@ -58,7 +58,7 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
     }
 }
 
-/* One over the area of the interfaces at a node: steps are equal where pressures are. */
+/* The inverse of the area of the interfaces at a node: with it equal pressures give equal steps. */
 static double node_weight(int dim, double G[LABEL_CELLS_MOST_LABELS][3])
 {
     double most = 0;

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows with a pivot below this share of their diagonal entry are put last, where they are told apart from
- * dependent ones: a small pivot among the first would spoil all that follow. */
+/* Rows with a pivot below this share of their diagonal entry are put last, where they are distinguished from
+ * dependent ones: a small pivot among the first would make all following rows inaccurate. */
 static const double weak_pivot = 1e-3;
 
 /* Rows with more than this times the mean number of entries are put last, too: elsewhere they would widen the
@@ -62,7 +62,7 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
     return STATUS_OK;
 }
 
-/* Where blocks begin: from the end, at a row before which none behind it reaches. */
+/* Find where diagonal blocks begin, from the end: at a row such that no later row has an entry before it. */
 static void find_blocks(struct envelope *factor)
 {
     int64_t n = factor->n, least = n, *block = factor->block, blocks = 0;
@@ -151,7 +151,7 @@ static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
     }
 }
 
-/* Entry (i, j), j <= i, of what is left of the matrix behind the first `columns` columns. */
+/* Entry (i, j), j <= i, of the Schur complement after the first `columns` columns. */
 static double reduced(const struct envelope *factor, int64_t i, int64_t j, int64_t columns)
 {
     const double *row = row_at(factor, i), *other = row_at(factor, j);
@@ -231,8 +231,8 @@ static int64_t order_by_pivot(int64_t count, double *matrix, const double *diago
     return count;
 }
 
-/* Put the rows that pass 1 has left out behind the others, those first that depend least; *kept receives how
- * many of the n rows are independent. */
+/* Put the rows that pass 1 has left out behind the others, the most independent first; *kept receives the
+ * number of independent rows. */
 static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                               double least, struct envelope *factor, int64_t *kept, struct error *error)
 {

@@ -15,7 +15,7 @@ static void free_lists(struct row_lists *lists)
     FREE_ALL(lists->first, lists->row);
 }
 
-/* Of the rows read here those that have a column of each process. */
+/* For each process, list the rows read here that have an entry in its columns. */
 static enum status list_rows(const struct read_rows *rows, int (*owner)(const void *, int64_t),
                              const void *context, struct row_lists *lists, struct error *error)
 {
@@ -97,7 +97,7 @@ static enum status lay_out(const struct read_rows *rows, const bool *wanted, str
     return STATUS_OK;
 }
 
-/* Entries of so many bytes: own rows from `from`, and those of others, to their rows of `to`. */
+/* Copy entries of `size` bytes to their rows of `to`: own rows from `from`, and those of other processes. */
 static enum status send_entries(const struct read_rows *rows, const bool *wanted, const struct halo *halo,
                                 const struct sparse *fetched, size_t size, const char *from, char *to,
                                 struct error *error)

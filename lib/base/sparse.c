@@ -76,7 +76,7 @@ enum status sparse_rows_used(const struct sparse *matrix, bool **used, struct er
     return status;
 }
 
-/* The first of the rows of thread t: each has about the same number of entries. */
+/* The first row of thread t; each thread has about the same number of entries. */
 static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last, int t, int threads)
 {
     if (t == 0 || t == threads) {

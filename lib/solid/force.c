@@ -246,7 +246,7 @@ double body_volume(const struct body *body)
 static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double sum = material_shape_energy(material, F);
+    double sum = material_isochoric_energy(material, F);
     if (body->smoothed) {
         sum += stress_smoothing_energy(body, q, F);
     }

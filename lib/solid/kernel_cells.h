@@ -179,7 +179,7 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
     }
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_shape(F) + p J + k |F_h - F|^2 / 2), p held: see smoothed_cells.h. */
+/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + p J + k |F_h - F|^2 / 2), p held: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
@@ -187,7 +187,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, stiffness;
-        struct lanes_shape shape;
+        struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
         load_matrix(body->cells.interpolant + q, body->point_count, dim, H);
@@ -198,10 +198,10 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         stiffness = SMOOTHING_STIFFNESS(dim) * shear;
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
-        neo_hookean_shape(F, &J, &shear, dim, &shape);
+        neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
         for (int k = 0; k < dim * dim; k++) {
             D[k] = H[k] - F[k];
-            F[k] = shape.along_gradient * F[k] + shape.along_cofactor * C[k] - stiffness * D[k];
+            F[k] = isochoric.along_gradient * F[k] + isochoric.along_cofactor * C[k] - stiffness * D[k];
         }
         lanes_cofactor(H, dim, C);
         for (int k = 0; k < dim * dim; k++) {

@@ -126,14 +126,14 @@ KERNEL_INLINE void kernel_pressures(const struct body *body, const struct block 
     }
 }
 
-/* The neo-Hookean energy of shape, and its stress a F + b C, C the cofactor of F; weighted. */
-struct lanes_shape {
+/* The neo-Hookean isochoric energy, and its stress a F + b C, C the cofactor of F; weighted. */
+struct lanes_isochoric {
     lanes energy, along_gradient, along_cofactor;
 };
 
 /* W = mu/2 (J^(-2/3) I1 - 3), P = mu J^(-2/3) (F - I1/3 F^-T); shear: mu, weighted. */
-KERNEL_INLINE void neo_hookean_shape(const lanes F[9], const lanes *J, const lanes *shear, int dim,
-                                     struct lanes_shape *shape)
+KERNEL_INLINE void neo_hookean_isochoric(const lanes F[9], const lanes *J, const lanes *shear, int dim,
+                                         struct lanes_isochoric *isochoric)
 {
     lanes root, I1 = F[0] * F[0] + (dim == 2 ? 1.0 : 0.0);
     for (int k = 1; k < dim * dim; k++) {
@@ -141,9 +141,9 @@ KERNEL_INLINE void neo_hookean_shape(const lanes F[9], const lanes *J, const lan
     }
     inverse_cube_root(J, &root);
     lanes scale = *shear * root * root;
-    shape->energy = 0.5 * (scale * I1 - 3.0 * *shear);
-    shape->along_gradient = scale;
-    shape->along_cofactor = scale * I1 * (-1.0 / 3.0) * (root * root * root);
+    isochoric->energy = 0.5 * (scale * I1 - 3.0 * *shear);
+    isochoric->along_gradient = scale;
+    isochoric->along_cofactor = scale * I1 * (-1.0 / 3.0) * (root * root * root);
 }
 
 /* P = mu J^(-2/3) (F - I1/3 F^-T) + p J F^-T, times the weight. */
@@ -154,7 +154,7 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes F[9], C[9], J, weight, shear, bulk, pressure;
-        struct lanes_shape shape;
+        struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
         lanes_cofactor(F, dim, C);
@@ -163,10 +163,10 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
         load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);
         shear *= weight;
-        neo_hookean_shape(F, &J, &shear, dim, &shape);
-        pressure += shape.along_cofactor;
+        neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
+        pressure += isochoric.along_cofactor;
         for (int k = 0; k < dim * dim; k++) {
-            lanes stress = shape.along_gradient * F[k] + pressure * C[k];
+            lanes stress = isochoric.along_gradient * F[k] + pressure * C[k];
             STORE(P[k] + i, stress);
         }
     }

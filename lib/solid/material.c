@@ -148,7 +148,7 @@ static void st_venant_kirchhoff_stress(const struct material *material, const do
     }
 }
 
-void material_shape_stress(const struct material *material, const double F[9], double P[9])
+void material_isochoric_stress(const struct material *material, const double F[9], double P[9])
 {
     switch (material->model) {
     case MATERIAL_NEO_HOOKEAN_LOG:
@@ -170,7 +170,7 @@ void material_shape_stress(const struct material *material, const double F[9], d
     neo_hookean_stress(material->shear_modulus, F, P);
 }
 
-double material_shape_energy(const struct material *material, const double F[9])
+double material_isochoric_energy(const struct material *material, const double F[9])
 {
     double mu = material->shear_modulus, J = determinant(F), I1 = norm2(F);
     double c10, c01, C[9], power[3], lambda2[3], V[9], trace;

@@ -1,7 +1,8 @@
 /* Hyperelastic materials: energy per reference volume, first Piola stress, and their volumetric part.
  *
- * Equation (11) of lib/README.md: W(F) = W_shape(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and
- * lambda for kappa. Only U is averaged over nodal volumes; St. Venant-Kirchhoff has no such split (U = 0). F
+ * Equation (11) of lib/README.md: W(F) = W_iso(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and
+ * lambda for kappa. Only U is averaged over nodal volumes. W_iso is isochoric for the models with J^(-2/3)
+ * below; for the logarithmic one it is the rest of W, and St. Venant-Kirchhoff has no such split (U = 0). F
  * is 3 x 3 row-major; plane strain has F33 = 1. Units Pa.
  *
  *   neo-Hookean            mu/2 (I1' - 3) + kappa/2 (J - 1)^2
@@ -42,11 +43,11 @@ double material_wave_modulus(const struct material *material);
 /* U''(1), Pa: 0 for laws without U. */
 double material_bulk(const struct material *material);
 
-/* W_shape(F). NaN when det F <= 0. */
-double material_shape_energy(const struct material *material, const double F[9]);
+/* W_iso(F). NaN when det F <= 0. */
+double material_isochoric_energy(const struct material *material, const double F[9]);
 
-/* P = dW_shape/dF. */
-void material_shape_stress(const struct material *material, const double F[9], double P[9]);
+/* P = dW_iso/dF. */
+void material_isochoric_stress(const struct material *material, const double F[9], double P[9]);
 
 /* y(J) and dy/dJ. */
 double material_volume_strain(const struct material *material, double J);

@@ -23,11 +23,11 @@ void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
     }
 }
 
-/* P at a point: of its shape, and along the cofactor of F. */
+/* P at a point: the isochoric part, and the volumetric part along the cofactor of F. */
 static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
 {
     double C[9];
-    material_shape_stress(&body->materials[body->material[q]], F, P);
+    material_isochoric_stress(&body->materials[body->material[q]], F, P);
     cofactor(F, C);
     double pressure = point_pressure(body, q, J);
     for (int k = 0; k < 9; k++) {
@@ -87,7 +87,7 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
     vector_subtract(9, H, F, D);
     double stiffness = SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     double pressure = point_pressure(body, q, body->J[q]);
-    material_shape_stress(material, F, P);
+    material_isochoric_stress(material, F, P);
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {

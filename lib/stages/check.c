@@ -159,7 +159,7 @@ static enum status check_groups(const struct stream *stream, const struct cells 
     return STATUS_OK;
 }
 
-/* Faces, and what has a row for each of the rows or points that they ask for. */
+/* Check the faces, and the sections with a row for each of their rows or points. */
 static enum status check_faces(const struct stream *stream, const struct cells *cells, struct error *error)
 {
     struct faces faces;

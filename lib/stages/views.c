@@ -119,7 +119,8 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
     return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
 }
 
-/* Own rows of faces stand first, which those on the boundary have; then those of edges, as they come. */
+/* Check the rows of faces: rows of single faces come first, and boundary faces have such rows; then the rows
+ * of edges, in the order of their first use. */
 static enum status view_rows(const struct stream *stream, struct faces *faces, struct error *error)
 {
     const struct section *row;
@@ -190,7 +191,7 @@ bool points_are_smoothed(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
-/* The sections PREFIX.around and .image of lists with so many pairs, where there are any. */
+/* The sections PREFIX.around and .image of lists with `pairs` entries, where they exist. */
 static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
                                struct around *around, struct error *error)
 {

@@ -27,13 +27,13 @@ static void make_all(struct material all[MATERIALS])
 
 static double energy(const struct material *material, const double F[9])
 {
-    return material_shape_energy(material, F) + material_volume_energy(material, determinant(F));
+    return material_isochoric_energy(material, F) + material_volume_energy(material, determinant(F));
 }
 
 static void stress(const struct material *material, const double F[9], double P[9])
 {
     double C[9];
-    material_shape_stress(material, F, P);
+    material_isochoric_stress(material, F, P);
     cofactor(F, C);
     add_scaled(9, material_pressure(material, determinant(F)), C, P);
 }
@@ -321,7 +321,7 @@ TEST(principal_stretches)
         }
         multiply(Q, D, QD);
         multiply(QD, R, expected);
-        material_shape_stress(&material, F, P);
+        material_isochoric_stress(&material, F, P);
         ALL_NEAR(9, P, expected, 1e-9 * (largest + mu));
     }
 }
@@ -364,8 +364,8 @@ TEST(inverted)
     struct material all[MATERIALS];
     make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
-        assert_true(isnan(material_shape_energy(&all[m], (double[]){-0.1, 0, 0, 0, 1, 0, 0, 0, 1})));
-        assert_true(isnan(material_shape_energy(&all[m], (double[]){0, 0, 0, 0, 1, 0, 0, 0, 1})));
+        assert_true(isnan(material_isochoric_energy(&all[m], (double[]){-0.1, 0, 0, 0, 1, 0, 0, 0, 1})));
+        assert_true(isnan(material_isochoric_energy(&all[m], (double[]){0, 0, 0, 0, 1, 0, 0, 0, 1})));
     }
 }
 

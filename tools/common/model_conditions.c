@@ -124,7 +124,7 @@ static enum status add_loads(struct model *model, struct error *error)
     } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
                  {scene->forces, scene->force_count, LOAD_FORCE},
                  {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
-    /* In time gravity is there from the begin; a state of rest is approached gently. */
+    /* In dynamics gravity acts from the begin; in a quasi-static scene it grows smoothly. */
     const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     struct load *loads;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,

@@ -42,7 +42,7 @@ static void find_worst(const struct assembly *input, const int32_t *region, stru
     }
 }
 
-/* What to say to support: the regions by falling modulus, without the last. */
+/* The argument of support -i: the regions by decreasing modulus, without the last. */
 static void remedy(const struct names *names, const double *modulus, char text[256])
 {
     int64_t count = names->count;

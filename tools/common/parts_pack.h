@@ -1,4 +1,4 @@
-/* What is small of the parts that processes have read, given to all. */
+/* Exchange of the small sections of the parts, so that all processes have them. */
 #pragma once
 
 #include "rejoin.h"

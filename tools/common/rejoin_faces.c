@@ -28,7 +28,7 @@ static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *
               part->file, (long long)local);
 }
 
-/* A row that faces share belongs to the part that owns the first of them, and its points with it. */
+/* A shared row, with its points, belongs to the part that owns the first of its faces. */
 static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
 {
     int rows = FACE_ROWS(rejoin->dim), per_face = OWN_POINTS(rejoin->dim);

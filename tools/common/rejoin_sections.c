@@ -139,8 +139,8 @@ static void put_rows(const struct rejoin *rejoin, struct stream *stream, const c
 
 /* ---- lists ---- */
 
-/* The lists of part k, none where these are large and elsewhere. A list that reaches where the part ends is
- * not that of the whole body. */
+/* The lists of part k, none where these are large and elsewhere. A list with a node at the edge of the part
+ * may differ from that of the whole body. */
 static enum status view_part(const struct rejoin *rejoin, int64_t k, struct joined_lists *lists,
                              struct error *error)
 {

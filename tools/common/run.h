@@ -45,42 +45,43 @@ void run_clear_progress(const struct display *display);
 _Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Where the parts of a body have passed through each other (run->again), and nothing in the scene lets them
- * touch, the scene gets a contact of the whole boundary with itself, as `facets = *, against = *`, what the
- * run has made is removed, and true returned: it is to be computed once more. */
+/* Where the parts of a body have passed through each other (run->again), and the scene has no contact between
+ * them, add to the scene a contact of the whole boundary with itself, as `facets = *, against = *`, remove
+ * the results, and return true: the scene is to be computed again. */
 bool run_again(struct run *run);
 
-/* Give the scene that contact. */
+/* Add that contact to the scene. */
 void run_touch_itself(struct run *run);
 
 /* The sections that only the computation needs leave the stream; the rest passes through. */
 void run_drop_tables(struct stream *stream);
 
-/* Exits with a verdict where a body is free to move as a whole, and no contact acts on it; with -v, tells
- * what only contacts hold. */
+/* Exits with a verdict where a body has a free rigid-body mode and no contact acts on it; with -v, reports
+ * the modes that only contacts prevent. */
 void run_check_rigid_modes(struct run *run);
 
 /* Quasi-static: relax to the full load. Exits with a verdict when it does not converge. */
 void run_quasi_static(struct run *run);
 
-/* Exits where a rigid surface is out of the reach of the body; notes displacements far beyond its size. */
+/* Exits where a rigid surface is too far from the body to come into contact; notes displacements far larger
+ * than the body. */
 void run_contacts_begin(const struct run *run);
 
-/* Of the final state: tells that contacts give way by `miss`, more than `allowed`, m; in a quasi-static scene
- * exits with a verdict where that is more than a tenth of the motion. */
+/* For the final state: notes a penetration of contacts of `miss`, if it is more than `allowed`, m; in a
+ * quasi-static scene exits with a verdict where it is more than a tenth of the motion. */
 void run_contacts_give_way(struct run *run, double miss, double allowed, double motion);
 
-/* Of the final state of a quasi-static scene, which was evaluated last: notes what of the forces is missing
- * because contacts still give way. */
+/* For the final state of a quasi-static scene, which was evaluated last: notes the part of the forces that is
+ * missing because of the remaining penetration. */
 void run_contacts_missing(struct run *run);
 
-/* Of the final state: exits with a verdict where a rigid surface is in the body by more than `slack`, m, and
- * `share` of a facet's width, and no node presses; and notes contacts that press on less than three nodes
- * across, and those that never pressed. */
+/* For the final state: exits with a verdict where a rigid surface has penetrated the body by more than
+ * `slack`, m, and `share` of a facet's width, and no contact node is active. Notes contacts whose active set
+ * is less than three nodes across, and contacts that were never active. */
 void run_contacts_judge(struct run *run, double slack, double share);
 
-/* Notes displacements that are prescribed whole on patches of less than three facets across (2D: two), where
- * the scene asks for forces: these are then too large. */
+/* Notes displacements all of whose components are prescribed on patches of less than three facets across (2D:
+ * two), if the scene requests forces: these are too large. */
 void run_displacements_judge(const struct run *run);
 
 /* Dynamic: step to the end time. Exits with a verdict when it cannot; adds the section energy on request. */

@@ -1,4 +1,4 @@
-/* What a run puts away while it lasts, and takes up again: checkpoints, on an interval and when interrupted.
+/* Checkpoints of a run: written at intervals and when it is interrupted, and restored by the same command.
  */
 #pragma once
 

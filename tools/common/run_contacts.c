@@ -1,5 +1,5 @@
-/* What a run tells of its contacts: those that the body's facets are too large for, and what gives way; and
- * of prescribed displacements, where facets are too large for these. */
+/* Notes and verdicts on contacts: penetration, and contacts and prescribed displacements for which the body's
+ * facets are too large. */
 #include "run.h"
 
 #include "approx/field_compare.h"
@@ -121,13 +121,13 @@ void run_contacts_begin(const struct run *run)
     }
 }
 
-/* Whether the scene asks for what such patches are wrong about. */
+/* Whether the scene requests results that are inaccurate on such patches. */
 static bool wants_forces(const struct scene_output *output)
 {
     return output->reactions || output->moments || output->gaps;
 }
 
-/* A result of which contacts give way by more than this share of the motion is none. */
+/* A result whose penetration is more than this share of the motion is refused. */
 static const double most_share = 0.1;
 
 /* The displacement that moves a facet of a contact, or NULL. */
@@ -185,9 +185,9 @@ void run_contacts_give_way(struct run *run, double miss, double allowed, double 
               remedy);
 }
 
-/* To first order the energy of the contacts is the work of their forces along what they give way by. The
- * stored energy is that much less, and it goes with the square of the way that the body is pressed: of the
- * forces, which go with the way, half that part is missing. */
+/* To first order the energy of the contacts is the work of their forces along the penetration. The stored
+ * energy is less by this amount. It is proportional to the square of the prescribed motion, the forces to the
+ * motion itself; so half of that relative amount is missing in the forces. */
 void run_contacts_missing(struct run *run)
 {
     struct solid_system *system = &run->model->system;
@@ -195,7 +195,7 @@ void run_contacts_missing(struct run *run)
     system_measure_contacts(system, run->u, false);
     double stored = energy_internal(system, run->u);
     double missing = stored > 0.0 ? energy_contact(system) / (2.0 * stored) : 0.0;
-    /* More than half is no part of what is stored, but of what round-off leaves of a body at rest. */
+    /* A share of more than half is round-off of a body at rest. */
     if (missing > most_missing && missing < 0.5 &&
         (wants_forces(output) || output->stress || output->pressure)) {
         tool_note(

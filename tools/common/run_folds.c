@@ -104,11 +104,11 @@ void run_folds_forget(struct run *run)
     memset(run->folds.past, 0, sizeof run->folds.past);
 }
 
-/* A surface that is no further away than this share of a facet's size stands against it. */
+/* A surface counts as in contact if it is no further away than this share of a facet's size. */
 static const double near_share = 0.25;
 
-/* Nodes that a rigid surface stands against, those where parts of the body do, and of these the ones where
- * such parts did not face each other at rest. */
+/* Mark nodes in contact with a rigid surface, nodes in contact with another part of the body, and of the
+ * latter those that did not face it at rest. */
 static void mark_stopped(const struct run *run, bool *stopped, bool *touched, bool *turned)
 {
     const struct solid_system *system = &run->model->system;
