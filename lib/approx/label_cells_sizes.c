@@ -18,16 +18,16 @@ int size_level(double spacing, double size)
 static double size_at(const struct cells *cells, const double *size, int64_t cell, const double at[3])
 {
     const int32_t *node = cells->node + 4 * cell;
-    double edge[3][3], way[3];
+    double edge[3][3], offset[3];
     const double *first = cells->x + 3 * (int64_t)node[0];
-    vector_subtract(3, at, first, way);
+    vector_subtract(3, at, first, offset);
     for (int k = 0; k < 3; k++) {
         vector_subtract(3, cells->x + 3 * (int64_t)node[k + 1], first, edge[k]);
     }
     double whole = determinant3(edge[0], edge[1], edge[2]), value = size[node[0]];
-    const double share[3] = {determinant3(way, edge[1], edge[2]) / whole,
-                             determinant3(edge[0], way, edge[2]) / whole,
-                             determinant3(edge[0], edge[1], way) / whole};
+    const double share[3] = {determinant3(offset, edge[1], edge[2]) / whole,
+                             determinant3(edge[0], offset, edge[2]) / whole,
+                             determinant3(edge[0], edge[1], offset) / whole};
     double least = value, most = value;
     for (int k = 0; k < 3; k++) {
         value += share[k] * (size[node[k + 1]] - size[node[0]]);

@@ -167,8 +167,8 @@ static void move_outward(const struct cells *cells, const double *normal, const 
             length = hypot(length, normal[n * dim + a]);
         }
         for (int a = 0; a < dim; a++) {
-            double way = length > 0.0 ? 0.5 * spacing[n] * normal[n * dim + a] / length : 0.0;
-            outer[n * dim + a] = cells->x[n * dim + a] + way;
+            double shift = length > 0.0 ? 0.5 * spacing[n] * normal[n * dim + a] / length : 0.0;
+            outer[n * dim + a] = cells->x[n * dim + a] + shift;
         }
     }
 }

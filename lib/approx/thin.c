@@ -23,10 +23,10 @@ static double mean_edge(int dim, const double *x, int count, const int32_t *node
     return 2.0 * sum / (count * (count - 1));
 }
 
-/* The face, opposite vertex *face, through which the ray from x along `way` leaves a cell: how far that is.
+/* The face, opposite vertex *face, through which the ray from x along `ray` leaves a cell: how far that is.
  * The face that it came in by does not count. normal[]: outward there, as long as the face is large. */
 static double leave_cell(const struct cells *cells, int64_t cell, int entered, const double *x,
-                         const double *way, int *face, double *normal)
+                         const double *ray, int *face, double *normal)
 {
     int dim = cells->dim, corners = dim + 1;
     double nearest = INFINITY;
@@ -36,7 +36,7 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
         cell_face(cells, cell, k, side);
         face_area_vector(dim, cells->x, side, area);
         vector_subtract(dim, cells->x + (int64_t)side[0] * dim, x, to_face);
-        double slope = vector_dot(dim, area, way), distance = vector_dot(dim, area, to_face) / slope;
+        double slope = vector_dot(dim, area, ray), distance = vector_dot(dim, area, to_face) / slope;
         if (k != entered && slope > 0.0 && distance < nearest) {
             nearest = distance;
             *face = k;

@@ -13,8 +13,8 @@
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
 static const double radius_factor = 1.5;
-/* A path counts as the distance where it is longer than this multiple of the Euclidean distance; in convex
- * bodies none is. */
+/* The length of a path is divided by this before it is compared with the Euclidean distance, so that in
+ * convex bodies the latter counts. */
 static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
@@ -35,11 +35,11 @@ static enum status path_lengths(struct coarse_space *coarse, const struct neighb
         int64_t last = end.length > length[end.node][c] ? 0 : neighbours->ptr[end.node + 1];
         for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
             int32_t next = neighbours->idx[i];
-            double way = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
-                                                      coarse->X + (int64_t)next * dim);
-            if (way < length[next][c]) {
-                length[next][c] = way;
-                RETURN_IF_ERROR(queue_push(queue, way, next, error));
+            double path = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
+                                                       coarse->X + (int64_t)next * dim);
+            if (path < length[next][c]) {
+                length[next][c] = path;
+                RETURN_IF_ERROR(queue_push(queue, path, next, error));
             }
         }
     }
@@ -60,8 +60,8 @@ static enum status add_centre(struct coarse_space *coarse, const struct neighbou
     }
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double straight = vector_distance(dim, coarse->X + n * dim, place);
-        double way = neighbours != NULL ? coarse->share[n][c] / most_detour : 0.0;
-        coarse->share[n][c] = isfinite(way) ? fmax(straight, way) : straight;
+        double path = neighbours != NULL ? coarse->share[n][c] / most_detour : 0.0;
+        coarse->share[n][c] = isfinite(path) ? fmax(straight, path) : straight;
     }
     return STATUS_OK;
 }
@@ -141,10 +141,10 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
     for (int c = 0; c < coarse->centre_count; c++) {
         double share = coarse->share[node][c];
         for (int m = 0; m <= dim && share > 0.0; m++, count++) {
-            double way =
+            double coordinate =
                 m == 0 ? 1.0 : (coarse->X[node * dim + m - 1] - coarse->centre[m - 1][c]) / coarse->radius;
             field[count] = c * (dim + 1) + m;
-            value[count] = share * way;
+            value[count] = share * coordinate;
         }
     }
     return count;

@@ -55,15 +55,15 @@ static double facet_width(const struct fold_input *input, int64_t f)
 /* How far x is from a node (2D) or an edge (3D) of the boundary at rest. */
 static double distance_to(const struct fold_input *input, const struct fold_ring *ring, const double *x)
 {
-    double along[3], way[3], share = 0.0;
+    double along[3], offset[3], share = 0.0;
     const double *begin = input->x + (int64_t)ring->node[0] * input->dim;
-    vector_subtract(input->dim, x, begin, way);
+    vector_subtract(input->dim, x, begin, offset);
     if (input->dim == 3) {
         vector_subtract(3, input->x + (int64_t)ring->node[1] * 3, begin, along);
-        share = fmax(0.0, fmin(1.0, vector_dot(3, along, way) / vector_dot(3, along, along)));
-        add_scaled(3, -share, along, way);
+        share = fmax(0.0, fmin(1.0, vector_dot(3, along, offset) / vector_dot(3, along, along)));
+        add_scaled(3, -share, along, offset);
     }
-    return vector_length(input->dim, way);
+    return vector_length(input->dim, offset);
 }
 
 /* Whether a corner lay on one of another body at rest. */

@@ -29,8 +29,8 @@ static double gyration2(const struct measured *measured, int64_t *count)
     }
     for (int64_t i = 0; i < measured->count; i++) {
         for (int a = 0; a < measured->dim && !is_exact(measured, i); a++) {
-            double way = measured->x[i * measured->dim + a] - centre[a] / (double)*count;
-            sum += way * way / (double)*count;
+            double offset = measured->x[i * measured->dim + a] - centre[a] / (double)*count;
+            sum += offset * offset / (double)*count;
         }
     }
     return sum;
@@ -74,9 +74,9 @@ static void differences(const struct measured *measured, int64_t i, int64_t k, d
     int dim = measured->dim, known = 0;
     double places = 0.0, moves = 0.0;
     for (int a = 0; a < dim; a++) {
-        double way = measured->x[i * dim + a] - measured->x[k * dim + a];
+        double offset = measured->x[i * dim + a] - measured->x[k * dim + a];
         double difference = measured->u[i * dim + a] - measured->u[k * dim + a];
-        places += way * way;
+        places += offset * offset;
         if (!isnan(difference)) {
             moves += difference * difference;
             known++;

@@ -251,18 +251,18 @@ struct search {
 static bool through_body(const struct opposite *opposite, const struct seeker *seeker, int64_t f)
 {
     int dim = opposite->surface.dim;
-    double way[3];
+    double offset[3];
     if (opposite->part[f] != seeker->part) {
         return false;
     }
-    vector_subtract(dim, opposite->middle + f * dim, seeker->rest, way);
+    vector_subtract(dim, opposite->middle + f * dim, seeker->rest, offset);
     double width = seeker->width > opposite->width[f] ? seeker->width : opposite->width[f];
-    double away2 = vector_dot(dim, way, way), least2 = behind_share * behind_share * away2;
+    double away2 = vector_dot(dim, offset, offset), least2 = behind_share * behind_share * away2;
     if (!(away2 < near_widths * near_widths * width * width)) {
         return false;
     }
-    double facet_behind = -vector_dot(dim, way, seeker->rest_normal);
-    double point_behind = vector_dot(dim, way, opposite->rest_normal + f * dim);
+    double facet_behind = -vector_dot(dim, offset, seeker->rest_normal);
+    double point_behind = vector_dot(dim, offset, opposite->rest_normal + f * dim);
     return facet_behind > 0.0 && facet_behind * facet_behind > least2 && point_behind > 0.0 &&
            point_behind * point_behind > least2;
 }
@@ -279,9 +279,9 @@ static bool considers(void *context, int64_t f)
         return !through_body(opposite, search->seeker, f);
     }
     double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double way = lever * width * (cosine - OPPOSED);
-    if (way < search->free_way && !through_body(opposite, search->seeker, f)) {
-        search->free_way = way;
+    double bound = lever * width * (cosine - OPPOSED);
+    if (bound < search->free_way && !through_body(opposite, search->seeker, f)) {
+        search->free_way = bound;
     }
     return false;
 }
@@ -304,7 +304,7 @@ static bool was_behind(const struct opposite *opposite, const struct seeker *see
 {
     static const int32_t corners[] = {0, 1, 2};
     int dim = opposite->surface.dim;
-    double x[9] = {0.0}, last[3] = {0.0}, normal[3], way[3];
+    double x[9] = {0.0}, last[3] = {0.0}, normal[3], offset[3];
     for (int k = 0; k < dim; k++) {
         int64_t v = opposite->surface.facet[f * dim + k];
         struct average average = average_of_boundary(&opposite->rows, v);
@@ -313,8 +313,8 @@ static bool was_behind(const struct opposite *opposite, const struct seeker *see
     face_area_vector(dim, x, corners, normal);
     normalise(dim, normal);
     average_place(&seeker->average, dim, seeker->rest, seeker->last_u, last);
-    vector_subtract(dim, last, x, way);
-    return vector_dot(dim, way, normal) < -seeker->began;
+    vector_subtract(dim, last, x, offset);
+    return vector_dot(dim, offset, normal) < -seeker->began;
 }
 
 static bool admits(void *context, int64_t f, const double *away)

@@ -197,7 +197,7 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
 /* For a nearest point on a rim: how far x is beyond the rim, and its least distance from being over the
  * surface or level with it. */
 static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
-                         const double *away, double *least_way)
+                         const double *away, double *least_distance)
 {
     int dim = surface->dim;
     /* At a corner of triangles the plane of the mean normal, from which those of the facets there turn by no
@@ -214,7 +214,7 @@ static double beyond_rim(const struct rigid_surface *surface, const struct neare
         over = beyond * c - fabs(height) * s;
         level = fabs(height) * c - beyond * s;
     }
-    *least_way = fmax(0.0, fmin(over, level));
+    *least_distance = fmax(0.0, fmin(over, level));
     return beyond;
 }
 
@@ -238,9 +238,9 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     vector_subtract(dim, x, nearest.point, away);
     contact.distance = sqrt(nearest.distance2);
     if (nearest.rim) {
-        double least_way, beyond = beyond_rim(surface, &nearest, away, &least_way);
+        double least_distance, beyond = beyond_rim(surface, &nearest, away, &least_distance);
         if (beyond > round_off * surface->extent) {
-            contact.distance = least_way;
+            contact.distance = least_distance;
             return contact;
         }
     }

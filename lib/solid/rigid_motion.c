@@ -82,7 +82,7 @@ void rigid_place_turn(const struct rigid_place *place, int dim, double *directio
     }
 }
 
-double rigid_motion_way(const struct rigid_motion *motion, int dim, const double *X)
+double rigid_motion_path(const struct rigid_motion *motion, int dim, const double *X)
 {
     double way2 = 0.0, along = 0.0, radius2 = 0.0;
     for (int i = 0; i < dim && motion->moves; i++) {

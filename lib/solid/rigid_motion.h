@@ -40,4 +40,4 @@ void rigid_place_turn(const struct rigid_place *place, int dim, double *directio
 
 /* An upper bound of the length of the path of a point of the surface, at X at rest, as the factors go from 0
  * to 1, m. */
-double rigid_motion_way(const struct rigid_motion *motion, int dim, const double *X);
+double rigid_motion_path(const struct rigid_motion *motion, int dim, const double *X);

@@ -272,8 +272,8 @@ double system_longest_way(const struct solid_system *system)
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         for (int64_t a = 0; a < contact->count; a++) {
-            double way = rigid_motion_way(&contact->motion, system->dim, contact->rest + a * system->dim);
-            longest = fmax(longest, way);
+            double length = rigid_motion_path(&contact->motion, system->dim, contact->rest + a * system->dim);
+            longest = fmax(longest, length);
         }
     }
     return longest;

@@ -41,7 +41,7 @@ TEST(motions)
         NEAR_TO(x[1], 3.0, 1e-15);
         NEAR_TO(normal[1], 1.0, 1e-15);
         ALL_NEAR(dim, back, X, 1e-14);
-        NEAR_TO(rigid_motion_way(&motion, dim, X), (dim == 2 ? 1.0 : sqrt(26.0)) + M_PI, 1e-14);
+        NEAR_TO(rigid_motion_path(&motion, dim, X), (dim == 2 ? 1.0 : sqrt(26.0)) + M_PI, 1e-14);
         motion = (struct rigid_motion){.moves = true,
                                        .translation = {1.0, 0.0, 5.0},
                                        .point = {0.0, 1.0, 7.0},

@@ -43,15 +43,16 @@ static double prescribed_motion(const struct solid_system *system, const struct 
 static double own_motion(const struct solid_system *system, const struct contact *contact)
 {
     const struct rigid_motion *motion = &contact->motion;
-    double way = 0.0;
+    double length = 0.0;
     if (!motion->moves) {
         return 0.0;
     }
     for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
-        way = fmax(way, rigid_motion_way(motion, contact->dim, contact->surface.vertex + v * contact->dim));
+        length =
+            fmax(length, rigid_motion_path(motion, contact->dim, contact->surface.vertex + v * contact->dim));
     }
-    return way * fmax(curve_largest(&system->curves[motion->translation_curve]),
-                      curve_largest(&system->curves[motion->rotation_curve]));
+    return length * fmax(curve_largest(&system->curves[motion->translation_curve]),
+                         curve_largest(&system->curves[motion->rotation_curve]));
 }
 
 /* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and

@@ -182,8 +182,8 @@ void run_report_springs(const struct run *run)
         int64_t count = 0;
         for (int64_t r = penalties->count - system->spring_count; r < penalties->count; r++) {
             if (penalties->section[r] == d) {
-                double way = system_penalty_force(system, r, run->u) / system->penalty_stiffness[r];
-                sum += way * way;
+                double elongation = system_penalty_force(system, r, run->u) / system->penalty_stiffness[r];
+                sum += elongation * elongation;
                 count++;
             }
         }
