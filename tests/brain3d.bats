@@ -32,7 +32,7 @@ setup() {
         END { exit failed || rows != 1 }'
 }
 
-@test "the craniotomy goes where it is told" {
+@test "the craniotomy goes where it is prescribed" {
     # Rows of facets, of their sets, then of nodes and u.
     set=$(awk '/^# facets.set / { sub(/.*names=/, ""); split($1, name, ","); for (i in name) if (name[i] == "craniotomy") print i - 1 }' \
         <(mts text u.dat))

@@ -110,7 +110,7 @@ SCENE
     refused 2 "remove it and run.ckpt.old to begin anew" mtled -c run.ckpt run.scene table.mts
 }
 
-@test "a place that cannot be written is told at once; one that fills up later leaves the last checkpoint" {
+@test "a place that cannot be written is reported at once; one that fills up later leaves the last checkpoint" {
     run -3 --separate-stderr mtled -c no/such/folder/run.ckpt run.scene table.mts
     [[ $stderr == "mtled: no/such/folder/run.ckpt.new: No such file or directory" ]]
     run -3 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null'

@@ -113,7 +113,7 @@ missing() {
     }'
 }
 
-@test "a body that contacts close in has its whole bulk modulus at the edges of what is clamped; told where contacts take a part of it" {
+@test "a body that contacts close in has its whole bulk modulus at the edges of what is clamped; reported where contacts take a part of it" {
     cloud -d 3 -k jittered -n 6 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > closed.mts 2> note
     for axis in 1 2; do
         for place in 0 0.1; do
@@ -151,7 +151,7 @@ missing() {
         END { d = f[2] + f[3] - 1; exit !(d < 1e-3 && -d < 1e-3 && f[2] > 0.01 && f[3] > 0.01) }'
 }
 
-@test "sections that ask for nearly the same at a node: told with both values; in round-off of each other: not" {
+@test "sections that ask for nearly the same at a node: reported with both values; in round-off of each other: not" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     { head3; printf '[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n'; } > base.scene
     { cat base.scene; printf '[displacement side]\nfacets = xmin\ncomponents = free, free, -0.0048\n'; } > near.scene
@@ -415,7 +415,7 @@ END
     [ ! -s said ]
 }
 
-@test "of several bodies the free one is named; what only contact holds runs, and is told" {
+@test "of several bodies the free one is named; what only contact holds runs, and is reported" {
     two
     { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
     refused 1 "nothing holds body 2 (region lid, near (0.05, 1.05)): it may move along any direction and turn about any axis: " mtled two.scene two.mts
@@ -471,7 +471,7 @@ END
 }
 
 # With 4 facets the force is 1.4 times that of mixed elements on the same mesh, with 14 within 10 %.
-@test "a patch of less than three facets across is told, where forces are asked for" {
+@test "a patch of less than three facets across is reported, where forces are asked for" {
     cloud -d 3 -k regular -n 7 --box 0,0.06,0,0.06,0,0.06 | groups -u mm -f narrow=box:20,20,60,40,40,60 -f wide=box:10,10,60,50,50,60 |
         shapefn > cube.mts 2> note
     { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement push]\nfacets = narrow\ncomponents = 0, 0, -0.001\n'; } > push.scene

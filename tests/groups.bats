@@ -155,7 +155,7 @@ END
     refused 2 "facets: row 0: no face of exactly one cell" groups -f a=all inside.mts
 }
 
-@test "overlaps are told; what depends on facets leaves the stream; the pipeline runs with groups" {
+@test "overlaps are reported; what depends on facets leaves the stream; the pipeline runs with groups" {
     bare_block
     groups -f held=low:z,12% -f more=low:z,30% bare.mts 2> said > g.mts
     [ "$(cat said)" = "groups: facets more overlap held (90): conditions on both would meet twice there" ]

@@ -41,7 +41,7 @@ value() { awk -F '\t' -v name="$1" -v column="$2" '$1 == name { print $column }'
     cmp first out/identified.tsv
 }
 
-@test "identify: noise moves what is found by about its deviation, which is told" {
+@test "identify: noise moves what is found by about its deviation, which is reported" {
     measure 2.5 -4 3000
     echo '{ print $1, $2, $3 + 0.5 * normal(), $4 + 0.5 * normal(), 0.5 }' > noise.awk
     awk -f "$top/pipelines/neurosurgery/random.awk" -f noise.awk measured.tsv > noisy.tsv
@@ -54,7 +54,7 @@ value() { awk -F '\t' -v name="$1" -v column="$2" '$1 == name { print $column }'
     done
 }
 
-@test "identify: what the points cannot tell apart stays where it was believed to be" {
+@test "identify: what the points do not determine stays where it was believed to be" {
     # Weight and stiffness: displacements know their ratio alone.
     measure 0 -4 3000
     printf 'name\tmean\tdeviation\ngy\t0\t5\nE\t6000\t60\n' > weight.tsv

@@ -146,7 +146,7 @@ with_section() {
     done
 }
 
-@test "--skip-outside leaves out the points of a grid that lie in no cell, and tells which are there" {
+@test "--skip-outside leaves out the points of a grid that lie in no cell, and lists which are there" {
     # A body of two legs with a gap between them: 0 to 1 and 2 to 3, joined above y = 1.
     cat > legs.geo << 'END'
 SetFactory("OpenCASCADE");

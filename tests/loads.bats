@@ -181,7 +181,7 @@ immersed() {
         awk '$2 > 0.0999 { d = $4 + 0.005; if (!(d < 1e-4 && d > -1e-4)) bad = 1; n++ } END { exit bad || n != 5 }'
 }
 
-@test "a node of a set goes where it is told, and pulls back as the bottom holds" {
+@test "a node of a set goes where it is prescribed, and pulls back as the bottom holds" {
     { block quasi-static && held_below; } > held.scene
     solved '[displacement pull]\nnodes = corner\ncomponents = 0.002, free'
     paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) |

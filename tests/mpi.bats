@@ -348,7 +348,7 @@ one_line() {
     [ $SECONDS -lt 10 ]
 }
 
-@test "the report tells what was sent" {
+@test "the report has what was sent" {
     cube 6 | shapefn > table.mts 2> note
     { pressed_block | sed 's/^dim = 2/dim = 3/; s/ymin/zmin/; s/ymax/zmax/; s/^components = 0, /&0, /'; } > run.scene
     processes 2 -v -o out.dat run.scene table.mts 2> report

@@ -7,7 +7,7 @@ setup() {
     scripts=$top/pipelines/neurosurgery
 }
 
-@test "from a label image: the exposed cortex tells half of the shift of landmarks, with the weight that it tells, or gravity that is told, four fifths" {
+@test "from a label image: the exposed cortex predicts half of the shift of landmarks, with the weight found from it, or with given gravity, four fifths" {
     at=$PWD/out/neurosurgery
     make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" NEURO_SPACING=12mm NEURO_TRUE_SPACING=11mm \
         "$at"/{true,craniotomy,load,position}.landmarks "$at"/{craniotomy.scan,craniotomy.labels}.nii.gz > log 2>&1 || { cat log; false; }
@@ -42,14 +42,14 @@ scenario() {
     awk -f "$scripts/target.awk" "$at"/{true,"$1","$1"_position}.landmarks | tee rows
 }
 
-@test "a resection: the cavity has a wall, fluid stands below a level; points of cortex and cavity tell most of the shift" {
+@test "a resection: the cavity has a wall, fluid stands below a level; points of cortex and cavity predict most of the shift" {
     scenario resection 14mm 13mm
     awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.6 * $2 && $4 < 0.35 * $2) }' rows
     mts list out/neurosurgery/resection/predicted.body.mts | grep -q '^facets.set.*names=.*parenchyma|tumour'
     awk 'NF != 7 || $7 != 0.5 { bad = !/^#/ } END { exit bad }' out/neurosurgery/resection/measured.tsv
 }
 
-@test "electrodes: points inside tell most of the shift, without a load" {
+@test "electrodes: points inside predict most of the shift, without a load" {
     scenario electrodes 14mm 13mm
     awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.35 * $2 && $4 < 0.25 * $2) }' rows
     [ "$(wc -l < out/neurosurgery/electrodes/measured.tsv)" -eq 200 ]

@@ -322,7 +322,7 @@ limit_memory() {
     grep -q "nodes: cell 0: quality 0.83 at 0.6667 0.3333 m" said
 }
 
-@test "a plate of one cell is told, one of two cells and a cube are not" {
+@test "a plate of one cell is reported, one of two cells and a cube are not" {
     # plate THICKNESS: with cells of 1
     plate() {
         printf 'Point(1) = {0, 0, 0};\nline() = Extrude {6, 0, 0} { Point{1}; Layers{6}; };\n'
@@ -348,7 +348,7 @@ limit_memory() {
     run ! grep thick said
 }
 
-@test "no physical groups: the region is body, and how to come by names is told" {
+@test "no physical groups: the region is body, and how to come by names is reported" {
     cube tet
     sed -i '/Physical/d' cube.geo
     gmsh -v 1 -3 cube.geo -o bare.msh
@@ -418,7 +418,7 @@ limit_memory() {
     done
 }
 
-@test "one file of a mesh that was cut into files is told, in 2D and 3D" {
+@test "one file of a mesh that was cut into files is reported, in 2D and 3D" {
     for dim in 2 3; do
         printf 'SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n%s\n' \
             "$([ $dim = 2 ] && echo 'Physical Surface("body") = {5};' || echo 'Physical Volume("body") = {1};')" > cut.geo
@@ -427,7 +427,7 @@ limit_memory() {
     done
 }
 
-@test "bodies that touch stay two, cells in two groups are of the first, and both are told" {
+@test "bodies that touch stay two, cells in two groups are of the first, and both are reported" {
     cat > touching.geo << 'END'
 SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 1, 1, 1};

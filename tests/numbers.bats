@@ -91,7 +91,7 @@ thin() {
 }
 
 # A thick ring in plane strain bears at most mu ln 4/3 = 290 Pa from within. It ran for a million steps.
-@test "a body that bears no such load moves on: it ends soon and is told" {
+@test "a body that bears no such load moves on: it ends soon and is reported" {
     cat > ring.geo << 'END'
 Point(1) = {0, 0, 0, 5};
 Point(2) = {30, 0, 0, 5};

@@ -193,7 +193,7 @@ cut_and_compute() {
     done
 }
 
-@test "a halo that is too narrow is told of, and a wider one does" {
+@test "a halo that is too narrow is reported, and a wider one does" {
     cloud -d 2 -k jittered --jitter 0.3 -n 24 --box 0,0.1,0,0.1 > square.mts
     part -k 6 -w 1 -o part.%d.mts square.mts
     for k in 0 1 2 3 4 5; do support -k 7 -o list.$k.mts part.$k.mts 2> note; done

@@ -409,7 +409,7 @@ END
     awk -F '\t' '{ exit !(NF == 9 && $2 == "-" && $5 == 2 && $9 ~ /^nodes: .*cut.msh: /) }' row
 }
 
-@test "brain2d-convergence: medians, the largest difference and the order of each size; what is missing is told" {
+@test "brain2d-convergence: medians, the largest difference and the order of each size; what is missing is reported" {
     for k in 1 2 3; do
         for size in 8 4; do
             for ends in '' -ends; do

@@ -181,7 +181,7 @@ resting() {
     done
 }
 
-@test "what is wrong is told by row" {
+@test "what is wrong is reported by row" {
     cloud_of 2
     { head_of 2; printf '[displacement m]\npoints = rows.tsv\nunit = mm\n'; } > run.scene
     while IFS='|' read -r rows message; do

@@ -58,7 +58,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     sample --section T1 -t scan.nii.gz < cube.mts | grep -q '^# T1 f8 125 1'
 }
 
-@test "outside of the image: an error that names the first, or a value that is told" {
+@test "outside of the image: an error that names the first, or a value that is reported" {
     printf '10 10 10\n100 0 0\n0 0 -9\n' > points.tsv
     refused 2 "points.tsv: row 1 at (0.1, 0, 0) m, one of 2 of 3: outside of scan.nii.gz" sample -u mm -p points.tsv scan.nii.gz
     run -0 --separate-stderr sample --outside -3 -u mm -p points.tsv scan.nii.gz

@@ -117,7 +117,7 @@ at_nodes() {
     run ! below 1e-11 "$(largest expected at)"
 }
 
-@test "parameters that do not fit are refused or told" {
+@test "parameters that do not fit are refused or reported" {
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     scene 2 ymin ymax "0.02, 0.01" > square.scene
     shapefn square.mts 2> note | mtled -q square.scene > u.dat

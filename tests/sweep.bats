@@ -40,7 +40,7 @@ results() {
     results | cmp first -
 }
 
-@test "sweep: a row that fails does not stop the others, and is told of; mended, it alone is computed" {
+@test "sweep: a row that fails does not stop the others, and is reported; mended, it alone is computed" {
     prepare 8 0.1 0.3 0.6 0.4
     run -1 --separate-stderr run_sweep -j 2
     [[ "$stderr" == *"sweep: nu0.6: mtled: "*"0.6 is not below 0.5"* ]]

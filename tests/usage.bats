@@ -96,7 +96,7 @@ setup() {
     fi
 }
 
-@test "mtled-scene(5): every key of the reader is told, and the example runs on the brain section" {
+@test "mtled-scene(5): every key of the reader is documented, and the example runs on the brain section" {
     page=$top/tools/mtled-scene.5
     grep -oE '"[a-zE][a-z_]*"' "$top/lib/io/scene_kinds.c" | tr -d '"' | sort -u > keys
     [ "$(wc -l < keys)" -ge 30 ]

@@ -142,7 +142,7 @@ END
     [ "$(names cells.region body.mts | wc -l)" -eq 50 ]
 }
 
-@test "thin parts are told, and kept by a finer lattice at their interfaces" {
+@test "thin parts are reported, and kept by a finer lattice at their interfaces" {
     phantom thin > thin.nii.gz
     voxels -h 6mm thin.nii.gz 2> said > coarse.mts
     grep -qE "voxels: label_2: 3.04[0-9]* ml of voxels, 0[.0-9]* ml of cells \(-[78]" said
@@ -157,7 +157,7 @@ END
     refused 2 "is not less than the spacing" voxels -h 6mm --fine 6mm thin.nii.gz
 }
 
-@test "gaps that the lattice fills are told: a thin label that is left out, two balls nearer to each other than the spacing" {
+@test "gaps that the lattice fills are reported: a thin label that is left out, two balls nearer to each other than the spacing" {
     phantom thin > thin.nii.gz
     printf '1 body\n2 fluid -\n' > names
     voxels -h 6mm -l names thin.nii.gz 2> said > coarse.mts
@@ -173,7 +173,7 @@ END
     grep -q "^voxels: 2 connected bodies" said
 }
 
-@test "a bar between two balls that the lattice loses is told, where and how to keep it; balls that the image does not connect are not" {
+@test "a bar between two balls that the lattice loses is reported, where and how to keep it; balls that the image does not connect are not" {
     phantom bar > bar.nii.gz
     voxels -h 5mm bar.nii.gz 2> said > body.mts
     grep -q "^voxels: 2 connected bodies" said
@@ -324,7 +324,7 @@ rim() {
     mts print nodes.x "$2" | awk 'NR == FNR { on[$1] = 1; next } FNR - 1 in on' rim.nodes -
 }
 
-@test "a part of the boundary: its rim lies where it is told, by a ball or a mask" {
+@test "a part of the boundary: its rim lies where it is prescribed, by a ball or a mask" {
     phantom four > image.nii.gz
     voxels -h 5mm --part cap=ball:0mm,0,24mm,14mm -v image.nii.gz > body.mts 2> said
     [ -z "$(mts check body.mts)" ]

@@ -232,13 +232,13 @@ setup_file() {
     refused 2 "no section" warp "$scan" points.mts
 }
 
-@test "folded cells are told" {
+@test "folded cells are reported" {
     with_u cube.mts 'd = ($1 - .03)^2 + ($2 - .03)^2 + ($3 - .03)^2; print d < 1e-6 ? .02 : 0, 0, 0' > fold.dat
     run -0 --separate-stderr warp -o moved.nii "$BATS_FILE_TMPDIR/scan.nii.gz" fold.dat
     [[ $stderr == *" cells are folded (the first: row "* ]]
 }
 
-@test "a cloud too poor for gradients: linear in the cells, and told" {
+@test "a cloud too poor for gradients: linear in the cells, and reported" {
     cloud -d 3 -k regular -n 2 --box 0,0.06,0,0.06,0,0.06 > cells.mts
     with_u cells.mts 'print .1 * $2, 0, 0' > linear.dat
     run -0 --separate-stderr warp -o moved.nii "$BATS_FILE_TMPDIR/scan.nii.gz" linear.dat

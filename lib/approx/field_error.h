@@ -11,9 +11,9 @@
  *
  * Recovery (Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering
  * analysis, Int. J. Numer. Meth. Eng. 24 (1987), 337). The gradient of the linear interpolant in a cell is
- * compared with that averaged at the nodes, with the volumes of the cells of one region as weights. It tells
- * from one solution where the cloud is too coarse, not how far the displacement is off: that depends on the
- * whole body. */
+ * compared with that averaged at the nodes, with the volumes of the cells of one region as weights. It shows
+ * from one solution where the cloud is too coarse. It does not give the error of the displacement, which
+ * depends on the whole body. */
 #pragma once
 
 #include "approx/field.h"

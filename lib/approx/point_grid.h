@@ -50,8 +50,8 @@ void index_list_free(struct index_list *list);
 MUST_CHECK enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
                                         struct index_list *list, struct error *error);
 
-/* The same for the nearest point x of the box low .. high: all nodes that a query within the box would find,
- * and others. */
+/* The same where x is the point of the box low .. high that is nearest to each node: all nodes that a query
+ * for a point of the box would find, and others. */
 MUST_CHECK enum status point_grid_query_box(const struct point_grid *grid, const double *low,
                                             const double *high, double factor, struct index_list *list,
                                             struct error *error);

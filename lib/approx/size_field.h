@@ -15,8 +15,8 @@
 
 #include "approx/cells.h"
 
-/* Least and most by which the size at a place is multiplied: the errors tell nothing of sizes far from those
- * they were found with. */
+/* Bounds of the factor by which a size is multiplied: an error estimate is valid only for sizes near those of
+ * its mesh. */
 #define SIZE_FIELD_LEAST 0.25
 #define SIZE_FIELD_MOST 2.0
 

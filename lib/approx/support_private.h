@@ -1,4 +1,4 @@
-/* What support.c and support_point.c share; private to lib/approx. */
+/* Declarations shared by support.c and support_point.c; private to lib/approx. */
 #pragma once
 
 #include "approx/support.h"

@@ -108,7 +108,8 @@ struct visibility_shadows {
     int64_t *ptr;
     int32_t *shadow;
 };
-/* Of the points x[count * dim]; with body_of[count] (else NULL) of those of that body alone. */
+/* Find the shadows for the points x[count * dim]; with body_of[count] (else NULL), for the points of body
+ * number `body` only. */
 MUST_CHECK enum status visibility_shadows_build(const struct visibility *visibility, int64_t count,
                                                 const double *x, const int32_t *body_of, int32_t body,
                                                 struct visibility_shadows *shadows, struct error *error);

@@ -77,7 +77,7 @@ static inline void vector_cross(const double *u, const double *v, double *w)
     w[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-/* Of the rows a and b in two dimensions, and of a, b and c in three. */
+/* Determinants of the rows a and b in two dimensions, and of a, b and c in three. */
 static inline double determinant2(const double *a, const double *b)
 {
     return a[0] * b[1] - a[1] * b[0];

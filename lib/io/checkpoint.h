@@ -1,8 +1,8 @@
 /* Checkpoints: the state of a run (see base/state.h) as a stream in a file, from which the run can go on.
  *
  * The file is replaced as a whole, and the one before it is kept as FILE.old: whenever the program or the
- * machine stops, one of them is whole. It is a binary stream like any other, for mts to look into: section
- * `checkpoint` tells what it belongs to, `state.*` hold the run's values, and whatever else the caller put.
+ * machine stops, one of them is whole. It is a binary stream, which mts can show: section `checkpoint`
+ * identifies the run, sections `state.*` hold its values; others are the caller's.
  */
 #pragma once
 
@@ -10,8 +10,8 @@
 #include "io/scene.h"
 #include "io/stream.h"
 
-/* What a run depends on, as CRC-32; a checkpoint of another one is refused. The version of the programs
- * counts, too. */
+/* Checksums (CRC-32) of the input of a run. A checkpoint with others, or of another version of the programs,
+ * is refused. */
 struct checkpoint_identity {
     uint32_t scene; /* of the scene's bytes, and of those of the files that it names */
     uint32_t input; /* of the stream's sections */

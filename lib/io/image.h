@@ -26,7 +26,7 @@ enum image_datatype {
 /* Codes of `intent`. */
 enum { IMAGE_INTENT_LABEL = 1002, IMAGE_INTENT_DISPLACEMENT = 1006, IMAGE_INTENT_VECTOR = 1007 };
 
-/* What the world axes are aligned to, NIfTI's codes of sform and qform. */
+/* The reference that the world axes are aligned to: NIfTI's codes of sform and qform. */
 enum {
     IMAGE_SPACE_UNKNOWN,
     IMAGE_SPACE_SCANNER,
@@ -51,7 +51,7 @@ struct image {
     int intent;  /* NIfTI's code of what the values mean, 0: none */
     char intent_name[17];
     char description[81];
-    char note[256]; /* what was assumed in reading, in one line, "" for nothing: tools tell it */
+    char note[256]; /* assumptions made in reading, in one line, "" for none: tools print it */
 };
 
 /* An image of a size, all values zero: of type float32, in mm, of unknown space and with voxels of 1 mm.

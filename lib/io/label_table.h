@@ -1,4 +1,4 @@
-/* What the labels of an image are called: a table in a text file. */
+/* Names of the labels of an image: a table in a text file. */
 #pragma once
 
 #include "base/status.h"
@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What one or more rows of the table call by a name. */
+/* A name, of one or more rows of the table. */
 struct label_name {
     char *text;
     bool kept; /* false: its cells are left out; it names their walls */

@@ -33,11 +33,11 @@ struct msh {
     int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
-    int64_t partitions;       /* into which the mesh was cut, MSH 4 alone tells; 0: it was not */
+    int64_t partitions;       /* number of partitions of the mesh (MSH 4 only); 0: not partitioned */
     int64_t partitions_here;  /* how many of them have elements of the highest dimension in this file */
 };
 
-/* What is known of a type of element. */
+/* A type of element. */
 struct msh_type {
     const char *name; /* "triangle", or NULL: not an element of first or second order */
     int dim;
@@ -87,7 +87,7 @@ struct mesh {
     struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
 };
 
-/* What of a file is made a mesh. */
+/* The parts of a file that a mesh is made of. */
 struct mesh_options {
     double unit;         /* of the file's lengths, m */
     const char *regions; /* comma-separated list of regions to keep, or NULL: all */

@@ -16,7 +16,7 @@ struct place {
     struct error *error;
 };
 
-/* What a key's value is, and what it is stored as. */
+/* Types of values of keys, and the types they are stored as. */
 enum value_type {
     VALUE_NUMBER, /* double; those that follow are bounded: */
     VALUE_POSITIVE,

@@ -4,7 +4,7 @@
 
 #include "io/stream.h"
 
-/* What the values of a section must be. */
+/* Requirements on the values of a section. */
 enum content {
     ANY, /* what the views check (stages/views.h), and results */
     FINITE,
@@ -34,8 +34,8 @@ struct section_kind {
     const char *name;
     enum element_type type;
     int cols;
-    const char *rows_of; /* the section for each of whose rows it has one (LIST: and one more), or what the
-                            faces ask for; NULL: it has rows of its own */
+    const char *rows_of; /* the section with as many rows (LIST: one less), or whatever the faces need; NULL:
+                            any number of rows */
     enum content content;
     const char *index_of; /* the section whose rows its numbers count, or NULL */
     enum section_stage stage;
@@ -44,7 +44,7 @@ struct section_kind {
 enum { SECTION_KINDS = 58 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
-/* What is known of a section; of a frame, X.frame.K, what is of X. NULL: nothing. */
+/* The entry of a section; for a section of a frame, X.frame.K, that of X. NULL: not in the table. */
 const struct section_kind *section_kind_of(const char *name);
 
 /* The stage of a section; one before the results also of a section that the table lacks, by the part of its
@@ -56,7 +56,7 @@ void sections_remove(struct stream *stream, enum section_stage first, enum secti
 
 /* Sections of frames: X.frame.K is section X in state K of a run; 0 is the state at its begin. */
 
-/* What frame_of gives for a section that belongs to no frame. */
+/* Result of frame_of for a section that belongs to no frame. */
 #define FRAME_NONE (-1)
 
 /* K of a section X.frame.K; FRAME_NONE for another section. *length receives that of X. */

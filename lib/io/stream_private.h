@@ -1,4 +1,4 @@
-/* What the files of the stream share: limits, buffered input, header lines, numbers as text. */
+/* Declarations shared by the files of the stream: limits, buffered input, header lines, numbers as text. */
 #pragma once
 
 #include "io/stream.h"

@@ -15,7 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a body is made of, in the caller's arrays. */
+/* The input of body_build, in the caller's arrays. */
 struct body_input {
     int dim; /* 2 (plane strain) or 3 */
     int64_t node_count, point_count;
@@ -185,6 +185,6 @@ void body_volume_ratio(struct body *body, double *ratio);
  * limit of the bulk modulus (body_limit_bulk) counts. */
 void body_diagonal(struct body *body, double *stiffness);
 
-/* The same of smoothed cells, with the linear shape functions of the cells in place of phi, which is faster.
+/* The same for smoothed cells, with the linear shape functions of the cells in place of phi, which is faster.
  * `rest`: with F = I. */
 void body_nodal_diagonal(struct body *body, bool rest, double *stiffness);

@@ -48,7 +48,7 @@ struct average constraint_rows_average(const struct constraint_rows *rows, int64
 /* direction . (sum_j phi_j u_j) of row r. */
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);
 
-/* The same as value[r] of all rows r of the lists from `begin` to before `end`. */
+/* value[r] = the same for all rows r of the lists from `begin` to before `end`. */
 void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
                           double *value);
 

@@ -1,4 +1,4 @@
-/* What the parts of explicit dynamics share; see dynamics.h. */
+/* The state of an explicit run, shared by the files of dynamics.h. */
 #pragma once
 
 #include "solid/dynamics.h"
@@ -64,5 +64,5 @@ MUST_CHECK enum status dynamics_allocate(struct dynamics *d, struct error *error
 
 void dynamics_release(struct dynamics *d);
 
-/* What the next step needs of those before: see base/state.h. */
+/* Visit the state that the next step needs: see base/state.h. */
 MUST_CHECK enum status dynamics_visit(void *run, const struct state *state, struct error *error);

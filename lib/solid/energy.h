@@ -44,7 +44,7 @@ void energy_balance_complete(struct energy_balance *balance, bool first, struct 
 /* 1/2 v M w */
 double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
 
-/* Of the body at u, and of the constraint penalties at system->factor. */
+/* Energy of the body at u, and of the constraint penalties at system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
 /* Sum over all contacts at their last evaluation. */

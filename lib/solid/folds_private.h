@@ -19,8 +19,8 @@ static inline const double *fold_position(const struct folds *folds, int32_t nod
     return folds->y + (int64_t)node * folds->input.dim;
 }
 
-/* What a fold names: two facets, the other one -1 where there is none, and as its place the middle of the
- * first at rest. */
+/* Set the two facets of a fold, `other` -1 where there is none, and its place, the middle of the first facet
+ * at rest. */
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold);
 
 static inline double fold_cosine(int dim, const double *one, const double *other)

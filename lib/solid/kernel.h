@@ -33,6 +33,6 @@ struct force_kernels {
 /* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */
 const struct force_kernels *force_kernels_select(const char *name, int dim);
 
-/* What body_diagonal needs. */
+/* Scratch of body_diagonal. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);
 void body_free_bounds(struct body *body);

@@ -46,13 +46,14 @@ void lower_free(struct lower *lower);
  * in place of those that are there. */
 MUST_CHECK enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct error *error);
 
-/* Such rows that are wanted (wanted[node_count], the caller's numbers) and not there in addition. */
+/* Add those rows of own nodes that are wanted (wanted[node_count], the caller's numbers) and have not been
+ * made. */
 MUST_CHECK enum status lower_add(const bool *wanted, struct lower *lower, struct error *error);
 
 /* Set `least` from the diagonal, when all rows have been made; false where it is above some of that. */
 bool lower_set_least(struct lower *lower);
 
-/* Of several processes: the rows of S that are wanted and that others have. */
+/* With several processes: fetch the wanted rows of S that other processes have made. */
 MUST_CHECK enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *error);
 
 /* S_ij, j <= i; 0 where there is no such entry. */

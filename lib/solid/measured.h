@@ -28,7 +28,7 @@ struct measured {
     const double *deviation; /* count: of each component, m; 0: exact */
 };
 
-/* What e depends on. */
+/* The quantities that e depends on. */
 struct measured_region {
     double shear_modulus; /* mu, Pa: mean at the points */
     double volume;        /* of the body that a node stands for: mean, m3 (2D: m2) */

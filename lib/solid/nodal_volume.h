@@ -45,7 +45,7 @@
 
 #include "solid/body.h"
 
-/* Of a body whose points are laid out. */
+/* Build the nodal volumes of a body whose points are laid out. */
 MUST_CHECK enum status nodal_volumes_build(const struct body_input *input, struct body *body,
                                            struct error *error);
 void nodal_volumes_free(struct nodal_volumes *volumes);

@@ -59,8 +59,8 @@ struct seeker {
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
                                       double reach, double *free_way);
 
-/* Of one boundary against itself each pair of places must press but once: whether points of a facet of that
- * normal at rest press on facet f, and not the points of f on it. */
+/* Where a boundary is in contact with itself, each pair of facets must count only once: whether points of a
+ * facet of that normal at rest press on facet f, and not the points of f on it. */
 bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f);
 
 /* The body of each node; part[cells->node_count]. -1 for a node of several bodies, or none. */

@@ -1,4 +1,4 @@
-/* What the parts of the preconditioner share; see preconditioner.h. */
+/* Functions shared by the files of the preconditioner; see preconditioner.h. */
 #pragma once
 
 #include "solid/preconditioner.h"

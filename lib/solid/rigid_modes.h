@@ -20,7 +20,7 @@ struct hinge {
     int32_t body, node;
 };
 
-/* modes[body_count]: those of each body; body[node_count] tells the body of each node, negative: of none.
+/* modes[body_count]: those of each body; body[node_count]: the body of each node, negative: none.
  * Of a condition's average, the part on the nodes of a body constrains that body. A body is fixed at its
  * hinges, hinge[hinge_count], whose nodes are of no body. */
 MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,

@@ -107,8 +107,8 @@ MUST_CHECK enum status cell_functions_make(const struct body *body, struct cell_
                                            struct error *error);
 void cell_functions_free(struct cell_functions *functions);
 
-/* Those of cell q, in the body's order. */
+/* Set *functions to those of cell q, in the body's order. */
 void cell_functions_list(const struct body *body, int64_t q, struct cell_functions *functions);
 
-/* The same of the linear shape functions of the cells. */
+/* The same for the linear shape functions of the cells. */
 void cell_functions_list_linear(const struct body *body, int64_t q, struct cell_functions *functions);

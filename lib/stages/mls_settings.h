@@ -3,7 +3,7 @@
 
 #include "approx/mls.h"
 
-/* What the options say of the shape functions; NULL: nothing. `mu` is one value or one for each second-order
+/* The options of the shape functions; NULL: not given. `mu` is one value or one for each second-order
  * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2); with mls->dim 0, not known yet, either. */
 struct mls_texts {
     const char *basis, *weight, *mu, *mu_unit;

@@ -11,7 +11,7 @@ struct names {
 
 /* The names of a section; to be freed also on failure. */
 MUST_CHECK enum status names_read(const struct section *section, struct names *names, struct error *error);
-/* The same of another attribute that is a list, such as rows=. */
+/* The same for another attribute that is a list, such as rows=. */
 MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
                                 struct error *error);
 void names_free(struct names *names);

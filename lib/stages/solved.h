@@ -13,7 +13,7 @@ struct solved {
 /* Zeros where the stream has no section parameters.radius. The view is the stream's. */
 MUST_CHECK enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error);
 
-/* The same of the supports that the sections PREFIX.radius and PREFIX.side tell of. */
+/* The same for the supports of the sections PREFIX.radius and PREFIX.side. */
 MUST_CHECK enum status supports_read(const struct stream *stream, const char *prefix, struct solved *solved,
                                      struct error *error);
 
