@@ -14,13 +14,13 @@ static const char usage[] =
     "regions.\n"
     "\n"
     "A body-centred cubic lattice of cubes of LENGTH (2D: equilateral triangles) is cut where labels meet\n"
-    "(isosurface stuffing, Labelle and Shewchuk 2007): where two, smoothed by cubic B-splines, have equal\n"
-    "shares. Their nodes are moved by at most .55 voxels to keep the volume of each label. Angles of cells\n"
-    "are between 8 and 165 degrees.\n"
+    "(isosurface stuffing, Labelle and Shewchuk 2007): where the shares of two labels, smoothed by cubic\n"
+    "B-splines, are equal. Nodes of interfaces are moved by at most .55 voxels to keep the volume of each\n"
+    "label. Angles of cells are between 8 and 165 degrees.\n"
     "\n"
-    "Parts of a label thinner than LENGTH may be lost, gaps as narrow filled, bodies about a single\n"
-    "lattice point left out; all is told: --fine keeps more. Bodies that hang together by a node or an\n"
-    "edge are cut apart; between parts of one body a gap is filled there, and crevices are at their tips.\n"
+    "Parts of a label thinner than LENGTH may be lost, narrower gaps filled, and bodies about a single\n"
+    "lattice point left out, all with a note: --fine keeps more. Bodies that share only a node or an edge\n"
+    "are cut apart; where parts of one body do, the gap is filled, as are the tips of crevices.\n"
     "\n"
     "A part of the boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
     "groups.\n"
@@ -223,7 +223,7 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
 static void report(const struct tool *tool, const struct label_image *image, const struct label_cells *result,
                    double spacing, bool surface, bool verbose)
 {
-    struct cells cells = {result->dim, result->node_count, result->x, result->cell_count, result->cell};
+    struct cells cells = label_cells_view(result);
     if (result->unsized > reported_share) {
         tool_note(tool, "%.3g %% of the body lie beyond the sizes: cells there are of the spacing of -h",
                   100 * result->unsized);

@@ -66,6 +66,12 @@ MUST_CHECK enum status label_cells_make(const struct labels *labels,
                                         struct error *error);
 void label_cells_free(struct label_cells *mesh);
 
+/* A view of the cells. */
+static inline struct cells label_cells_view(const struct label_cells *mesh)
+{
+    return (struct cells){mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cell};
+}
+
 /* lost[labels->count]: voxels of each label that neither lie in a cell of it nor touch one that does: parts
  * too thin for the lattice, and sharp edges. Of labels that are not kept, the outside with them, voxels that
  * neither lie outside of the cells nor touch one that does: gaps and cavities that are filled. */
@@ -74,7 +80,7 @@ MUST_CHECK enum status label_cells_lost(const struct labels *labels, const bool 
 
 /* Bodies that voxels of the labels which are kept connect by faces. */
 struct label_cells_apart {
-    int64_t count;    /* how many such connections are missing: bodies less those that there would be */
+    int64_t count;    /* missing connections: the number of bodies less that of the voxels */
     int64_t voxel[2]; /* of the first one: two that touch, halfway between the bodies */
 };
 

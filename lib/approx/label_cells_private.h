@@ -5,11 +5,6 @@
 #include "approx/label_cells.h"
 #include "base/vector.h"
 
-static inline struct cells label_cells_view(const struct label_cells *mesh)
-{
-    return (struct cells){mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cell};
-}
-
 /* The lattice whose cells are cut. 3D: corners and centres of cubes, which are leaves of an octree; 2D:
  * equilateral triangles. Cells whose points are all outside are left out. */
 struct lattice {

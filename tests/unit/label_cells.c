@@ -9,7 +9,7 @@ static void check_volumes(const struct labels *labels, const struct label_shape 
                           const struct label_cells *mesh, double tolerance)
 {
     double wanted[64] = {0}, found[64] = {0};
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     for (int64_t v = 0; v < labels->size[0] * labels->size[1] * labels->size[2]; v++) {
         wanted[labels->label[v]] += shape->voxel[0] * shape->voxel[1] * shape->voxel[2] * 1e-9;
     }
@@ -44,7 +44,7 @@ static bool changes_within(const struct labels *labels, const double x[3], doubl
  * changes. */
 static int64_t count_astray(const struct labels *labels, const struct label_cells *mesh)
 {
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     FREED_BY(faces_free) struct faces faces = {0};
     int64_t count = 0;
     bool *seen = zeros(mesh->node_count, sizeof *seen);
@@ -288,7 +288,7 @@ TEST(by_sizes)
         check_cells(&mesh);
         double volume[2] = {0};
         int64_t count[2] = {0};
-        struct cells cells = cells_of(&mesh);
+        struct cells cells = label_cells_view(&mesh);
         for (int64_t c = 0; c < cells.count; c++) {
             double middle[3];
             cell_centroid(&cells, c, middle);
@@ -338,7 +338,7 @@ TEST(slices)
     struct label_cells_options options = {.spacing = 4e-3, .keep = all_kept};
     struct label_cells mesh = make(&labels, &options);
     check_cells(&mesh);
-    struct cells cells = cells_of(&mesh);
+    struct cells cells = label_cells_view(&mesh);
     for (int64_t c = 0; c < cells.count; c++) {
         found[mesh.label[c]] += cell_volume(&cells, c);
     }

@@ -31,7 +31,7 @@ TEST(surface_over_labels)
 /* Nodes at which the cells of the body fall into parts without a common face. */
 static int64_t count_hinges(const struct label_cells *mesh)
 {
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     int64_t hinges = 0;
     int32_t *across = zeros(cells.count * 4, sizeof *across);
     SCRATCH int32_t *part =
@@ -82,7 +82,7 @@ TEST(parts_are_joined)
 
 static int32_t count_bodies(const struct label_cells *mesh)
 {
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     GOOD(cells_parts(&cells, part, &count, &error));
     return count;
@@ -91,7 +91,7 @@ static int32_t count_bodies(const struct label_cells *mesh)
 /* No node is shared by cells of two connected bodies. */
 static void check_apart(const struct label_cells *mesh)
 {
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     int32_t count = 0, *part = zeros(cells.count, sizeof *part);
     int32_t *of_node = zeros(cells.node_count, sizeof *of_node);
     assert_true(part != NULL && of_node != NULL);
@@ -154,7 +154,7 @@ TEST(specks_and_the_largest_body)
     mesh = make(&labels, &options);
     assert_int_equal(count_bodies(&mesh), 1);
     /* The sphere does not grow to make up for the cube. */
-    struct cells cells = cells_of(&mesh);
+    struct cells cells = label_cells_view(&mesh);
     double volume = 0;
     for (int64_t c = 0; c < cells.count; c++) {
         volume += cell_volume(&cells, c);

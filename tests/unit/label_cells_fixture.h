@@ -34,16 +34,11 @@ static inline struct label_cells make(const struct labels *labels, const struct 
     return mesh;
 }
 
-static inline struct cells cells_of(const struct label_cells *mesh)
-{
-    return (struct cells){mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cell};
-}
-
 /* Positive, conforming, within the bounds of the angles; the facets are the boundary and look outward: the
  * flux of x through them is dim times the volume. */
 static inline void check_cells(const struct label_cells *mesh)
 {
-    struct cells cells = cells_of(mesh);
+    struct cells cells = label_cells_view(mesh);
     FREED_BY(faces_free) struct faces faces = {0};
     int dim = mesh->dim;
     double volume = 0, flux = 0;

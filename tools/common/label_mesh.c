@@ -114,7 +114,7 @@ static int64_t find_interfaces(const struct cells *cells, const int32_t *region,
 static enum status make_sets(const struct label_image *image, const struct label_cells *result,
                              struct mesh *mesh, struct error *error)
 {
-    struct cells cells = {result->dim, result->node_count, result->x, result->cell_count, result->cell};
+    struct cells cells = label_cells_view(result);
     SCRATCH int32_t *across = NULL;
     SCRATCH struct member *member = NULL;
     SCRATCH int32_t *region = NULL;
