@@ -16,7 +16,7 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
     const int32_t *node = folds->input.facet + f * dim;
     const double *x = fold_position(folds, p), *y = fold_position(folds, q),
                  *a = fold_position(folds, node[0]), *b = fold_position(folds, node[1]);
-    const double *c = dim == 3 ? fold_position(folds, node[2]) : NULL;
+    const double *c = fold_position(folds, node[dim - 1]); /* 2D: b, not used */
     double before = dim == 2 ? fold_volume(2, a, b, x, NULL) : fold_volume(3, a, b, c, x);
     double after = dim == 2 ? fold_volume(2, a, b, y, NULL) : fold_volume(3, a, b, c, y);
     double side[3];
