@@ -83,6 +83,12 @@ reaction() { rows reactions u.dat | awk -v row="$1" -v column="$2" 'NR == row { 
     try 'axis: not allowed: in 2D a surface turns in the plane' 'angle = 4' 'axis_point = 0, 0' 'axis = 0, 0' 'curve = smooth'
     try 'axis_point: not allowed: no angle is given' 'translation = 0, 0' 'axis_point = 0, 0' 'curve = smooth'
     try 'translation: has 3 components' 'translation = 0, 0, 1' 'curve = smooth'
+    try '[contact lid]: a motion of 1e+09 m is prescribed, ' 'translation = 0, -1e9' 'curve = smooth'
+    try ' times the size of the body: lengths without a unit are in m' 'angle = 1e9' 'axis_point = 0, 0' 'curve = smooth'
+    { held quasi-static && lid 'translation = 0, -10' 'curve = smooth' && printf '[solver]\nmax_steps = 1\n'; } > far.scene
+    run --separate-stderr mtled far.scene block.mts
+    [ "$status" -eq 1 ]
+    [[ "$stderr" == *'[contact lid]: a motion of 10 m is prescribed, '*' times the size of the body: lengths without a unit are in m'* ]]
     printf -- '-1 -1 0.1 1 1 0.1 1 -1 0.1\n' > lid.tsv
     { block quasi-static | sed 's/dim = 2/dim = 3/' && lid 'angle = 4' 'axis_point = 0, 0, 0' 'axis = 0, 0, 0' 'curve = smooth' | sed 's/right/front/'; } > bad.scene
     refused 2 '[contact lid]: axis: has no length: give a direction, as 0, 0, 1' mtled bad.scene block.mts
@@ -144,6 +150,25 @@ crushed() {
         mtled two.scene two.mts 2> said > u.dat
         grep -qF "two.scene: $said" said
     done
+}
+
+@test "facets that meet and are through each other at rest are refused with the place, unless the scene allows it" {
+    # Rings of triangles round a node, by more than a full turn.
+    awk 'BEGIN {
+        n = 12
+        printf "# mts 1\n# nodes.x f8 %d 2 enc=text unit=m cols=x,y\n0 0\n", 2 * n + 3
+        for (r = 0.05; r < 0.11; r += 0.05) for (i = 0; i <= n; i++) printf "%.17g %.17g\n", r * cos(6.5 * i / n), r * sin(6.5 * i / n)
+        printf "\n\n# cells i4 %d 3 enc=text\n", 3 * n
+        for (i = 1; i <= n; i++) { print 0, i, i + 1; print i, i + n + 1, i + n + 2; print i, i + n + 2, i + 1 }
+        printf "\n\n# cells.region i4 %d 1 enc=text names=body\n", 3 * n
+        for (i = 0; i < 3 * n; i++) print 0
+        print "\n\n# end 3" }' | groups -f 'ends=half:-0.05,0,-1,0' | shapefn > fan.mts 2> note
+    { block quasi-static
+        printf '[displacement ends]\nfacets = ends\ncomponents = 0, 0\n'; } > fan.scene
+    refused 2 'fan.scene: facets of the boundary that meet at (0.025, 0) pass through each other at rest: set them apart in the mesh, or allow it' mtled fan.scene fan.mts
+    printf '[output]\nfolds = allowed\n' >> fan.scene
+    mtled fan.scene fan.mts 2> said > u.dat
+    grep -qF 'pass through each other at rest; whether others do later is not looked for' said
 }
 
 # A cube of N nodes a side between sliding ends, pressed to a stretch of STRETCH; LINES of [output]: buckled N STRETCH TOLERANCE LINES

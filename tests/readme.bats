@@ -126,6 +126,43 @@ up_to_date() {
     done < files
 }
 
+# constants: NAME PLACE for each name of lib/CONSTANTS.md, a line for each file that it may stand in.
+constants() {
+    awk -F ' [|] ' 'sub(/^[|] `/, "`") {
+        rest = ""
+        for (n = split($1, name, "`"); n > 1; n--) if (name[n] == "" || n % 2 == 0) rest = rest " " name[n]
+        folder = ""
+        for (i = 1; i <= split($2, place, ", "); i++) {
+            if (match(place[i], /.*\//)) { folder = substr(place[i], 1, RLENGTH); place[i] = substr(place[i], RLENGTH + 1) }
+            sub(/^lib\//, "", folder)
+            split(rest, each, " ")
+            for (k in each) print each[k], folder ~ /^tools/ ? folder place[i] : "lib/" folder place[i]
+        }
+    }' "$top/lib/CONSTANTS.md"
+}
+
+@test "constants: each name of the table stands in one of the files that it names" {
+    constants > names
+    [ "$(wc -l < names)" -gt 150 ]
+    while read -r name place; do
+        [ -s "$top/$place" ] || { echo "lib/CONSTANTS.md: no $place"; false; }
+        grep -qw -e "$name" "$top/$place" && echo "$name"
+    done < names | sort -u > found
+    [ -z "$(cut -d ' ' -f 1 names | sort -u | comm -23 - found)" ] || { cut -d ' ' -f 1 names | sort -u | comm -23 - found; false; }
+}
+
+# Round-off, 1e-6 and below, is none of them, nor are mathematical constants and limits of formats.
+@test "constants: each real number that lib and tools/common name has a row with its place" {
+    constants | sort -u > names
+    (cd "$top" && grep -nE '^static const double ' lib/*/*.c tools/common/*.c) | sed -E 's/:[0-9]+:static const double/ /; s/;.*//' |
+        while read -r place rest; do
+            tr , '\n' <<< "$rest" | sed -nE "s|^ *([a-z_0-9]+) = *-?([0-9.]+(e-?[0-9]+)?).*|\1 $place \2|p"
+        done | awk '$3 > 1.5e-6 && $3 < 1e15 { print $1, $2 }' | grep -vE '^(pi|full_turn) ' | sort -u > code
+    [ "$(wc -l < code)" -gt 80 ]
+    comm -23 code names > missing
+    [ ! -s missing ] || { cat missing; false; }
+}
+
 @test "README.md has at most 250 lines" {
     [ "$(wc -l < "$top/README.md")" -le 250 ]
 }

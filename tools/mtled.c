@@ -1,7 +1,7 @@
 static const char usage[] =
     "mtled - total Lagrangian explicit dynamics of a scene, meshless\n"
     "\n"
-    "usage: mtled [-v] [-q] [-b] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
+    "usage: mtled [-v] [-q] [-b] [-s FILE] [-c FILE [-e SECONDS]] [-o FILE] SCENE [FILE]\n"
     "\n"
     "Reads a stream with a table of shape functions (see shapefn) and computes the scene, an\n"
     "INI file that names materials, prescribed displacements, contacts and loads on the groups\n"
@@ -13,7 +13,7 @@ static const char usage[] =
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
     "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end time by\n"
-    "central differences with the true mass, at a share (time_step_margin) of the critical step.\n"
+    "central differences with the true mass.\n"
     "Verdicts are: a body that may move or turn as a whole, as neither a displacement nor a contact\n"
     "holds it; a point that is inverted; a body that folds (see mtled-scene(5)); in a dynamic scene\n"
     "a critical step that collapses (below 0.001 of the first one) and an energy balance that is\n"
@@ -42,13 +42,14 @@ static const char usage[] =
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes;\n"
     "with another scene, cloud, cut or version it is refused. FILE is replaced as a whole, and the\n"
-    "one before is FILE.old: one of them is whole whatever happens. It is a stream with the last\n"
-    "field as u.last and the frames so far; when the results are written, both go.\n"
+    "one before is FILE.old. It is a stream with the last field as u.last and the frames so far;\n"
+    "when the results are written, both go.\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        a report on standard error: steps, error, costs\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
+    "  -s, --start FILE     begin at the whole load from u of this stream, as of a coarser mesh\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
@@ -195,6 +196,7 @@ static void prepare(struct run *run)
     }
     run->u = run_new_values(run, model->system.node_count * run->scene->dim);
     run->prepare_seconds = clock_seconds() - run->display.started;
+    run_start(run);
     run_contacts_begin(run);
     run_folds_begin(run);
     run_stability_begin(run);
@@ -248,6 +250,7 @@ int main(int argc, char *argv[])
         .parts = &parts,
         .verbose = tool_given(&tool, "verbose") && process_speaks(),
         .text = !tool_given(&tool, "binary"),
+        .start_file = tool_value(&tool, "start"),
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
     double started = clock_seconds();
@@ -255,12 +258,14 @@ int main(int argc, char *argv[])
     read_stream(&tool, &stream, &parts);
     run.read_seconds = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
+    run_start_read(&run);
     run.display.started = clock_seconds();
     prepare(&run);
     compute(&run);
     write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
+    run_start_free(&run);
     free(run.u);
     return tool_end(&tool);
 }

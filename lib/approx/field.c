@@ -52,8 +52,10 @@ static void enclose(const struct cells *cells, const double *spacing, double wit
     }
 }
 
-static enum status outside_of_cells(const struct cells *cells, const double *spacing, double within,
-                                    int64_t count, const double *x, bool *outside, struct error *error)
+/* cell[count]: the nearest cell to each point of x[count * dim], the first of several; -1: all are farther
+ * than `within` times the largest spacing of their nodes. */
+static enum status nearest_cells(const struct cells *cells, const double *spacing, double within,
+                                 int64_t count, const double *x, int64_t *cell, struct error *error)
 {
     int dim = cells->dim;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
@@ -65,15 +67,20 @@ static enum status outside_of_cells(const struct cells *cells, const double *spa
     enclose(cells, spacing, within, centre, radius, size);
     RETURN_IF_ERROR(point_grid_build(&grid, dim, cells->count, centre, radius, error));
     for (int64_t p = 0; p < count; p++) {
+        double least2 = INFINITY;
         near.count = 0;
-        outside[p] = true;
+        cell[p] = -1;
         RETURN_IF_ERROR(point_grid_query(&grid, x + p * dim, 1.0, &near, error));
-        for (int64_t i = 0; i < near.count && outside[p]; i++) {
+        for (int64_t i = 0; i < near.count && least2 > 0.0; i++) {
             const double *corner[4];
             int64_t c = near.index[i];
             cell_corners(cells, c, corner);
             double most = (within + in_cell) * size[c];
-            outside[p] = !(simplex_distance2(dim, dim, corner, x + p * dim) <= most * most);
+            double distance2 = simplex_distance2(dim, dim, corner, x + p * dim);
+            if (distance2 <= most * most && distance2 < least2) {
+                least2 = distance2;
+                cell[p] = c;
+            }
         }
     }
     return STATUS_OK;
@@ -85,7 +92,13 @@ enum status field_outside(const struct cells *cells, const double *spacing, doub
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
     if (cells->count > 0) {
-        return outside_of_cells(cells, spacing, within, count, x, outside, error);
+        SCRATCH int64_t *cell = NULL;
+        RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
+        RETURN_IF_ERROR(nearest_cells(cells, spacing, within, count, x, cell, error));
+        for (int64_t p = 0; p < count; p++) {
+            outside[p] = cell[p] < 0;
+        }
+        return STATUS_OK;
     }
     RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, spacing, error));
     for (int64_t p = 0; p < count; p++) {
@@ -132,4 +145,49 @@ void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const
             }
         }
     }
+}
+
+/* value[cols] at x[dim]: linear in a cell, of the values at its nodes. */
+static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
+                                const double *x, double *value)
+{
+    int dim = cells->dim;
+    const int32_t *node = cells->node + cell * (dim + 1);
+    double whole = cell_volume(cells, cell);
+    for (int64_t c = 0; c < cols; c++) {
+        value[c] = 0.0;
+    }
+    for (int k = 0; k <= dim; k++) { /* the weight of a corner is the distance from the face opposite */
+        int32_t face[3];
+        double area[3], height = 0.0;
+        cell_face(cells, cell, k, face);
+        face_area_vector(dim, cells->x, face, area);
+        for (int a = 0; a < dim; a++) {
+            height += area[a] * (cells->x[(int64_t)face[0] * dim + a] - x[a]);
+        }
+        for (int64_t c = 0; c < cols; c++) {
+            value[c] += height / (dim * whole) * values[node[k] * cols + c];
+        }
+    }
+}
+
+enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
+                         const double *x, double *result, struct error *error)
+{
+    SCRATCH double *spacing = NULL;
+    SCRATCH int64_t *cell = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
+    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, x, cell, error));
+    for (int64_t p = 0; p < count; p++) {
+        if (cell[p] < 0) {
+            char place[96];
+            point_text(cells->dim, x + p * cells->dim, place);
+            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)p,
+                        place);
+        }
+        interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
+    }
+    return STATUS_OK;
 }

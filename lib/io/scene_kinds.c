@@ -24,10 +24,10 @@ static enum status check_elasticity(const struct place *place, double nu)
     RETURN_IF_ERROR(place_require(place, "nu", "give Poisson's ratio, or a table"));
     if (nu >= .5) {
         return place_fail(place, "nu",
-                          "%g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu);
+                          "%.15g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu);
     }
     if (nu <= -1) {
-        return place_fail(place, "nu", "%g is not above -1", nu);
+        return place_fail(place, "nu", "%.15g is not above -1", nu);
     }
     return STATUS_OK;
 }

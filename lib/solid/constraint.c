@@ -20,7 +20,7 @@ void constraint_rows_init(struct constraint_rows *rows, int dim)
 void constraint_rows_free(struct constraint_rows *rows)
 {
     FREE_ALL(rows->ptr, rows->first, rows->list, rows->idx, rows->phi, rows->direction, rows->target,
-             rows->curve, rows->section, rows->node);
+             rows->start, rows->curve, rows->section, rows->node);
     *rows = (struct constraint_rows){0};
 }
 
@@ -126,6 +126,12 @@ double constraint_rows_value(const struct constraint_rows *rows, int64_t r, cons
     double mean[3];
     average_take(&average, rows->dim, u, mean);
     return along(rows, r, mean);
+}
+
+double constraint_rows_target(const struct constraint_rows *rows, int64_t r, const double *factor)
+{
+    double target = rows->target[r] * factor[rows->curve[r]];
+    return rows->start != NULL ? target + rows->start[r] * factor[rows->start_curve] : target;
 }
 
 /* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
@@ -288,7 +294,7 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     double *multiplier = constraint->multiplier;
     constraint_values(constraint, u, multiplier);
     for (int64_t r = 0; r < rows->count; r++) {
-        multiplier[r] = (factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0) - multiplier[r];
+        multiplier[r] = (factor != NULL ? constraint_rows_target(rows, r, factor) : 0.0) - multiplier[r];
     }
     constraint_solve(constraint, multiplier);
     constraint_spread(constraint, multiplier, u);
@@ -300,7 +306,7 @@ double constraint_violation(const struct constraint *constraint, const double *f
     double worst = 0.0;
     for (int64_t r = 0; r < constraint->rows->count; r++) {
         const struct constraint_rows *rows = constraint->rows;
-        double wanted = factor != NULL ? rows->target[r] * factor[rows->curve[r]] : 0.0;
+        double wanted = factor != NULL ? constraint_rows_target(rows, r, factor) : 0.0;
         double violation = fabs(wanted - constraint_rows_value(rows, r, u));
         if (!(violation <= worst)) {
             worst = violation;

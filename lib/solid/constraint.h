@@ -29,9 +29,11 @@ struct constraint_rows {
     double *phi;
     double *direction; /* count * dim, unit vectors */
     double *target;    /* count, m */
-    int32_t *curve;    /* count: which load curve scales the target */
-    int32_t *section;  /* count: the caller's label, for messages and reactions */
-    int32_t *node;     /* count: the node it stands for, for messages */
+    double *start; /* count; or NULL: m, is added to the target times factor(start_curve), see system_start */
+    int32_t start_curve;
+    int32_t *curve;   /* count: which load curve scales the target */
+    int32_t *section; /* count: the caller's label, for messages and reactions */
+    int32_t *node;    /* count: the node it stands for, for messages */
 };
 
 void constraint_rows_init(struct constraint_rows *rows, int dim);
@@ -44,6 +46,9 @@ MUST_CHECK enum status constraint_rows_add(struct constraint_rows *rows, int64_t
 
 /* The average that row r prescribes. */
 struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r);
+
+/* What row r prescribes at these values of the load curves, m. */
+double constraint_rows_target(const struct constraint_rows *rows, int64_t r, const double *factor);
 
 /* direction . (sum_j phi_j u_j) of row r. */
 double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u);

@@ -67,9 +67,11 @@ struct contact {
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
     double *multiplier; /* dim for each lambda_a, Pa, in the surface's frame; as many as contact_nodes has */
-    double deepest;     /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
-    bool *behind;       /* count: reached the back of the surface without going through it */
-    double *checked_x;  /* count * dim: y_p at the last search, m */
+    double *change;    /* as many: what the last augmentation found them to lack, Pa; 0: not to be compared */
+    double part;       /* of that it added */
+    double deepest;    /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
+    bool *behind;      /* count: reached the back of the surface without going through it */
+    double *checked_x; /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
     double *checked_normal;   /* count * dim: of the surface there, in its frame */
     double *held;             /* count * dim: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
@@ -137,9 +139,13 @@ void contact_accept(struct contact *contact);
  *     lambda_a <- lambda_a + sum_p N_a A_p (t_p - held_p) / k_p / sum_p N_a A_p / k_p,
  *
  * or 0 where its component along the mean normal would be tension. Where the surface is flat and all points
- * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap. Each goes `share` of the
- * way, in (0, 1]. */
-void contact_augment(struct contact *contact, double share);
+ * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap.
+ *
+ * With `steady` the last augmentation was at the same load. The step is then of the length that Irons and
+ * Tuck (1969) take from the two changes: shorter where multipliers go to and fro, as near an instability they
+ * do between two states; and longer where they are one geometric sequence, as where the body is held beside
+ * the contact and cannot give way. The augmentation after a longer one has length 1. */
+void contact_augment(struct contact *contact, bool steady);
 
 /* The tractions held at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);
@@ -147,6 +153,13 @@ void contact_spread_multipliers(struct contact *contact);
 /* Penetration or opening of contact nodes that the multipliers do not yet hold, at the last evaluation, m:
  * the largest change of a multiplier in an augmentation, divided by the penalty stiffness. */
 double contact_miss(const struct contact *contact);
+
+/* Work of the contact's tractions along what it gives way by so far, J (2D: J/m): sum_a A_a c_a
+ * (|lambda_a'|^2 - |lambda_a|^2) / 2 in absolute value, with the multipliers lambda' after the next
+ * augmentation and c_a the mean of 1 / k_p. The body is in equilibrium with a surface that lies that much too
+ * far away. So to first order this is what its energy lacks. Nodes that give way to and fro within a patch
+ * cancel, as they do there. */
+double contact_missing_work(const struct contact *contact);
 
 /* The contact nodes, or the points where there are no nodal averages; and the last evaluation at one: means
  * over the points, weighted by its hat function. */

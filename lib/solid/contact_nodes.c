@@ -1,8 +1,14 @@
 /* Contact nodes: their multipliers, and nodal averages of gap, pressure and normal. */
 #include "solid/contact_between.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
+
+/* Part of an augmentation that is made at least; its inverse at most, where two changes in a row have this
+ * cosine. */
+static const double least_part = 1.0 / 16.0, aligned = 0.99;
 
 void contact_spread_multipliers(struct contact *contact)
 {
@@ -77,14 +83,13 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
     }
 }
 
-/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns the change divided by the penalty
- * stiffness, m. */
+/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns by how much its change is what the
+ * contact gives way by there, m/Pa; 0: nothing changes. */
 static double augmented(const struct contact *contact, int64_t a, double next[3])
 {
     const struct boundary_averages *averages = contact->averages;
-    const double *multiplier = contact->multiplier + a * contact->dim;
     double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0;
-    memcpy(next, multiplier, (size_t)contact->dim * sizeof *next);
+    memcpy(next, contact->multiplier + a * contact->dim, (size_t)contact->dim * sizeof *next);
     if (averages == NULL) {
         compliance = 1.0 / contact->stiffness[a];
         add_difference(contact, a, compliance, sum, direction);
@@ -104,23 +109,72 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
         next[c] += sum[c] / compliance;
         along += next[c] * direction[c];
     }
-    double change2 = 0.0;
     for (int c = 0; c < contact->dim; c++) {
         next[c] = along > 0.0 ? next[c] : 0.0;
-        change2 += (next[c] - multiplier[c]) * (next[c] - multiplier[c]);
     }
-    return sqrt(change2) * compliance;
+    return compliance;
 }
 
-void contact_augment(struct contact *contact, double share)
+/* The next augmentation is not compared with the last one. */
+static void forget_change(struct contact *contact)
 {
-    double next[3];
-    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+    size_t values = (size_t)(contact_nodes(contact)->count * contact->dim);
+    contact->part = 1.0;
+    memset(contact->change, 0, values * sizeof *contact->change);
+}
+
+/* Let contact->change become what the multipliers lack by the last evaluation. Returns the part of it to go
+ * on by. With the change d before, of which part w was made, and d' now it is w d . (d - d') / |d - d'|^2: of
+ * a geometric sequence the whole way to its limit. */
+static double take_change(struct contact *contact)
+{
+    const struct boundary_averages *nodes = contact_nodes(contact);
+    double before2 = 0.0, both = 0.0, now2 = 0.0, next[3];
+    for (int64_t a = 0; a < nodes->count; a++) {
         (void)augmented(contact, a, next);
-        double *multiplier = contact->multiplier + a * contact->dim;
         for (int c = 0; c < contact->dim; c++) {
-            multiplier[c] = share == 1.0 ? next[c] : multiplier[c] + share * (next[c] - multiplier[c]);
+            double *change = &contact->change[a * contact->dim + c], before = *change;
+            *change = next[c] - contact->multiplier[a * contact->dim + c];
+            before2 += nodes->area[a] * before * before;
+            both += nodes->area[a] * before * *change;
+            now2 += nodes->area[a] * *change * *change;
         }
+    }
+    if (!(before2 > 0.0)) {
+        return contact->part;
+    }
+    double apart2 = before2 - 2.0 * both + now2, most = 1.0;
+    if (both > aligned * before2) { /* no limit is in sight */
+        return fmax(least_part, 0.5 * contact->part);
+    }
+    if (both > aligned * sqrt(before2 * now2)) {
+        most = 1.0 / least_part;
+    }
+    double part = contact->part * (before2 - both) / apart2;
+    return fmin(most, fmax(least_part, part));
+}
+
+void contact_augment(struct contact *contact, bool steady)
+{
+    int dim = contact->dim;
+    if (!steady) {
+        forget_change(contact);
+    }
+    double part = take_change(contact);
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        double *multiplier = contact->multiplier + a * dim, next[3], along = 0.0;
+        for (int c = 0; c < dim; c++) {
+            double change = contact->change[a * dim + c];
+            next[c] = multiplier[c] + part * change;
+            along += next[c] * (multiplier[c] + change);
+        }
+        for (int c = 0; c < dim; c++) { /* beyond the whole change it may become a pull */
+            multiplier[c] = part <= 1.0 || along > 0.0 ? next[c] : 0.0;
+        }
+    }
+    contact->part = part;
+    if (part > 1.0) {
+        forget_change(contact); /* what comes next is no sequence with it */
     }
     contact_spread_multipliers(contact);
 }
@@ -129,7 +183,23 @@ double contact_miss(const struct contact *contact)
 {
     double miss = 0.0, next[3];
     for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-        miss = fmax(miss, augmented(contact, a, next));
+        const double *multiplier = contact->multiplier + a * contact->dim;
+        double compliance = augmented(contact, a, next);
+        miss = fmax(miss, compliance * vector_distance(contact->dim, next, multiplier));
     }
     return miss;
+}
+
+double contact_missing_work(const struct contact *contact)
+{
+    const struct boundary_averages *nodes = contact_nodes(contact);
+    double work = 0.0, next[3];
+    for (int64_t a = 0; a < nodes->count; a++) {
+        const double *multiplier = contact->multiplier + a * contact->dim;
+        double compliance = augmented(contact, a, next),
+               square =
+                   vector_dot(contact->dim, next, next) - vector_dot(contact->dim, multiplier, multiplier);
+        work += nodes->area[a] * compliance * square / 2.0;
+    }
+    return fabs(work);
 }

@@ -206,6 +206,11 @@ static enum status find_rims(struct folds *folds, const struct fold_ring *sides,
     return STATUS_OK;
 }
 
+static bool interpenetrates(const struct fold *fold)
+{
+    return fold->kind == FOLD_CREASE || fold->kind == FOLD_CROSSING || fold->kind == FOLD_WITHIN;
+}
+
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
     SCRATCH struct fold_ring *sides = NULL;
@@ -227,13 +232,13 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&stopped, input->node_count, error));
     RETURN_IF_ERROR(folds_find_bodies(folds, error));
     struct fold at_rest = folds_find(folds, u, stopped);
-    if (at_rest.kind != FOLD_CROSSING && at_rest.kind != FOLD_WITHIN) {
+    if (!interpenetrates(&at_rest)) {
         at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
         if (folds->body_count > 1) {
             RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
         }
     }
-    if (at_rest.kind == FOLD_CROSSING || at_rest.kind == FOLD_WITHIN) {
+    if (interpenetrates(&at_rest)) {
         folds->at_rest = at_rest;
     }
     return STATUS_OK;

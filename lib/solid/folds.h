@@ -114,8 +114,8 @@ struct folds {
     int32_t *node_part; /* node_count: of a cell of each node */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
-    struct fold at_rest; /* FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at rest;
-                            these kinds are not looked for, then */
+    struct fold at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate
+                            at rest; the last two are not looked for, then, nor the first after itself */
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */

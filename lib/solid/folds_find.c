@@ -258,7 +258,10 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
-    struct fold fold = search(folds, folds->ring_count, search_rings, stopped);
+    struct fold fold = FOLD_NOTHING;
+    if (folds->at_rest.kind != FOLD_CREASE) {
+        fold = search(folds, folds->ring_count, search_rings, stopped);
+    }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
         folds_sort_boxes(folds);
         fold = search(folds, folds->input.facet_count, folds_search_boxes, stopped);

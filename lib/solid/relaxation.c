@@ -54,7 +54,7 @@ static void augment(struct relaxation *r)
             body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
     }
     if (contacts) {
-        system_augment_contacts(r->system, relaxation_augmentation_share(r));
+        system_augment_contacts(r->system, r->at_full_load > pause);
         r->augmentations += r->at_full_load > 0;
     }
     if (pressures || contacts) {
@@ -108,6 +108,13 @@ static bool step(struct relaxation *r, double *u, bool measure)
     return true;
 }
 
+/* The share of the load at which u is; a run that has begun near its result has all of it from its begin on.
+ */
+static double load_share(const struct relaxation *r)
+{
+    return r->system->rows.start != NULL ? 1.0 : r->load / (double)r->report->ramp_steps;
+}
+
 static bool tell(struct relaxation *r)
 {
     if (r->options->progress == NULL) {
@@ -122,7 +129,7 @@ static bool tell(struct relaxation *r)
                                 .state = relaxation_visit,
                                 .run = r};
     double ramp = (double)r->report->ramp_steps;
-    progress.time = r->load / ramp;
+    progress.time = load_share(r);
     if (r->load >= ramp && r->report->error > 0.0 && isfinite(r->report->error)) {
         /* The error falls by about exp(-w dt) a step. */
         double to_go = log(fmax(1.0, r->report->error / r->options->tolerance)) /
@@ -179,7 +186,6 @@ static void let_go(struct relaxation *r)
     r->spectrum2 = INFINITY;
     r->spectrum_known = false;
     r->augmentations = 0;
-    r->augmented_miss = INFINITY;
     r->steady_augmentations = 0;
 }
 
@@ -224,7 +230,7 @@ static bool follow(struct relaxation *r, struct error *error)
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
     }
-    relaxation_update_time_step(r, r->residual_at, r->at_full_load == 0 ? iterations_loading : iterations);
+    relaxation_follow_time_step(r, r->residual_at, r->at_full_load == 0 ? iterations_loading : iterations);
     if (hovers(r)) {
         relaxation_calm(r, r->acceleration);
     }
@@ -326,7 +332,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
     return RELAXATION_TOO_MANY_STEPS;
 }
 
-/* From u, brought onto the conditions, at rest and without load. */
+/* From u at rest, brought onto the conditions: without load, or from a start as it is (system_start). */
 static enum status begin(struct relaxation *r, struct error *error)
 {
     struct solid_system *system = r->system;
@@ -338,6 +344,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     system_relaxation_mass(system, false, r->scratch);
     RETURN_IF_ERROR(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
     constraint_project(&r->preconditioner.constraint, system->factor, r->u);
+    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u);
     r->residual_at = r->u;
     r->low2 = r->pressures_lack = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
@@ -373,8 +380,6 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .step_safety = 1.0,
-                           .augmentation_share = 1.0,
-                           .augmented_miss = INFINITY,
                            .spectrum2 = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, bulk_limit);
@@ -391,7 +396,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
         r.load = r.older.load;
         memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
     }
-    report->load = r.load / (double)report->ramp_steps;
+    report->load = load_share(&r);
     if (report->outcome == RELAXATION_CONVERGED && gives_frames(&r)) {
         (void)give_frame(&r, error);
     } else {

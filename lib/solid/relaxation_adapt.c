@@ -6,9 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Steps in which the load moves something by as much as a cell, or as the body is long; and at least. */
-static const double steps_per_spacing = 50.0, steps_per_size = 400.0;
-static const int64_t least_ramp = 100;
+/* Steps in which the load moves something by as much as a cell, or as the body is long; and at least, of a
+ * run from rest and of one that begins near its result. */
+static const double steps_per_spacing = 20.0, steps_per_size = 400.0, least_ramp = 75.0,
+                    least_of_start = 20.0;
 /* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
  * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
  */
@@ -25,10 +26,11 @@ static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node si
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0; /* between checks of the mass */
 
-/* What contacts may penetrate at an equilibrium, by the largest motion; and augmentations until they do. */
-static const double penetration_share = 1e-3;
+/* What contacts may give way by at an equilibrium: by the largest motion; and by the work that their forces
+ * would do along it, by the energy of the body: so many tolerances, or that. And augmentations until they do.
+ */
+static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
 static const int64_t most_augmentations = 100;
-static const double least_augmentation = 1.0 / 16.0; /* part of an augmentation that is made at least */
 
 double relaxation_body_size(const struct solid_system *system)
 {
@@ -43,9 +45,9 @@ double relaxation_thickness(const struct solid_system *system)
 
 int64_t relaxation_choose_ramp(const struct relaxation *r)
 {
-    double largest = system_longest_way(r->system);
+    double largest = system_longest_change(r->system);
     double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
-    steps = fmax(steps, (double)least_ramp);
+    steps = fmax(steps, r->system->rows.start != NULL ? least_of_start : least_ramp);
     return steps > 1e7 ? 10000000 : (int64_t)steps;
 }
 
@@ -70,6 +72,15 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
     /* The estimate is from below and wanders: follow rises at once, falls slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
     r->time_step = step_share(r) * 2.0 / r->frequency;
+}
+
+void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations)
+{
+    double before = r->frequency;
+    relaxation_update_time_step(r, u, iterations);
+    if (r->at_full_load == 0) {
+        r->time_step *= fmin(1.0, before / r->frequency);
+    }
 }
 
 /* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
@@ -229,27 +240,25 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     relaxation_update_time_step(r, r->residual_at, calm_iterations);
 }
 
-double relaxation_augmentation_share(struct relaxation *r)
-{
-    double miss = system_contact_miss(r->system);
-    if (r->at_full_load == 0) {
-        r->augmentation_share = 1.0;
-    } else if (miss >= r->augmented_miss) {
-        r->augmentation_share = fmax(0.5 * r->augmentation_share, least_augmentation);
-    }
-    r->augmented_miss = r->at_full_load == 0 ? INFINITY : miss;
-    return r->augmentation_share;
-}
-
 static double penetration_allowed(const struct relaxation *r)
 {
     return penetration_share * r->largest_move;
 }
 
+/* Whether contacts give way by more than displacements or forces allow. What is within the tolerance of
+ * displacements cannot be told from their error. */
+static bool give_way(const struct relaxation *r)
+{
+    double miss = system_contact_miss(r->system), tolerance = r->options->tolerance;
+    double missing_share = fmax(least_missing, missing_tolerances * tolerance);
+    return miss > penetration_allowed(r) ||
+           (miss > tolerance * r->largest_move &&
+            system_missing_work(r->system) > missing_share * body_energy(&r->system->body, r->residual_at));
+}
+
 bool relaxation_contacts_lack(const struct relaxation *r)
 {
-    return r->at_full_load == 0 ||
-           (r->augmentations < most_augmentations && system_contact_miss(r->system) > penetration_allowed(r));
+    return r->at_full_load == 0 || (r->augmentations < most_augmentations && give_way(r));
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)

@@ -51,8 +51,6 @@ struct relaxation {
     int64_t augmented_step;                   /* when multipliers took over last */
     int64_t augmentations;                    /* of contacts at the load that is held */
     int64_t steady_augmentations;             /* of pressures, all under the load that is held */
-    double augmentation_share;                /* see relaxation_augmentation_share */
-    double augmented_miss; /* of contacts at the last augmentation, INFINITY: none yet, m */
     double pressures_lack; /* part of the nodal pressures that is still to come; see body_augment */
     enum status failure;
     double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
@@ -122,6 +120,10 @@ void relaxation_control_load(struct relaxation *r);
 /* Take the critical step at u from the largest frequency. */
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
 
+/* The same at a check: while the load grows the frequency is taken to rise until the next check as it did
+ * since the last one. */
+void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations);
+
 /* Let the mass follow the stiffness where the body has stiffened or softened since it was last set, so that
  * the critical step holds through large strains; and say when to look again. False on failure. */
 bool relaxation_update_mass(struct relaxation *r, struct error *error);
@@ -147,13 +149,9 @@ void relaxation_keep_state(struct relaxation *r);
 bool relaxation_step_back(struct relaxation *r, struct error *error);
 
 /* Whether multipliers of contacts have to follow: always while the load grows, as left to the end they would
- * change at once; at the load that is held where contacts penetrate more than they may. */
+ * change at once; at the load that is held where contacts give way by more than they may, for displacements
+ * or for forces. */
 bool relaxation_contacts_lack(const struct relaxation *r);
-
-/* The part of the way to their new values that multipliers of contacts go in the next augmentation: all of
- * it, but half as much each time that the last one did not bring them nearer while the load was held. A body
- * near an instability would else go to and fro between two states. */
-double relaxation_augmentation_share(struct relaxation *r);
 
 /* Whether a converged state may stand; notes what contacts penetrate. */
 bool relaxation_contacts_hold(struct relaxation *r);

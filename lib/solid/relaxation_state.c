@@ -82,8 +82,6 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"retreats", STATE_COUNTS, &r->backtracks, 1},
         {"augmented_step", STATE_COUNTS, &r->augmented_step, 1},
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},
-        {"augmentation_share", STATE_NUMBERS, &r->augmentation_share, 1},
-        {"augmented_miss", STATE_NUMBERS, &r->augmented_miss, 1},
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},
         {"settled", STATE_COUNTS, &r->converged_checks, 1},

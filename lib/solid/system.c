@@ -279,6 +279,19 @@ double system_longest_way(const struct solid_system *system)
     return longest;
 }
 
+double system_longest_change(const struct solid_system *system)
+{
+    const struct constraint_rows *rows = &system->rows;
+    double longest = 0.0;
+    if (rows->start == NULL) {
+        return system_longest_way(system);
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        longest = fmax(longest, fabs(rows->start[r]));
+    }
+    return longest;
+}
+
 bool system_has_inverse(const struct solid_system *system)
 {
     return system->dim == 3 && system->body.smoothed && system->node_lists != NULL;

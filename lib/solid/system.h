@@ -90,6 +90,12 @@ void system_free(struct solid_system *system);
 MUST_CHECK enum status system_state(struct solid_system *system, const struct state *state,
                                     struct error *error);
 
+/* Let a quasi-static run begin from parameters u[node_count * dim] near its result, as of a coarser cloud, at
+ * the whole load: the curves stay at their values at the end, and what each row of the conditions prescribes
+ * goes from what u has there to its target. To be called before the first evaluation. STATUS_SYSTEM: memory.
+ */
+MUST_CHECK enum status system_start(struct solid_system *system, const double *u, struct error *error);
+
 /* Values of all curves at s within [0, 1], into system->factor. */
 void system_load_factors(struct solid_system *system, double s);
 
@@ -114,12 +120,13 @@ void system_accept(struct solid_system *system);
 /* Leaves a system without contacts. */
 void system_free_contacts(struct solid_system *system);
 
-/* contact_augment, and the largest contact_miss, of all contacts. */
-void system_augment_contacts(struct solid_system *system, double share);
+/* contact_augment, the largest contact_miss, and the sum of contact_missing_work, of all contacts. */
+void system_augment_contacts(struct solid_system *system, bool steady);
 
 /* Make penalties stiffer where multipliers demand it (contact_stiffen); whether any became so. */
 bool system_stiffen_contacts(struct solid_system *system);
 double system_contact_miss(const struct solid_system *system);
+double system_missing_work(const struct solid_system *system);
 
 /* Gaps and pressures of the contacts at parameters u and system->factor, see contact_measure. Other
  * evaluations between may have left those of another state. */
@@ -127,6 +134,9 @@ void system_measure_contacts(struct solid_system *system, const double *u, bool 
 
 /* The largest displacement that a condition or a moving rigid surface prescribes, at factor 1, m. */
 double system_longest_way(const struct solid_system *system);
+
+/* That on the way of a run: begun by system_start, from what the start has to the targets, m. */
+double system_longest_change(const struct solid_system *system);
 
 /* force[node_count * dim] = internal forces of body and constraint penalties at u: minus the residual without
  * loads and contacts. */

@@ -39,10 +39,10 @@ void system_accept(struct solid_system *system)
     }
 }
 
-void system_augment_contacts(struct solid_system *system, double share)
+void system_augment_contacts(struct solid_system *system, bool steady)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_augment(&system->contacts[c], share);
+        contact_augment(&system->contacts[c], steady);
     }
 }
 
@@ -62,4 +62,13 @@ double system_contact_miss(const struct solid_system *system)
         miss = fmax(miss, contact_miss(&system->contacts[c]));
     }
     return miss;
+}
+
+double system_missing_work(const struct solid_system *system)
+{
+    double work = 0.0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        work += contact_missing_work(&system->contacts[c]);
+    }
+    return work;
 }

@@ -7,8 +7,9 @@ export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 name=$1 kind=$2 reference=$6 at=$7 folder=$8
 rm -rf "$folder"
-# The budget of nodes or of rounds ends these runs, or a body that folds where cells become small.
-KEEP_ROUNDS=1 bash "$here/../refine/refine.sh" "$3" "$4" "$5" "$folder" > "$folder.log" 2>&1 || [ $? -eq 1 ]
+# The budget of nodes or of rounds ends these runs, or a body that folds where cells become small. Solutions begin without load, as those of
+# mixed elements do: their times are comparable.
+KEEP_ROUNDS=1 AFRESH=yes bash "$here/../refine/refine.sh" "$3" "$4" "$5" "$folder" > "$folder.log" 2>&1 || [ $? -eq 1 ]
 cat "$folder.log" >&2
 [ "$(wc -l < "$folder/rounds.tsv")" -gt 1 ] # one round at least
 tail -n +2 "$folder/rounds.tsv" | while IFS=$'\t' read -r round nodes mean _ seconds all; do

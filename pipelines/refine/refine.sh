@@ -11,7 +11,7 @@
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
 # REFINE_GROUPS arguments for groups (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
 # ORDER of the error for fielderr (default 1), SUPPORT arguments for support (-i tumour), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
-# made smaller alike, REPEAT how often the finer solution is timed: the least counts.
+# made smaller alike, AFRESH=yes: no solution begins from that of the last round (mtled --start), REPEAT how often the finer solution is timed: the least counts.
 #
 # Exit status: 0 below TOL; 1 the budget of nodes or rounds is spent, or a round failed: the one of least estimate is kept; 2 wrong usage.
 set -euo pipefail
@@ -106,11 +106,11 @@ named() {
     if [ "${#naming[@]}" -gt 0 ]; then groups "${naming[@]}"; else cat; fi
 }
 
-# solve MESH FILE: the stages start together, and all of them append to an empty log.
+# solve MESH FILE [START]: the stages start together, and all of them append to an empty log. The solution begins from that of START, or without load.
 solve() {
     : > "$work/log"
     # shellcheck disable=SC2086 # several arguments
-    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2>> "$work/log"; fi | named 2>> "$work/log" | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q "$scene" -o "$2" 2>> "$work/log"
+    if [ "$image" ]; then cat "$1"; else nodes -u "$unit" "$1" 2>> "$work/log"; fi | named 2>> "$work/log" | ipoints 2>> "$work/log" | support ${SUPPORT-} 2>> "$work/log" | shapefn 2>> "$work/log" | mtled -q ${3:+-s "$3"} "$scene" -o "$2" 2>> "$work/log"
 }
 
 # What the last command said, in a line: of a pipe not what stages say of one before them that failed.
@@ -131,6 +131,7 @@ quantity() {
 keep() {
     local file
     cp "$work/u.dat" "$work/last.dat"
+    [ -n "${AFRESH-}" ] || last=$work/last.dat
     holds "$estimate < ${least_estimate:-1e300}" || return 0
     least_estimate=$estimate kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
     for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
@@ -142,7 +143,7 @@ keep() {
     done
 }
 
-kept=none what='' graded=''
+kept=none what='' graded='' last=''
 # lost WHAT: a round that failed.
 lost() {
     fail 1 "round $round: $1: $(said); kept: $kept"
@@ -177,9 +178,10 @@ grade() {
     } > "$work/graded.geo"
 }
 
-# timed_solve MESH FILE: the least time of REPEAT runs.
+# timed_solve MESH FILE [START]: the least time of REPEAT runs.
 timed_solve() {
     local run
+    rm -f "$work/solve.runs"
     for ((run = 1; run <= ${REPEAT:-1}; run++)); do
         { time solve "$@"; } 2>> "$work/solve.runs" || return 1
     done
@@ -194,9 +196,11 @@ attempt() {
     { time mesh "$factor" "$work/$body"; } 2> "$work/mesh.time" || return 1
     { time mesh "$(calc "2 * $factor")" "$work/coarse_$body"; } 2> "$work/coarse_mesh.time" || return 1
     what="the scene"
-    timed_solve "$work/$body" "$work/u.dat" || return 1
+    # The body may come to rest elsewhere, or fold, from where the last round ended: then without load.
+    { [ -n "$last" ] && timed_solve "$work/$body" "$work/u.dat" "$last"; } || timed_solve "$work/$body" "$work/u.dat" || return 1
     what="the scene at twice the size"
-    { time solve "$work/coarse_$body" "$work/coarse.dat"; } 2> "$work/coarse.time" || return 1
+    { time { { [ -n "$last" ] && solve "$work/coarse_$body" "$work/coarse.dat" "$last"; } || solve "$work/coarse_$body" "$work/coarse.dat"; }; } \
+        2> "$work/coarse.time" || return 1
     what=fielderr
     { time fielderr -p "${ORDER:-1}" --skip-outside "$work/u.dat" "$work/coarse.dat" > "$work/errors.tsv" 2> "$work/log"; } 2> "$work/estimate.time" || return 1
 }

@@ -74,7 +74,7 @@ static double settle(struct contact *contact, double spring, const double *pull,
             change2 += move * move;
         }
         if (step % 500 == 499 && step < 18000) {
-            contact_augment(contact, 1.0);
+            contact_augment(contact, false);
         }
     }
     return change2;

@@ -480,6 +480,24 @@ static void make_two(struct shape *shape, int dim, double away)
     finish(shape, -1, 0.0);
 }
 
+/* A body whose sides are nearly closed, or through each other, at rest: that is known from the begin, and not
+ * told again. */
+TEST(crease_at_rest)
+{
+    static struct shape shape;
+    for (int dim = 2; dim <= 3; dim++) {
+        make_fan(&shape, dim, 12, 6.0);
+        assert_int_equal(shape.folds.at_rest.kind, FOLD_NONE);
+        folds_free(&shape.folds);
+        make_fan(&shape, dim, 12, 6.5);
+        assert_int_equal(shape.folds.at_rest.kind, FOLD_CREASE);
+        double u[MOST_NODES * 3] = {0};
+        bool stopped[MOST_NODES] = {false};
+        assert_int_equal(folds_find(&shape.folds, u, stopped).kind, FOLD_NONE);
+        folds_free(&shape.folds);
+    }
+}
+
 /* Bodies that interpenetrate: at rest, and when one is moved; a boundary crosses only where one is not wholly
  * within. */
 TEST(another_body)

@@ -254,6 +254,7 @@ TEST(material_values)
         {"rho", "0", "rho: 0 is not above 0"},
         {"rho", "-1", "rho: -1 is not above 0"},
         {"nu", ".5", "nu: 0.5 is not below 0.5: nearly incompressible"},
+        {"nu", "0.5000001", "nu: 0.5000001 is not below 0.5"},
         {"nu", "0.7", "nearly incompressible tissue needs nu < 0.5"},
         {"nu", "-1", "nu: -1 is not above -1"},
         {"nu", "NaN", "nu: 'NaN' is not a finite number"},

@@ -1,6 +1,7 @@
 /* Running a model: what mtled does between reading and writing. */
 #pragma once
 
+#include "comparison.h"
 #include "model.h"
 #include "parts_input.h"
 #include "process.h"
@@ -27,12 +28,14 @@ struct run {
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
-    bool text;           /* the form of what is written */
-    bool again;          /* the run has ended for run_again */
-    bool touches_itself; /* the scene has got a contact of the body with itself: state of the run */
-    double *u;           /* parameters, node_count * dim, m */
-    double last_good;    /* the time, as in struct progress, of which u is the state; negative: none */
-    int64_t evaluations; /* of forces */
+    bool text;              /* the form of what is written */
+    bool again;             /* the run has ended for run_again */
+    bool touches_itself;    /* the scene has got a contact of the body with itself: state of the run */
+    const char *start_file; /* NULL: none; or the run begins from the field of another one, */
+    struct side start;      /* this */
+    double *u;              /* parameters, node_count * dim, m */
+    double last_good;       /* the time, as in struct progress, of which u is the state; negative: none */
+    int64_t evaluations;    /* of forces */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;
 };
 
@@ -44,6 +47,13 @@ void run_clear_progress(const struct display *display);
  * good state are written, as a stream that is not whole. `status` as in tool_fail. */
 _Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Of --start: read the stream that the run begins from, exits where that cannot be; and let it begin there,
+ * the model being at rest. The identity is a checksum, 0 where there is none. */
+void run_start_read(struct run *run);
+void run_start(struct run *run);
+uint32_t run_start_identity(const struct run *run);
+void run_start_free(struct run *run);
 
 /* Where the parts of a body have passed through each other (run->again), and the scene has no contact between
  * them, add to the scene a contact of the whole boundary with itself, as `facets = *, against = *`, remove

@@ -32,6 +32,7 @@ bool run_again(struct run *run)
     TOOL_TRY(run->tool, model_renew_contacts(run->model, &error));
     const struct solid_system *system = &run->model->system;
     memset(run->u, 0, (size_t)(system->node_count * system->dim) * sizeof *run->u);
+    run_start(run);
     memset(run->model->row_force, 0, (size_t)system->rows.count * sizeof *run->model->row_force);
     run_drop_frames(run->stream);
     stream_remove(run->stream, "energy");

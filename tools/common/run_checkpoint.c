@@ -124,6 +124,7 @@ void run_checkpoint_begin(struct run *run)
         if (run->parts->given) {
             checkpoint->identity.input = run->parts->identity;
         }
+        checkpoint->identity.input += run_start_identity(run);
         compare_processes(run);
     }
     if (checkpoint->file != NULL) {

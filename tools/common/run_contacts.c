@@ -39,17 +39,17 @@ static double prescribed_motion(const struct solid_system *system, const struct 
     return most;
 }
 
-/* How far the surface moves at most, m. */
-static double own_motion(const struct solid_system *system, const struct contact *contact)
+/* How far the surface moves at most at `count` places, m. */
+static double own_motion(const struct solid_system *system, const struct contact *contact,
+                         const double *place, int64_t count)
 {
     const struct rigid_motion *motion = &contact->motion;
     double length = 0.0;
     if (!motion->moves) {
         return 0.0;
     }
-    for (int64_t v = 0; v < contact->surface.vertex_count; v++) {
-        length =
-            fmax(length, rigid_motion_path(motion, contact->dim, contact->surface.vertex + v * contact->dim));
+    for (int64_t v = 0; v < count; v++) {
+        length = fmax(length, rigid_motion_path(motion, contact->dim, place + v * contact->dim));
     }
     return length * fmax(curve_largest(&system->curves[motion->translation_curve]),
                          curve_largest(&system->curves[motion->rotation_curve]));
@@ -82,17 +82,26 @@ static double distance_at_rest(const struct contact *contact, double enough)
  * than so many, no scene means it. */
 static const double many_sizes = 10.0, most_sizes = 1e4;
 
-static void check_motion(const struct run *run, double prescribed)
+static void check_motion(const struct run *run, const char *where, const char *what, double way)
 {
-    static const char text[] = "%s: a displacement of %.3g m is prescribed, %.3g times the size of the body: "
+    static const char text[] = "%s: a %s of %.3g m is prescribed, %.3g times the size of the body: "
                                "lengths without a unit are in m";
-    double sizes = prescribed / run->model->assembly.extent;
+    double sizes = way / run->model->assembly.extent;
     if (sizes > most_sizes) {
-        tool_fail(run->tool, STATUS_INPUT, text, run->scene->path, prescribed, sizes);
+        tool_fail(run->tool, STATUS_INPUT, text, where, what, way, sizes);
     }
     if (sizes > many_sizes) {
-        tool_note(run->tool, text, run->scene->path, prescribed, sizes);
+        tool_note(run->tool, text, where, what, way, sizes);
     }
+}
+
+/* How far the surface goes beside the body and beyond it, m: a wide surface that turns moves far at its rim
+ * alone, and one that begins far away has a way to go. */
+static double motion_at_body(const struct run *run, const struct contact *contact)
+{
+    double motion = own_motion(&run->model->system, contact, contact->rest, contact->count);
+    double extent = run->model->assembly.extent;
+    return motion > many_sizes * extent ? motion - distance_at_rest(contact, extent) : motion;
 }
 
 void run_contacts_begin(const struct run *run)
@@ -104,20 +113,24 @@ void run_contacts_begin(const struct run *run)
                                        run->scene->initial.table != NULL);
     double prescribed =
         fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
-    check_motion(run, prescribed);
-    for (int64_t c = 0; c < system->contact_count && !anywhere; c++) {
+    check_motion(run, run->scene->path, "displacement", prescribed);
+    for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        if (contact->surface.facet_count == 0) {
+        const struct rigid_surface *surface = &contact->surface;
+        const char *where = input->contacts[contact->section].where;
+        if (surface->facet_count == 0) {
             continue;
         }
-        double motion = own_motion(system, contact), most = input->extent + motion + prescribed;
-        double distance = distance_at_rest(contact, most);
+        check_motion(run, where, "motion", motion_at_body(run, contact));
+        double motion = own_motion(system, contact, surface->vertex, surface->vertex_count);
+        double most = input->extent + motion + prescribed;
+        double distance = anywhere ? 0.0 : distance_at_rest(contact, most);
         if (distance > most) {
             tool_fail(
                 run->tool, STATUS_INPUT,
                 "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
                 "and all motion of the scene, %.3g m: wrong unit or wrong place?",
-                input->contacts[contact->section].where, distance, input->extent, motion + prescribed);
+                where, distance, input->extent, motion + prescribed);
         }
     }
 }

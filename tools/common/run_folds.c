@@ -67,6 +67,10 @@ static void tell_at_rest(const struct run *run)
     if (fold->kind == FOLD_WITHIN) {
         snprintf(text, sizeof text, "bodies interpenetrate at rest: cell %lld at %s lies within another body",
                  (long long)fold->cell, place);
+    } else if (fold->kind == FOLD_CREASE) {
+        name_facet(run, fold->facet[0], one, sizeof one);
+        snprintf(text, sizeof text, "facets of %s that meet at %s pass through each other at rest", one,
+                 place);
     } else {
         name_facet(run, fold->facet[0], one, sizeof one);
         snprintf(text, sizeof text,

@@ -73,7 +73,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
 
 /* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
  * still give way. */
-static double iteration_error(const struct relaxation_report *report)
+static double error_left(const struct relaxation_report *report)
 {
     return report->error * report->largest_move + report->penetration;
 }
@@ -81,7 +81,7 @@ static double iteration_error(const struct relaxation_report *report)
 static void put_error(const struct run *run, const struct relaxation_report *report)
 {
     double *error = run_new_values(run, 1);
-    *error = iteration_error(report);
+    *error = error_left(report);
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
@@ -130,7 +130,7 @@ void run_quasi_static(struct run *run)
                 (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
                 (long long)report.force_evaluations);
         fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
-                iteration_error(&report));
+                error_left(&report));
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
         run_report_springs(run);

@@ -1,0 +1,153 @@
+# mtled --start: from the field of another run, on other nodes or with another scene, to the same state in fewer steps.
+
+load common.bash
+
+setup() {
+    enter_alone
+}
+
+# clouds DIM COARSE FINE: coarse.mts and fine.mts, of a cube or square of .1 m, with so many nodes along an edge.
+clouds() {
+    local box=0,0.1,0,0.1
+    [ "$1" -eq 2 ] || box=$box,0,0.1
+    cloud -d "$1" -k jittered -n "$2" --box $box --jitter 0.2 | shapefn > coarse.mts 2> note
+    cloud -d "$1" -k jittered -n "$3" --box $box --jitter 0.2 | shapefn > fine.mts 2> note
+}
+
+# evaluations FILE: of forces, in a report.
+evaluations() {
+    awk -F '\t' '$1 == "force evaluations" { print $2 }' "$1"
+}
+
+# same_state SCENE TOLERANCE: begun from the coarser cloud's field, the finer one's run ends where it does without, to so much of the
+# largest displacement.
+same_state() {
+    mtled -q -o coarse.dat "$1" coarse.mts
+    mtled -v -o cold.dat "$1" fine.mts 2> cold.said
+    mtled -v -s coarse.dat -o warm.dat "$1" fine.mts 2> warm.said
+    fieldcmp cold.dat warm.dat | awk -F '\t' '$1 == "max_relative" { print "off by " $2; exit !($2 <= tolerance) }' tolerance="$2"
+}
+
+# sooner: and in fewer evaluations.
+sooner() {
+    echo "$(evaluations warm.said) evaluations for $(evaluations cold.said)"
+    [ "$(evaluations warm.said)" -lt "$(evaluations cold.said)" ]
+}
+
+@test "a block that is pressed, in 2D and 3D, and with a pressure: the same state, sooner" {
+    clouds 2 16 31
+    pressed_block > push.scene
+    same_state push.scene 2e-5 && sooner
+    { block quasi-static && held_below && printf '[pressure top]\nfacets = ymax\nvalue = 300\n'; } > pressure.scene
+    same_state pressure.scene 2e-5 && sooner
+    clouds 3 6 11
+    pressed_cube zmin zmax -0.005 > cube.scene
+    same_state cube.scene 2e-5 && sooner
+}
+
+@test "a contact: the same state, to what it may penetrate" {
+    clouds 2 12 23
+    { block quasi-static && printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.01\n[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\n'; } > floor.scene
+    printf -- '-1 0\n2 0\n' > floor.tsv
+    same_state floor.scene 2e-3
+}
+
+@test "from its own result a run ends where it was, at once" {
+    clouds 2 8 12
+    { pressed_block && printf '[output]\nreactions = yes\n'; } > push.scene
+    mtled -v -o cold.dat push.scene fine.mts 2> cold.said
+    mtled -v -s cold.dat -o warm.dat push.scene fine.mts 2> warm.said
+    fieldcmp --tol-max 1e-8 cold.dat warm.dat > compared
+    paste <(rows reactions cold.dat) <(rows reactions warm.dat) | awk '{ d = $2 - $4; exit !(d * d < 1e-8 * $2 * $2) }'
+    sooner
+}
+
+@test "a load curve that ends elsewhere than at 1: its end is what counts" {
+    clouds 2 8 12
+    printf '0 0\n0.5 2\n1 0.5\n' > curve.tsv
+    pressed_block | sed '/^\[displacement top/,$s/^components = .*/&\ncurve = curve.tsv/' > curve.scene
+    same_state curve.scene 2e-5
+}
+
+@test "a body that is computed once more, with contact with itself, begins there again" {
+    cat > notch.geo << 'END'
+Point(1) = {0, 0, 0, 10}; Point(2) = {100, 0, 0, 10}; Point(3) = {100, 45, 0, 10}; Point(4) = {40, 45, 0, 4};
+Point(5) = {40, 55, 0, 4}; Point(6) = {100, 55, 0, 10}; Point(7) = {100, 100, 0, 10}; Point(8) = {0, 100, 0, 10};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8};
+Line(8) = {8, 1}; Curve Loop(1) = {1:8}; Plane Surface(1) = {1};
+Physical Surface("body") = {1}; Physical Curve("ymin") = {1}; Physical Curve("ymax") = {7};
+END
+    gmsh -v 1 -2 notch.geo -o fine.msh
+    gmsh -v 1 -2 -clscale 1.6 notch.geo -o coarse.msh
+    for mesh in coarse fine; do nodes -u mm $mesh.msh | shapefn > $mesh.mts 2> note; done
+    pressed_block | sed 's/-0.005$/-0.014/' > shut.scene
+    mtled -q -o coarse.dat shut.scene coarse.mts 2> note
+    mtled -q -o cold.dat shut.scene fine.mts 2> note
+    mtled -q -s coarse.dat -o warm.dat shut.scene fine.mts 2> said
+    grep -q 'once more, with contact of the body with itself' said
+    fieldcmp --tol-max 0.03mm cold.dat warm.dat
+}
+
+@test "the same bytes for any number of threads and processes; from a checkpoint, too" {
+    clouds 2 8 12
+    pressed_block > push.scene
+    mtled -q -o coarse.dat push.scene coarse.mts
+    mtled -q -s coarse.dat -o one.dat push.scene fine.mts
+    OMP_NUM_THREADS=3 mtled -q -s coarse.dat -o three.dat push.scene fine.mts
+    cmp one.dat three.dat
+    if [ -x "$BUILD/bin/mtled-mpi" ]; then
+        OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+            mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -s coarse.dat -o two.dat push.scene fine.mts
+        cmp one.dat two.dat
+    fi
+    cp coarse.mts other.mts && mv fine.mts table.mts
+    pressed_block | sed 's/-0.005$/-0.004/' > less.scene
+    mtled -q -o other.dat less.scene other.mts
+    { cat push.scene && printf '[solver]\nramp_steps = 40000\n'; } > slow.scene
+    begin_from_coarse
+    refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt -s other.dat slow.scene table.mts
+    refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt slow.scene table.mts
+    mtled -q -c run.ckpt -s coarse.dat -o resumed.dat slow.scene table.mts 2> said
+    grep -q 'going on from step' said
+    mtled -q -s coarse.dat -o whole.dat slow.scene table.mts
+    cmp whole.dat resumed.dat
+}
+
+# A run with a checkpoint that SIGTERM ends on the way.
+begin_from_coarse() {
+    mtled -q -c run.ckpt -e 0 -s coarse.dat slow.scene table.mts > part.dat 2> said 3>&- &
+    local run=$! tries
+    for ((tries = 0; tries < 500; tries++)); do
+        [ ! -e run.ckpt.old ] || break
+        sleep 0.02
+    done
+    kill -s TERM $run
+    status=0
+    wait $run || status=$?
+    [ $status -eq 143 ]
+}
+
+@test "a start that cannot be: one line" {
+    clouds 2 4 6
+    pressed_block > push.scene
+    mtled -q -o coarse.dat push.scene coarse.mts
+    { cat push.scene && printf '[output]\nframes = 3\n'; } > frames.scene
+    refused 2 "--start: the run begins at the whole load: a scene that is dynamic, or asks for frames, has states before" \
+        mtled -s coarse.dat frames.scene fine.mts
+    swinging_block > swing.scene
+    refused 2 "--start: the run begins at the whole load" mtled -s coarse.dat swing.scene fine.mts
+    refused 2 "coarse.mts: no section u" mtled -s coarse.mts push.scene fine.mts
+    refused 2 "none.dat: No such file or directory" mtled -s none.dat push.scene fine.mts
+    mts drop cells coarse.dat > bare.dat
+    refused 2 "--start: bare.dat: has no cells" mtled -s bare.dat push.scene fine.mts
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    pressed_cube zmin zmax -0.005 > cube.scene
+    mtled -q -o cube.dat cube.scene cube.mts
+    refused 2 "--start: cube.dat: u has 3 columns in 3D, where the scene has 2D" mtled -s cube.dat push.scene fine.mts
+    cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.05 | shapefn > half.mts 2> note
+    mtled -q -o half.dat push.scene half.mts
+    refused 2 "--start: half.dat: node " mtled -s half.dat push.scene fine.mts
+    awk '/^# / { on = $2 == "u" || $2 == "parameters"; print; next } on && NF { print "nan nan"; next } { print }' coarse.dat > nan.dat
+    refused 2 "--start: nan.dat: u has values that are not finite numbers" mtled -s nan.dat push.scene fine.mts
+    refused 2 "replaces coarse.dat, an input of this run" mtled -s coarse.dat -o coarse.dat push.scene fine.mts
+}
