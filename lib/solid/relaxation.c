@@ -108,77 +108,6 @@ static bool step(struct relaxation *r, double *u, bool measure)
     return true;
 }
 
-/* The share of the load at which u is; a run that has begun near its result has all of it from its begin on.
- */
-static double load_share(const struct relaxation *r)
-{
-    return r->system->rows.start != NULL ? 1.0 : r->load / (double)r->report->ramp_steps;
-}
-
-static bool tell(struct relaxation *r)
-{
-    if (r->options->progress == NULL) {
-        return true;
-    }
-    int64_t at = r->report->steps;
-    struct progress progress = {.step = at,
-                                .u = r->u,
-                                .move = at - r->back_step <= CHECK_INTERVAL ? INFINITY : r->moved,
-                                .error = r->report->error,
-                                .remaining = -1.0,
-                                .state = relaxation_visit,
-                                .run = r};
-    double ramp = (double)r->report->ramp_steps;
-    progress.time = load_share(r);
-    if (r->load >= ramp && r->report->error > 0.0 && isfinite(r->report->error)) {
-        /* The error falls by about exp(-w dt) a step. */
-        double to_go = log(fmax(1.0, r->report->error / r->options->tolerance)) /
-                       (r->report->lowest_frequency * r->time_step);
-        progress.remaining = to_go / (to_go + (double)at);
-    }
-    return r->options->progress(r->options->context, &progress);
-}
-
-/* Evaluate the system at u; the forces of the constraints: what balances the residual along them. */
-static enum status measure_row_forces(struct relaxation *r, const double *u, double *row_force,
-                                      struct error *error)
-{
-    (void)system_residual(r->system, u, r->residual);
-    if (row_force == NULL || r->system->rows.count == 0) {
-        return STATUS_OK;
-    }
-    preconditioner_smooth(&r->preconditioner, r->residual, r->scratch);
-    constraint_project(&r->preconditioner.constraint, NULL, r->scratch);
-    memcpy(row_force, r->preconditioner.constraint.multiplier,
-           (size_t)r->system->rows.count * sizeof *row_force);
-    return constraint_share_out(&r->preconditioner.constraint, row_force, error);
-}
-
-static bool gives_frames(const struct relaxation *r)
-{
-    return r->options->frame != NULL && r->options->frames > 0;
-}
-
-/* The load at which the next equilibrium is sought, in steps of the ramp: that of the next frame, at last the
- * whole load. */
-static double load_to_hold(const struct relaxation *r)
-{
-    double ramp = (double)r->report->ramp_steps, frames = (double)r->options->frames;
-    return gives_frames(r) ? ramp * fmin(1.0, (double)(r->frames + 1) / frames) : ramp;
-}
-
-/* Give u, which is in equilibrium, as the next frame. False on failure. */
-static bool give_frame(struct relaxation *r, struct error *error)
-{
-    r->failure = measure_row_forces(r, r->u, r->row_force, error);
-    if (r->failure != STATUS_OK) {
-        return false;
-    }
-    r->frames++;
-    r->options->frame(r->options->context, r->frames, r->load / (double)r->report->ramp_steps, r->u);
-    return true;
-}
-
 /* After an equilibrium on the way the load goes on: what was known of the held load is no longer so. */
 static void let_go(struct relaxation *r)
 {
@@ -299,7 +228,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
     enum relaxation_outcome outcome;
     while (r->report->steps < most) {
         bool measure = ++r->report->steps % CHECK_INTERVAL == 0;
-        double hold = load_to_hold(r);
+        double hold = relaxation_load_to_hold(r);
         r->load = fmin(hold, r->load + r->load_rate);
         r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
         r->report->loading_steps += r->at_full_load == 0;
@@ -320,12 +249,12 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
             if (outcome != RELAXATION_CONVERGED || hold == ramp) {
                 return outcome;
             }
-            if (!give_frame(r, error)) {
+            if (!relaxation_give_frame(r, error)) {
                 return RELAXATION_STOPPED;
             }
             let_go(r);
         }
-        if ((measure || is_interrupted(r)) && !tell(r)) {
+        if ((measure || is_interrupted(r)) && !relaxation_tell(r)) {
             return RELAXATION_STOPPED;
         }
     }
@@ -338,7 +267,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     struct solid_system *system = r->system;
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
-    if (gives_frames(r)) {
+    if (relaxation_gives_frames(r)) {
         r->options->frame(r->options->context, 0, 0.0, r->u);
     }
     system_relaxation_mass(system, false, r->scratch);
@@ -396,11 +325,11 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
         r.load = r.older.load;
         memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
     }
-    report->load = load_share(&r);
-    if (report->outcome == RELAXATION_CONVERGED && gives_frames(&r)) {
-        (void)give_frame(&r, error);
+    report->load = relaxation_load_share(&r);
+    if (report->outcome == RELAXATION_CONVERGED && relaxation_gives_frames(&r)) {
+        (void)relaxation_give_frame(&r, error);
     } else {
-        r.failure = measure_row_forces(&r, r.u, row_force, error);
+        r.failure = relaxation_row_forces(&r, r.u, row_force, error);
     }
     return r.failure;
 }

@@ -160,6 +160,30 @@ bool relaxation_contacts_hold(struct relaxation *r);
  * rest, with the time step of that mode. */
 void relaxation_calm(struct relaxation *r, const double *acceleration);
 
+/* ---- relaxation_report.c: what the caller is told on the way ---- */
+
+/* The share of the load at which u is. A run that begins near its result has all of it from its first step
+ * on. */
+double relaxation_load_share(const struct relaxation *r);
+
+/* Call the caller's progress function; false where that ends the run. */
+bool relaxation_tell(struct relaxation *r);
+
+/* Evaluate the system at u. row_force[system->rows.count], unless NULL: the forces of the conditions, which
+ * balance the residual along them, N (2D: N/m). */
+MUST_CHECK enum status relaxation_row_forces(struct relaxation *r, const double *u, double *row_force,
+                                             struct error *error);
+
+/* Whether the caller asks for frames. */
+bool relaxation_gives_frames(const struct relaxation *r);
+
+/* The load at which the next equilibrium is sought, in steps of the ramp: that of the next frame, at last the
+ * whole load. */
+double relaxation_load_to_hold(const struct relaxation *r);
+
+/* Give u, which is in equilibrium, as the next frame. False on failure. */
+bool relaxation_give_frame(struct relaxation *r, struct error *error);
+
 /* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
 
 MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
