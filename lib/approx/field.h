@@ -21,10 +21,12 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
  * another mesh may lie a little beyond a curved boundary. */
 #define FIELD_MARGIN 1.0
 
-/* result[count * cols] at x[count * dim]: linear in each cell, of values[node_count * cols] at its nodes;
- * points beside the cells take the nearest one's line, STATUS_INPUT farther off than FIELD_MARGIN. A
- * displacement that inverts no cell inverts none of a finer mesh either, or hardly: a smooth field's
- * gradients may, near a corner. */
+/* result[count * cols] at x[count * dim]: linear in each cell, of values[node_count * cols] at its nodes. A
+ * point beside the cells takes the continuation of the nearest one; STATUS_INPUT farther off than
+ * FIELD_MARGIN.
+ *
+ * A displacement that inverts none of these cells hardly inverts one of a finer mesh. The solver's smooth
+ * field may: near a corner its gradients vary within a cell. */
 MUST_CHECK enum status field_linear(const struct cells *cells, int64_t cols, const double *values,
                                     int64_t count, const double *x, double *result, struct error *error);
 
