@@ -74,7 +74,7 @@ static double cell_size(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
     return fold_volume(dim, fold_position(folds, node[0]), fold_position(folds, node[1]),
-                       fold_position(folds, node[2]), dim == 3 ? fold_position(folds, node[3]) : NULL);
+                       fold_position(folds, node[2]), fold_position(folds, node[dim]));
 }
 
 /* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
