@@ -67,11 +67,11 @@ struct contact {
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
     double *multiplier; /* dim for each lambda_a, Pa, in the surface's frame; as many as contact_nodes has */
-    double *change;    /* as many: what the last augmentation found them to lack, Pa; 0: not to be compared */
-    double part;       /* of that it added */
-    double deepest;    /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
-    bool *behind;      /* count: reached the back of the surface without going through it */
-    double *checked_x; /* count * dim: y_p at the last search, m */
+    double *change;     /* as many: what they lacked at the last augmentation, Pa; 0: none to compare with */
+    double part;        /* share of that change which it added */
+    double deepest;     /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
+    bool *behind;       /* count: reached the back of the surface without going through it */
+    double *checked_x;  /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
     double *checked_normal;   /* count * dim: of the surface there, in its frame */
     double *held;             /* count * dim: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
