@@ -1,7 +1,7 @@
 # make estimate: how well relaxations know their remaining error, and how many steps beyond the optimum they take, on the hard cases
 #
-# Each relaxation of the hard cases to 1e-3 and to 1e-5: the estimated error, which is to be an upper bound; the true one, against
-# a run to 1e-8, the larger of those at the worst node and on the whole; the steps, those in which the load went on among them, and over
+# Each relaxation of the hard cases to 1e-3 and to 1e-5: the estimated error, with what contacts still give way by, which is to be an upper bound; the true
+# one, against a run to 1e-8, the larger of those at the worst node and on the whole; the steps, those in which the load went on among them, and over
 # their optimum, those of the load and of the critical damping of the lowest mode, log(1 / error) w_max / w_min / 2.
 ESTIMATE := $(OUT)/estimate
 ESTIMATE_CASES := 02-homogeneous 07-column 08-cylinder 10-elastica 11-cook 12-bonded 17-block 19-cube 22-contact

@@ -103,10 +103,10 @@ estimate() {
             }
             END {
                 if (largest < 1e-18) exit
-                estimated = told["estimated error"]
+                estimated = told["iteration error, m"] / sqrt(largest) # with what contacts still give way by
                 true = sqrt(worst / largest)
                 if (sqrt(differences / sizes) > true) true = sqrt(differences / sizes)
-                optimum = told["loading steps"] + log(1 / estimated) * told["frequency ratio"] / 2
+                optimum = told["loading steps"] + log(1 / told["estimated error"]) * told["frequency ratio"] / 2
                 printf "%s\t%s\t%.3g\t%.3g\t%.3g\t%d\t%d\t%.2f\t%s\n", name, tolerance, estimated, true, true / estimated,
                     told["steps"], told["loading steps"], told["steps"] / optimum, (true <= estimated ? "pass" : "FAIL")
             }' "$work/estimate.run" -
