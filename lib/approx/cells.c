@@ -46,6 +46,24 @@ void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *fac
     simplex_face(cells->dim, cells->node + cell * (cells->dim + 1), vertex, face);
 }
 
+void cell_barycentric(const struct cells *cells, int64_t cell, const double *x, double *coordinate)
+{
+    int dim = cells->dim;
+    double moved_x[12];
+    const int32_t *v = cells->node + cell * (dim + 1);
+    static const int32_t in_order[4] = {0, 1, 2, 3};
+    struct cells one = {.dim = dim, .node_count = dim + 1, .x = moved_x, .count = 1, .node = in_order};
+    double volume = cell_volume(cells, cell);
+    for (int k = 0; k <= dim; k++) {
+        for (int i = 0; i <= dim; i++) {
+            for (int a = 0; a < dim; a++) {
+                moved_x[i * dim + a] = i == k ? x[a] : cells->x[(int64_t)v[i] * dim + a];
+            }
+        }
+        coordinate[k] = cell_volume(&one, 0) / volume;
+    }
+}
+
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector)
 {
     double u[3], v[3];

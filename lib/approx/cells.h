@@ -35,6 +35,10 @@ MUST_CHECK enum status cells_check(const struct cells *cells, struct error *erro
 /* Area or volume of a cell. */
 double cell_volume(const struct cells *cells, int64_t cell);
 
+/* coordinate[dim + 1]: the barycentric coordinates of x[dim] in a cell, sum 1; outside of it some are
+ * negative. */
+void cell_barycentric(const struct cells *cells, int64_t cell, const double *x, double *coordinate);
+
 /* The places of a cell's dim + 1 vertices. */
 void cell_corners(const struct cells *cells, int64_t cell, const double *corner[4]);
 

@@ -151,22 +151,13 @@ void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const
 static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
                                 const double *x, double *value)
 {
-    int dim = cells->dim;
-    const int32_t *node = cells->node + cell * (dim + 1);
-    double whole = cell_volume(cells, cell);
+    const int32_t *node = cells->node + cell * (cells->dim + 1);
+    double coordinate[4];
+    cell_barycentric(cells, cell, x, coordinate);
     for (int64_t c = 0; c < cols; c++) {
         value[c] = 0.0;
-    }
-    for (int k = 0; k <= dim; k++) { /* the weight of a corner is the distance from the face opposite */
-        int32_t face[3];
-        double area[3], height = 0.0;
-        cell_face(cells, cell, k, face);
-        face_area_vector(dim, cells->x, face, area);
-        for (int a = 0; a < dim; a++) {
-            height += area[a] * (cells->x[(int64_t)face[0] * dim + a] - x[a]);
-        }
-        for (int64_t c = 0; c < cols; c++) {
-            value[c] += height / (dim * whole) * values[node[k] * cols + c];
+        for (int k = 0; k <= cells->dim; k++) {
+            value[c] += coordinate[k] * values[node[k] * cols + c];
         }
     }
 }

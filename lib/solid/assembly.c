@@ -11,25 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Barycentric coordinates of a point in a cell. */
-static void barycentric(const struct cells *cells, int64_t cell, const double *x, double *value)
-{
-    int dim = cells->dim;
-    double moved_x[12];
-    const int32_t *v = cells->node + cell * (dim + 1);
-    static const int32_t in_order[4] = {0, 1, 2, 3};
-    struct cells one = {.dim = dim, .node_count = dim + 1, .x = moved_x, .count = 1, .node = in_order};
-    double volume = cell_volume(cells, cell);
-    for (int k = 0; k <= dim; k++) {
-        for (int i = 0; i <= dim; i++) {
-            for (int a = 0; a < dim; a++) {
-                moved_x[i * dim + a] = i == k ? x[a] : cells->x[(int64_t)v[i] * dim + a];
-            }
-        }
-        value[k] = cell_volume(&one, 0) / volume;
-    }
-}
-
 /* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the point's
  * barycentric coordinates. */
 static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
@@ -43,7 +24,7 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
     for (int64_t q = 0; q < input->point_count; q++) {
         memcpy(*vertex + q * corners, cells->node + (int64_t)cell[q] * corners,
                (size_t)corners * sizeof **vertex);
-        barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
+        cell_barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
     }
     return STATUS_OK;
 }

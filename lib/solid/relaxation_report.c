@@ -65,6 +65,6 @@ bool relaxation_give_frame(struct relaxation *r, struct error *error)
         return false;
     }
     r->frames++;
-    r->options->frame(r->options->context, r->frames, r->load / (double)r->report->ramp_steps, r->u);
+    r->options->frame(r->options->context, r->frames, relaxation_load_share(r), r->u);
     return true;
 }
