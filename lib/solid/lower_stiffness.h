@@ -1,8 +1,8 @@
-/* The scalar stiffness S of inverse_factor.h by rows up to the diagonal; private to lib/solid. */
+/* The scalar stiffness S of inverse_stiffness.h by rows up to the diagonal; private to lib/solid. */
 #pragma once
 
 #include "base/chunks.h"
-#include "solid/inverse_factor.h"
+#include "solid/inverse_stiffness.h"
 #include "solid/scalar_stiffness.h"
 
 /* Consecutive rows. */

@@ -51,8 +51,8 @@ static enum status transform_fields(struct preconditioner *p, int threads, struc
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
 {
-    RETURN_IF_ERROR(inverse_factor_build(system, &p->factor, error));
-    RETURN_IF_ERROR(inverse_factor_transform_rows(&p->factor, &system->rows, &p->factor_rows, error));
+    RETURN_IF_ERROR(inverse_stiffness_factor(system, &p->factor, error));
+    RETURN_IF_ERROR(inverse_stiffness_rows(&p->factor, &system->rows, &p->factor_rows, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
     system_relaxation_mass(system, true, p->at_rest);

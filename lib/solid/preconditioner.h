@@ -14,7 +14,7 @@
  *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
  *
  * for x and y that satisfy the homogeneous conditions. Of smoothed cells B = L^T D^-1 L, with the factor L of
- * inverse_factor.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
+ * inverse_stiffness.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
  *
  * so that the slowest modes left are those that the coarse fields do not resolve. For linear systems this is
  * a two-level additive preconditioner with deflated constraints. Any positive definite A is admissible. Its
@@ -25,7 +25,7 @@
 
 #include "base/state.h"
 #include "solid/coarse_space.h"
-#include "solid/inverse_factor.h"
+#include "solid/inverse_stiffness.h"
 #include "solid/system.h"
 
 struct preconditioner {

@@ -1,4 +1,4 @@
-/* The scalar stiffness of smoothed cells that inverse_factor.h describes, row by row; private to lib/solid.
+/* The scalar stiffness of smoothed cells that inverse_stiffness.h describes, row by row; private to lib/solid.
  */
 #pragma once
 

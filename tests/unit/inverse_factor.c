@@ -1,7 +1,7 @@
 /* The scalar stiffness and its sparse approximate inverse: what is stated of S and of the factor L. */
 #include "lattice_fixture.h"
 
-#include "solid/inverse_factor.h"
+#include "solid/inverse_stiffness.h"
 #include "solid/scalar_stiffness.h"
 
 /* A jittered cube, one side of it held, and S of it as a full matrix. */
@@ -47,7 +47,7 @@ static void build(struct cube *cube, bool bonded)
             cube->S[i * cube->n + row.node[k]] = cube->S[row.node[k] * cube->n + i] = row.value[k];
         }
     }
-    GOOD(inverse_factor_build(system, &cube->factor, &error));
+    GOOD(inverse_stiffness_factor(system, &cube->factor, &error));
 }
 
 static void release(struct cube *cube)
@@ -124,7 +124,7 @@ TEST(the_transpose_is_undone)
         y[i] = uniform(&random, -1.0, 1.0);
     }
     inverse_factor_apply_transposed(&cube.factor, 3, y, u);
-    GOOD(inverse_factor_transform_rows(&cube.factor, &cube.l.system.rows, &rows, &error));
+    GOOD(inverse_stiffness_rows(&cube.factor, &cube.l.system.rows, &rows, &error));
     assert_int_equal(rows.count, cube.l.system.rows.count);
     for (int64_t r = 0; r < rows.count; r++) {
         double expected = constraint_rows_value(&cube.l.system.rows, r, u);
@@ -165,10 +165,10 @@ TEST(stretches_make_no_difference)
                 system->X[3 * node] < 0.7 * cube.l.assembly.cells.x[3 * (cube.n - 1)] ? 1e-12 : 1.0;
         }
         FREED_BY(inverse_factor_free) struct inverse_factor whole = {0};
-        GOOD(inverse_factor_build(system, &whole, &error));
+        GOOD(inverse_stiffness_factor(system, &whole, &error));
         for (size_t k = 0; k < sizeof batches / sizeof *batches; k++) {
             FREED_BY(inverse_factor_free) struct inverse_factor factor = {0};
-            GOOD(inverse_factor_build_by(system, batches[k], &factor, &error));
+            GOOD(inverse_stiffness_factor_by(system, batches[k], &factor, &error));
             same_bits(&factor.rows, &whole.rows);
         }
         assert_true((memcmp(whole.rows.value, cube.factor.rows.value, sizeof(double)) != 0) == (weak == 1));
