@@ -43,13 +43,13 @@ SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
-# What lib/approx/partition_metis.c takes, for the programs that cut bodies.
+# What lib/approx/partition/partition_metis.c takes, for the programs that cut bodies.
 $(BUILD)/bin/part $(BUILD)/tests/partition: LDLIBS += -lmetis
 
 LIBRARY := $(BUILD)/libmtled.a
-LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c))
+LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c lib/*/*/*.c))
 # What several tools share lies in tools/common; each other .c of tools/ is a program.
-COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tools/common/*.c))
+COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tools/common/*.c tools/common/*/*.c))
 TOOLS := $(patsubst tools/%.c,%,$(wildcard tools/*.c))
 PROGRAMS := $(TOOLS:%=$(BUILD)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*.c))
@@ -71,9 +71,9 @@ $(BUILD)/%.o: %.c Makefile
 .PRECIOUS: $(BUILD)/%.o
 
 # No fused multiplications there: neighbour lists, shape functions and sums along fields come out the same on every processor.
-$(BUILD)/lib/approx/%.o $(BUILD)/lib/solid/coarse_space.o: CFLAGS += -ffp-contract=off
+$(BUILD)/lib/approx/%.o $(BUILD)/lib/solid/preconditioner/coarse_space.o: CFLAGS += -ffp-contract=off
 # The force loop may fuse: to round-off it is the same everywhere, and to the bit for any number of threads.
-$(BUILD)/lib/solid/kernel.o: CFLAGS += -ffp-contract=fast
+$(BUILD)/lib/solid/body/kernel.o: CFLAGS += -ffp-contract=fast
 
 $(LIBRARY): $(LIBRARY_OBJECTS)
 	@rm -f $@

@@ -2,9 +2,9 @@
 # library with its headers and a file for pkg-config (install-library); `make deb` builds the package $(DEB) of the
 # former. DESTDIR goes before PREFIX where a tree is to be moved later.
 
-VERSION := $(shell sed -n 's/^.define MTS_VERSION "\(.*\)"/\1/p' lib/io/stream.h)
+VERSION := $(shell sed -n 's/^.define MTS_VERSION "\(.*\)"/\1/p' lib/io/stream/stream.h)
 # Without those that are for their own room: the name or the text says so.
-HEADERS := $(filter-out %_private.h,$(shell grep -LiE '(private to|inside of) lib/' lib/*/*.h))
+HEADERS := $(filter-out %_private.h,$(shell grep -LiE '(private to|inside of) lib/' lib/*/*.h lib/*/*/*.h))
 COMPLETIONS := $(TOOLS:%=$(BUILD)/completions/%)
 DEB = $(BUILD)/mtled_$(VERSION)_$(shell dpkg --print-architecture).deb
 INTO = $(DESTDIR)$(PREFIX)

@@ -38,8 +38,8 @@ esac
 @test "install: a program of ten lines is built with the library by pkg-config" {
     build install-library PREFIX="$PWD/root"
     cat > tiny.c << 'END'
-#include "approx/cloud.h"
-#include "io/stream.h"
+#include "approx/points/cloud.h"
+#include "io/stream/stream.h"
 int main(void)
 {
     struct stream stream;

@@ -154,7 +154,7 @@ constants() {
 # Round-off, 1e-6 and below, is none of them, nor are mathematical constants and limits of formats.
 @test "constants: each real number that lib and tools/common name has a row with its place" {
     constants | sort -u > names
-    (cd "$top" && grep -nE '^static const double ' lib/*/*.c tools/common/*.c) | sed -E 's/:[0-9]+:static const double/ /; s/;.*//' |
+    (cd "$top" && grep -nE '^static const double ' lib/*/*.c lib/*/*/*.c tools/common/*.c tools/common/*/*.c) | sed -E 's/:[0-9]+:static const double/ /; s/;.*//' |
         while read -r place rest; do
             tr , '\n' <<< "$rest" | sed -nE "s|^ *([a-z_0-9]+) = *-?([0-9.]+(e-?[0-9]+)?).*|\1 $place \2|p"
         done | awk '$3 > 1.5e-6 && $3 < 1e15 { print $1, $2 }' | grep -vE '^(pi|full_turn) ' | sort -u > code
@@ -168,7 +168,7 @@ constants() {
 }
 
 @test "equations that headers cite are those of lib/README.md" {
-    cat "$top"/lib/*/*.[ch] | tr -s ' *\n' ' ' | grep -oE 'equations? \([0-9]+\)( to \([0-9]+\))?( and \([0-9]+\))? of lib/README.md' |
+    cat "$top"/lib/*/*.[ch] "$top"/lib/*/*/*.[ch] | tr -s ' *\n' ' ' | grep -oE 'equations? \([0-9]+\)( to \([0-9]+\))?( and \([0-9]+\))? of lib/README.md' |
         grep -oE '\([0-9]+\)' | sort -u > cited
     [ "$(wc -l < cited)" -ge 10 ]
     while IFS= read -r number; do
@@ -191,16 +191,36 @@ constants() {
     done
 }
 
-@test "the rooms of lib/ include only what lib/README.md lets them" {
+@test "the layers of lib/ include only what lib/README.md lets them" {
     includes() { grep -rhoE '^#include "[a-z]+/' "$top/lib/$1" | sed 's/.*"//; s|/||' | sort -u; }
-    for room in base approx solid io stages; do
-        awk -F '|' -v room=" \`$room\` " '$2 == room { gsub(/[`, ]+/, " ", $4); print room, $4; exit }' "$top/lib/README.md" > allowed
+    for layer in base approx solid io stages; do
+        awk -F '|' -v layer=" \`$layer\` " '$2 == layer { gsub(/[`, ]+/, " ", $4); print layer, $4; exit }' "$top/lib/README.md" > allowed
         [ -s allowed ]
-        includes "$room" > found
+        includes "$layer" > found
         [ -s found ]
         while IFS= read -r other; do
-            grep -qw "$other" allowed || { echo "lib/$room includes $other"; false; }
+            grep -qw "$other" allowed || { echo "lib/$layer includes $other"; false; }
         done < found
+    done
+}
+
+# modules LAYER: those of its table in lib/README.md, in that order.
+modules() { awk -F '[|`]' -v head="| module of \`$1\` |" 'index($0, head) == 1 { on = 1; next } !/^[|]/ { on = 0 } on && $3 ~ /^[a-z]+$/ { print $3 }' "$top/lib/README.md"; }
+
+@test "a module includes only those above it in its table in lib/README.md, and no folder lacks a row" {
+    for layer in approx solid io tools/common; do
+        folder=$top/lib/$layer
+        [ "$layer" = tools/common ] && folder=$top/tools/common
+        modules $layer > rows
+        diff <(sort rows) <(find "$folder" -mindepth 1 -maxdepth 1 -type d -printf '%f\n' | sort)
+        : > above
+        while IFS= read -r module; do
+            echo "$module" >> above
+            grep -rhE '^#include "' "$folder/$module" | sed -nE "s#^.include \"${layer/#tools*/}/?([a-z]+)/.*#\1#p" | sort -u > found
+            [ "$layer" = tools/common ] && { grep -xFf rows found > kept || true; mv kept found; }
+            run -1 grep -vxFf above found
+        done < rows
+        [ "$(wc -l < above)" -ge 5 ]
     done
 }
 

@@ -66,8 +66,8 @@ setup() {
         shared=()
         grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/stage_options.c")
         grep -q comparison_parse "$top/tools/$tool.c" && shared+=("$top/tools/common/comparison.c")
-        grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images.c")
-        grep -q label_parts_make "$top/tools/$tool.c" && shared+=("$top/tools/common/label_part.c")
+        grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images/images.c")
+        grep -q label_parts_make "$top/tools/$tool.c" && shared+=("$top/tools/common/images/label_part.c")
         for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
             [ "$name" = output ] || sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | grep -q "\"$name\"" ||
                 { echo "$tool: --$name"; false; }
@@ -98,7 +98,7 @@ setup() {
 
 @test "mtled-scene(5): every key of the reader is documented, and the example runs on the brain section" {
     page=$top/tools/mtled-scene.5
-    grep -oE '"[a-zE][a-z_]*"' "$top/lib/io/scene_kinds.c" | tr -d '"' | sort -u > keys
+    grep -oE '"[a-zE][a-z_]*"' "$top/lib/io/scene/scene_kinds.c" | tr -d '"' | sort -u > keys
     [ "$(wc -l < keys)" -ge 30 ]
     while IFS= read -r key; do
         grep -qw "$key" "$page" || { echo "no $key"; false; }

@@ -41,8 +41,8 @@ static const char usage[] =
     "  cloud -d 2 -k regular -n 18 --box -4,4,-4,4 --field paper | mts list\n"
     "  cloud -d 3 -k jittered -n 9,9,17 --box 0,0.1,0,0.1,0,0.2 --jitter 0.15 --seed 7 -o cloud.mts\n";
 
-#include "approx/cloud.h"
-#include "io/msh.h"
+#include "approx/points/cloud.h"
+#include "io/mesh/msh.h"
 #include "cell_report.h"
 #include "tool.h"
 

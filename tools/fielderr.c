@@ -59,7 +59,7 @@ static const char usage[] =
 
 #include "comparison.h"
 
-#include "approx/field_error.h"
+#include "approx/error/field_error.h"
 #include "base/vector.h"
 
 #include <math.h>

@@ -60,13 +60,13 @@ static const char usage[] =
     "  groups -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
 
 #include "cell_report.h"
-#include "group_body.h"
-#include "group_select.h"
+#include "groups/group_body.h"
+#include "groups/group_select.h"
 #include "tool.h"
 
 #include "base/box.h"
 #include "base/memory.h"
-#include "io/sections.h"
+#include "io/stream/sections.h"
 #include "base/vector.h"
 
 #include <math.h>

@@ -46,9 +46,9 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/solved.h"
 
-#include "approx/field.h"
-#include "io/sections.h"
-#include "io/table.h"
+#include "approx/field/field.h"
+#include "io/stream/sections.h"
+#include "io/files/table.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -73,9 +73,9 @@ static const char usage[] =
 #include "overwrite.h"
 #include "stage_options.h"
 #include "process.h"
-#include "run.h"
+#include "run/run.h"
 
-#include "io/sections.h"
+#include "io/stream/sections.h"
 
 #include <limits.h>
 #include <stdlib.h>

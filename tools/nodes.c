@@ -53,7 +53,7 @@ static const char usage[] =
     "  nodes -u mm -r parenchyma,tumour < body.msh > body.mts\n";
 
 #include "cell_report.h"
-#include "io/msh.h"
+#include "io/mesh/msh.h"
 #include "tool.h"
 
 #include "base/box.h"

@@ -36,7 +36,7 @@ static const char usage[] =
     "  mpirun -n 4 mtled -o u.dat body.scene part.%d.mts.table\n"
     "  unpart part.?.mts.table > table.mts\n";
 
-#include "cut_body.h"
+#include "parts/cut_body.h"
 #include "stage_options.h"
 
 #include <stdlib.h>

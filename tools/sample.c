@@ -45,14 +45,14 @@ static const char usage[] =
     "  sample -p landmarks.tsv -u mm T1.nii.gz\n"
     "  sample --tissue 3000,0.49 --tissue 9000,0.49 white.nii.gz tumour.nii.gz table.mts > stiffness.tsv\n";
 
-#include "image_body.h"
-#include "images.h"
-#include "sample_points.h"
+#include "images/image_body.h"
+#include "images/images.h"
+#include "images/sample_points.h"
 #include "output.h"
-#include "tissue.h"
+#include "model/tissue.h"
 #include "stages/views.h"
 
-#include "io/image_sample.h"
+#include "io/image/image_sample.h"
 
 #include <float.h>
 #include <math.h>

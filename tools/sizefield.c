@@ -43,8 +43,8 @@ static const char usage[] =
 #include "tool.h"
 #include "stages/views.h"
 
-#include "approx/field_error.h"
-#include "approx/size_field.h"
+#include "approx/error/field_error.h"
+#include "approx/error/size_field.h"
 
 #include <string.h>
 

@@ -20,7 +20,7 @@ static const char usage[] =
     "Examples:\n"
     "  unpart part.*.mts > table.mts\n";
 
-#include "rejoin.h"
+#include "parts/rejoin.h"
 
 #include <limits.h>
 

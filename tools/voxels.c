@@ -64,14 +64,14 @@ static const char usage[] =
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
-#include "label_mesh.h"
-#include "label_part.h"
-#include "label_sizes.h"
-#include "label_surface.h"
+#include "images/label_mesh.h"
+#include "images/label_part.h"
+#include "images/label_sizes.h"
+#include "images/label_surface.h"
 #include "cell_report.h"
 
-#include "approx/cells.h"
-#include "approx/parts.h"
+#include "approx/cells/cells.h"
+#include "approx/cells/parts.h"
 
 #include <ctype.h>
 #include <math.h>

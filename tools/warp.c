@@ -49,14 +49,14 @@ static const char usage[] =
     "  warp --field T1.nii.gz u.dat > field.nii.gz\n"
     "  plastimatch warp --input T1.nii.gz --xf field.nii.gz --output-img predicted.nii.gz\n";
 
-#include "image_body.h"
-#include "images.h"
+#include "images/image_body.h"
+#include "images/images.h"
 #include "stages/solved.h"
 #include "stages/views.h"
-#include "warp_voxels.h"
+#include "images/warp_voxels.h"
 
-#include "approx/motion.h"
-#include "io/image_sample.h"
+#include "approx/field/motion.h"
+#include "io/image/image_sample.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,8 @@
-/* Check of a whole stream against the table of sections (io/sections.h, lib/README.md) and the views. */
+/* Check of a whole stream against the table of sections (io/stream/sections.h, lib/README.md) and the views.
+ */
 #pragma once
 
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 /* Receives each violation as one line, "section: row: what", without newline. */
 typedef void violation_function(void *context, const char *text);

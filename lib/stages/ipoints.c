@@ -1,10 +1,10 @@
 #include "stages/stages.h"
 
-#include "approx/face_rows.h"
-#include "approx/quadrature.h"
+#include "approx/cells/face_rows.h"
+#include "approx/cells/quadrature.h"
 #include "base/box.h"
 #include "base/memory.h"
-#include "io/sections.h"
+#include "io/stream/sections.h"
 
 #include <stdio.h>
 #include <string.h>

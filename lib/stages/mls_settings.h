@@ -1,7 +1,7 @@
 /* The settings of shape functions as text: options of command lines, and attributes of sections. */
 #pragma once
 
-#include "approx/mls.h"
+#include "approx/mls/mls.h"
 
 /* The options of the shape functions; NULL: not given. `mu` is one value or one for each second-order
  * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2); with mls->dim 0, not known yet, either. */

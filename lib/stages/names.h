@@ -1,7 +1,7 @@
 /* The names of groups that a section carries: its attribute names=, separated by commas. */
 #pragma once
 
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 struct names {
     char *list; /* "body,lump", as in the section; "" when it has none */

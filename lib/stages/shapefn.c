@@ -1,8 +1,8 @@
 #include "stages/stages.h"
 
-#include "approx/face_rows.h"
+#include "approx/cells/face_rows.h"
 #include "base/memory.h"
-#include "io/sections.h"
+#include "io/stream/sections.h"
 
 #include <math.h>
 #include <string.h>

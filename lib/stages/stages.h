@@ -4,8 +4,8 @@
 
 #include "stages/views.h"
 
-#include "approx/adaptive.h"
-#include "approx/support.h"
+#include "approx/adaptive/adaptive.h"
+#include "approx/support/support.h"
 
 /* How ipoints places integration points. */
 struct ipoints_options {

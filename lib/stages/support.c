@@ -1,9 +1,9 @@
 #include "stages/stages.h"
 
-#include "approx/face_rows.h"
-#include "approx/support_space.h"
+#include "approx/cells/face_rows.h"
+#include "approx/support/support_space.h"
 #include "base/memory.h"
-#include "io/sections.h"
+#include "io/stream/sections.h"
 
 /* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,

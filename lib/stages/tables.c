@@ -2,7 +2,7 @@
 
 #include "stages/stages.h"
 
-#include "approx/face_rows.h"
+#include "approx/cells/face_rows.h"
 #include "base/memory.h"
 
 /* The integration points. */

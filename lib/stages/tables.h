@@ -2,8 +2,8 @@
  * them. */
 #pragma once
 
-#include "io/stream.h"
-#include "solid/assembly.h"
+#include "io/stream/stream.h"
+#include "solid/assembly/assembly.h"
 
 /* Set the first part of *input, up to cell_side, as views of the stream, and complete it
  * (assembly_complete). STATUS_INPUT for sections that are missing or do not fit. */

@@ -1,6 +1,6 @@
 #include "stages/views.h"
 
-#include "approx/face_rows.h"
+#include "approx/cells/face_rows.h"
 #include "base/memory.h"
 
 #include <math.h>

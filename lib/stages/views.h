@@ -2,8 +2,8 @@
  * messages name the tool that makes what is missing. */
 #pragma once
 
-#include "approx/cells.h"
-#include "approx/shape.h"
+#include "approx/cells/cells.h"
+#include "approx/shape/shape.h"
 #include "stages/names.h"
 
 /* Node coordinates, checked to be finite. */

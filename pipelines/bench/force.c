@@ -7,7 +7,7 @@
 #include "problem.h"
 
 #include "base/memory.h"
-#include "solid/body.h"
+#include "solid/body/body.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "problem.h"
 
 #include "bench.h"
-#include "approx/face_rows.h"
+#include "approx/cells/face_rows.h"
 #include "base/memory.h"
 
 #include <malloc.h>

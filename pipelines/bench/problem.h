@@ -1,10 +1,10 @@
 /* Bodies that the kernels are timed on: a jittered square or cube, default MLS (MMLS, quadratic) supports. */
 #pragma once
 
-#include "approx/cells.h"
-#include "approx/cloud.h"
-#include "approx/shape.h"
-#include "approx/support.h"
+#include "approx/cells/cells.h"
+#include "approx/points/cloud.h"
+#include "approx/shape/shape.h"
+#include "approx/support/support.h"
 
 struct problem {
     struct support_options options;

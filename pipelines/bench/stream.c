@@ -3,7 +3,7 @@
 #include "bench.h"
 
 #include "base/memory.h"
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 #include <errno.h>
 #include <pthread.h>

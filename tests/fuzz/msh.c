@@ -1,7 +1,7 @@
 /* Fuzz target: meshes. What is read is consistent in itself, and is built or refused in one line. */
 #include "fuzz.h"
 
-#include "io/msh.h"
+#include "io/mesh/msh.h"
 
 #include <math.h>
 

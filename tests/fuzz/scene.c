@@ -1,7 +1,7 @@
 /* Fuzz target: the reader of scenes. What is accepted keeps the promises of struct scene. */
 #include "fuzz.h"
 
-#include "io/scene.h"
+#include "io/scene/scene.h"
 
 #include <math.h>
 

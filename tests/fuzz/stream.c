@@ -3,7 +3,7 @@
 #include "fuzz.h"
 
 #include "stages/check.h"
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 #include <string.h>
 #include <zlib.h>

@@ -2,10 +2,10 @@
  * labels. The first byte says which. */
 #include "fuzz.h"
 
-#include "io/label_table.h"
-#include "io/surface.h"
-#include "solid/curve.h"
-#include "solid/rigid.h"
+#include "io/image/label_table.h"
+#include "io/files/surface.h"
+#include "solid/system/curve.h"
+#include "solid/rigid/rigid.h"
 
 #include <gsl/gsl_errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
  * stream has no checksum: there a flipped bit may turn a number into another one, or a name; but no shape,
  * and no number into anything else. Prints for each file its bytes and how many cuts and flips were refused;
  * status 1 when one was taken that must not be. */
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -2,8 +2,8 @@
  * output, with voxels of VOXEL mm. A voxel has the LABEL of the last SURFACE that its centre is in. A SURFACE
  * is a table of triangles in mm, rows of nine numbers, or STL. The image holds the first of them. */
 #include "base/memory.h"
-#include "io/image.h"
-#include "io/surface.h"
+#include "io/image/image.h"
+#include "io/files/surface.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
  * to z = 0 alone; SHAPE@scan: values that are no labels; SHAPE@empty: no label; SHAPE@rgb: three values at a
  * voxel. */
 #include "../unit/label_shapes.h"
-#include "io/image.h"
+#include "io/image/image.h"
 
 #include <stdio.h>
 #include <unistd.h>

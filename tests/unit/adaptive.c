@@ -2,9 +2,9 @@
  * the products of gradients demand it, and converge to brute subdivision; sorted lists. */
 #include "approx_fixture.h"
 
-#include "approx/adaptive.h"
-#include "approx/cloud.h"
-#include "approx/sorted.h"
+#include "approx/adaptive/adaptive.h"
+#include "approx/points/cloud.h"
+#include "approx/points/sorted.h"
 #include "base/vector.h"
 
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */

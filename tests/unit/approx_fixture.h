@@ -4,8 +4,8 @@
 
 #include "unit.h"
 
-#include "approx/shape.h"
-#include "approx/support.h"
+#include "approx/shape/shape.h"
+#include "approx/support/support.h"
 
 #include <gsl/gsl_rng.h>
 

@@ -2,7 +2,7 @@
  * conditions that disagree. */
 #include "lattice_fixture.h"
 
-#include "solid/relaxation.h"
+#include "solid/relaxation/relaxation.h"
 
 /* The facets of sides of the box, see lattice_options. */
 static struct facet_set side_facets(const struct lattice *l, unsigned sides, int32_t **facet)

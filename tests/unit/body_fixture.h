@@ -5,8 +5,8 @@
 #include "cell_table.h"
 #include "tables_fixture.h"
 
-#include "approx/quadrature.h"
-#include "solid/smoothed_cells.h"
+#include "approx/cells/quadrature.h"
+#include "solid/body/smoothed_cells.h"
 
 struct sample {
     int dim;

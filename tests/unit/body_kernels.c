@@ -3,8 +3,8 @@
  */
 #include "body_setup.h"
 
-#include "solid/kernel.h"
-#include "solid/nodal_volume.h"
+#include "solid/body/kernel.h"
+#include "solid/body/nodal_volume.h"
 
 /* The same bits for 1, 2 and 3 threads, and from one call to the next. */
 static void check_threads(const struct sample *sample, const struct setup *setup, struct random *random)

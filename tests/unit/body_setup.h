@@ -4,7 +4,7 @@
 
 #include "body_fixture.h"
 
-#include "solid/body.h"
+#include "solid/body/body.h"
 
 enum { MATERIALS = 3 };
 

@@ -3,8 +3,8 @@
 
 #include "approx_fixture.h"
 
-#include "approx/cells.h"
-#include "approx/cloud.h"
+#include "approx/cells/cells.h"
+#include "approx/points/cloud.h"
 
 static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, double offset)
 {

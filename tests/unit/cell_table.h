@@ -4,7 +4,7 @@
 
 #include "unit.h"
 
-#include "approx/shape.h"
+#include "approx/shape/shape.h"
 
 struct cell_table {
     int64_t *ptr;

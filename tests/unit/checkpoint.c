@@ -3,9 +3,9 @@
  */
 #include "lattice_fixture.h"
 
-#include "io/checkpoint.h"
-#include "solid/dynamics.h"
-#include "solid/relaxation.h"
+#include "io/checkpoint/checkpoint.h"
+#include "solid/dynamics/dynamics.h"
+#include "solid/relaxation/relaxation.h"
 
 #include <fcntl.h>
 #include <stdio.h>

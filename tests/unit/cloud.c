@@ -1,8 +1,8 @@
 /* Analytic clouds: counts, places, positive cells that fill the box, outward facets. */
 #include "unit.h"
 
-#include "approx/cells.h"
-#include "approx/cloud.h"
+#include "approx/cells/cells.h"
+#include "approx/points/cloud.h"
 
 static struct cloud_options options_of(enum cloud_kind kind, int dim)
 {

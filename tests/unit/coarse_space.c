@@ -2,7 +2,7 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
-#include "solid/coarse_space.h"
+#include "solid/preconditioner/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */
 

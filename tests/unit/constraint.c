@@ -2,7 +2,7 @@
  * where they do not; and rows so nearly dependent, or so long, that a plain factorization suffers. */
 #include "unit.h"
 
-#include "solid/assembly.h"
+#include "solid/assembly/assembly.h"
 
 enum { NODES = 12 };
 

@@ -4,7 +4,7 @@
  * against itself one of two facets leads, and a box does not touch itself. */
 #include "body_setup.h"
 
-#include "solid/contact_between.h"
+#include "solid/contact/contact_between.h"
 
 enum { LOW_SIDE = 0, HIGH_SIDE = 1 }; /* xmin, xmax */
 

@@ -4,7 +4,7 @@
 
 #include "unit.h"
 
-#include "solid/contact.h"
+#include "solid/contact/contact.h"
 
 enum { CONTACT_NODES = 12, NODES = 20, EACH = 4 };
 

@@ -1,7 +1,7 @@
 /* Whether boundary averages resolve where a contact presses. */
 #include "contact_fixture.h"
 
-#include "solid/contact_patch.h"
+#include "solid/contact/contact_patch.h"
 
 /* Places at rest, one sample for each contact node: the point of the same number. */
 static double place[CONTACT_NODES * 3];

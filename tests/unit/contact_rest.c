@@ -1,7 +1,7 @@
 /* Which boundaries their facets resolve: curves and flat ones, however they lie; not folds and edges. */
 #include "unit.h"
 
-#include "solid/contact_rest.h"
+#include "solid/contact/contact_rest.h"
 
 enum { FACETS = 12 };
 

@@ -2,7 +2,7 @@
  * 13). */
 #include "unit.h"
 
-#include "solid/curve.h"
+#include "solid/system/curve.h"
 
 /* The derivative agrees with central differences of the value. */
 static void rate_is_derivative(const struct load_curve *curve)

@@ -2,7 +2,7 @@
  * energy and momenta conserved, and an outcome for every way to fail. */
 #include "lattice_fixture.h"
 
-#include "solid/dynamics.h"
+#include "solid/dynamics/dynamics.h"
 
 #include <gsl/gsl_eigen.h>
 

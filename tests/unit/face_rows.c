@@ -1,7 +1,7 @@
 /* Rows of faces: which share them, their points and their cells. */
 #include "box_fixture.h"
 
-#include "approx/face_rows.h"
+#include "approx/cells/face_rows.h"
 
 /* Whether a cell or a face of `corners` nodes has all of those. */
 static bool has_all(const int32_t *vertex, int corners, const int32_t *node, int count)

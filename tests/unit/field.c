@@ -2,7 +2,7 @@
  * NaN, which never passes. */
 #include "approx_fixture.h"
 
-#include "approx/field_compare.h"
+#include "approx/field/field_compare.h"
 
 static double linear(int dim, const double *x)
 {

@@ -2,9 +2,9 @@
  * of a graded mesh that follow. */
 #include "approx_fixture.h"
 
-#include "approx/cloud.h"
-#include "approx/field_error.h"
-#include "approx/size_field.h"
+#include "approx/points/cloud.h"
+#include "approx/error/field_error.h"
+#include "approx/error/size_field.h"
 
 /* A lattice of n nodes per axis over the unit square or cube, jittered within. */
 static struct cloud lattice(int dim, int n, double jitter)

@@ -1,8 +1,8 @@
 /* Folds: bodies that are bent, turned and stretched one-to-one have none; each kind is found where it is. */
 #include "unit.h"
 
-#include "approx/cells.h"
-#include "solid/folds.h"
+#include "approx/cells/cells.h"
+#include "solid/folds/folds.h"
 
 enum { MOST_NODES = 400, MOST_CELLS = 1600 };
 

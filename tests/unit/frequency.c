@@ -1,7 +1,7 @@
 /* The lowest frequency of a system: against the eigenvalues of its whole stiffness matrix, by GSL. */
 #include "lattice_fixture.h"
 
-#include "solid/frequency.h"
+#include "solid/preconditioner/frequency.h"
 
 #include <gsl/gsl_eigen.h>
 

@@ -2,7 +2,7 @@
  * same, and files that are not what they say are refused in one line. */
 #include "image_fixture.h"
 
-#include "io/image.h"
+#include "io/image/image.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

@@ -1,9 +1,9 @@
 /* Fault 25 for images and the motion of bodies: whichever allocation fails, it is reported and nothing is
  * left allocated. */
-#include "approx/cloud.h"
-#include "approx/motion.h"
+#include "approx/points/cloud.h"
+#include "approx/field/motion.h"
 #include "image_fixture.h"
-#include "io/image.h"
+#include "io/image/image.h"
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 /* Values between voxels: exact for what each method reproduces, and none outside. */
 #include "unit.h"
 
-#include "io/image_sample.h"
+#include "io/image/image_sample.h"
 
 static struct image image;
 

@@ -1,8 +1,8 @@
 /* The scalar stiffness and its sparse approximate inverse: what is stated of S and of the factor L. */
 #include "lattice_fixture.h"
 
-#include "solid/inverse_stiffness.h"
-#include "solid/scalar_stiffness.h"
+#include "solid/preconditioner/inverse_stiffness.h"
+#include "solid/preconditioner/scalar_stiffness.h"
 
 /* A jittered cube, one side of it held, and S of it as a full matrix. */
 struct cube {

@@ -1,6 +1,6 @@
 /* Cells from labels: what must hold for any shape. */
-#include "approx/cells.h"
-#include "approx/label_cells_private.h"
+#include "approx/cells/cells.h"
+#include "approx/labels/label_cells_private.h"
 
 #include "label_cells_fixture.h"
 

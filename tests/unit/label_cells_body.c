@@ -1,5 +1,5 @@
 /* Cells from labels: the surface and the parts of a body. */
-#include "approx/parts.h"
+#include "approx/cells/parts.h"
 #include "base/vector.h"
 
 #include "label_cells_fixture.h"

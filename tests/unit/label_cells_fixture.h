@@ -3,9 +3,9 @@
 
 #include "unit.h"
 
-#include "approx/cells.h"
-#include "approx/quality.h"
-#include "approx/label_cells.h"
+#include "approx/cells/cells.h"
+#include "approx/cells/quality.h"
+#include "approx/labels/label_cells.h"
 
 #include "label_shapes.h"
 

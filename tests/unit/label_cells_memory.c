@@ -1,7 +1,7 @@
 /* Whichever allocation fails while cells are made of labels, or a table of labels is read, the status is
  * STATUS_SYSTEM and nothing stays allocated. See failing_allocator.h. */
-#include "approx/label_cells.h"
-#include "io/label_table.h"
+#include "approx/labels/label_cells.h"
+#include "io/image/label_table.h"
 
 #include <stdio.h>
 #include <unistd.h>

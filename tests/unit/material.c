@@ -2,7 +2,7 @@
  * take the values of closed forms in homogeneous states. */
 #include "unit.h"
 
-#include "solid/material.h"
+#include "solid/material/material.h"
 #include "base/vector.h"
 
 static struct material make(enum material_model model, double poisson_ratio)

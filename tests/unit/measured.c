@@ -2,7 +2,7 @@
  * follow from others. */
 #include "unit.h"
 
-#include "solid/measured.h"
+#include "solid/constraint/measured.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -1,12 +1,12 @@
 /* Fault 25: whichever allocation fails, lib/approx reports it with STATUS_SYSTEM and leaves nothing
  * allocated. See failing_allocator.h. */
-#include "approx/adaptive.h"
-#include "approx/cloud.h"
-#include "approx/field_compare.h"
-#include "approx/field_error.h"
-#include "approx/size_field.h"
-#include "approx/support_space.h"
-#include "approx/edge_paths.h"
+#include "approx/adaptive/adaptive.h"
+#include "approx/points/cloud.h"
+#include "approx/field/field_compare.h"
+#include "approx/error/field_error.h"
+#include "approx/error/size_field.h"
+#include "approx/support/support_space.h"
+#include "approx/visibility/edge_paths.h"
 
 #include <gsl/gsl_errno.h>
 

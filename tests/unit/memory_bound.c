@@ -1,9 +1,9 @@
 /* What a reader allocates is a small multiple of its input, whatever the input says about its size: measured
  * on dense inputs, and on headers that announce what is not there. */
-#include "io/msh.h"
-#include "io/scene.h"
-#include "io/stream.h"
-#include "io/table.h"
+#include "io/mesh/msh.h"
+#include "io/scene/scene.h"
+#include "io/stream/stream.h"
+#include "io/files/table.h"
 
 #include <stdio.h>
 #include <sys/mman.h>

@@ -1,9 +1,9 @@
 /* Fault 25: whichever allocation fails, the readers of scenes, tables and surfaces and the load curve report
  * it with STATUS_SYSTEM and leave nothing allocated. See failing_allocator.h. */
-#include "io/scene.h"
-#include "io/surface.h"
-#include "io/table.h"
-#include "solid/curve.h"
+#include "io/scene/scene.h"
+#include "io/files/surface.h"
+#include "io/files/table.h"
+#include "solid/system/curve.h"
 
 #include <gsl/gsl_errno.h>
 

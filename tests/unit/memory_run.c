@@ -9,8 +9,8 @@
 
 #ifdef FAILING_ALLOCATOR
 
-#include "solid/dynamics.h"
-#include "solid/relaxation.h"
+#include "solid/dynamics/dynamics.h"
+#include "solid/relaxation/relaxation.h"
 
 static struct lattice lattice; /* made before any allocation fails */
 static double *u, *v;

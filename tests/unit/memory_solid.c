@@ -7,9 +7,9 @@
 
 #ifdef FAILING_ALLOCATOR
 
-#include "solid/body.h"
-#include "solid/contact_between.h"
-#include "solid/folds.h"
+#include "solid/body/body.h"
+#include "solid/contact/contact_between.h"
+#include "solid/folds/folds.h"
 
 static struct sample sample; /* made before any allocation fails */
 

@@ -2,8 +2,8 @@
  * is an energy. */
 #include "body_setup.h"
 
-#include "approx/quality.h"
-#include "solid/merged_cells.h"
+#include "approx/cells/quality.h"
+#include "solid/body/merged_cells.h"
 
 /* Height of vertex k of a cell above the opposite face, and that face's unit normal, toward the vertex. */
 static double height_of(const struct cells *cells, int64_t cell, int k, double normal[3])

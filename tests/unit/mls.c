@@ -2,8 +2,8 @@
  * weight function, the unit and the place; gradients; the limits of the modified basis; convergence. */
 #include "approx_fixture.h"
 
-#include "approx/mls_kernel.h"
-#include "approx/mls_orthogonal.h"
+#include "approx/mls/mls_kernel.h"
+#include "approx/mls/mls_orthogonal.h"
 
 TEST(weights)
 {

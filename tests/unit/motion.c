@@ -1,9 +1,9 @@
 /* The motion between the nodes, its inverse, and which cell each point of a grid lies in. */
 #include "unit.h"
 
-#include "approx/cloud.h"
-#include "approx/motion.h"
-#include "approx/raster.h"
+#include "approx/points/cloud.h"
+#include "approx/field/motion.h"
+#include "approx/cells/raster.h"
 #include "base/vector.h"
 
 /* A jittered cloud in the unit square or cube, and a field on it. */

@@ -1,8 +1,8 @@
 /* From a mesh file's contents to cells, facets and sets; the contents are put together by hand. */
 #include "unit.h"
 
-#include "approx/cells.h"
-#include "io/msh.h"
+#include "approx/cells/cells.h"
+#include "io/mesh/msh.h"
 
 enum {
     POINT = 15,

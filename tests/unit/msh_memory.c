@@ -1,7 +1,7 @@
 /* Fault 25 for meshes and clouds: whichever allocation fails, it is reported and nothing is left allocated.
  */
-#include "approx/cloud.h"
-#include "io/msh.h"
+#include "approx/points/cloud.h"
+#include "io/mesh/msh.h"
 
 #include <gsl/gsl_errno.h>
 

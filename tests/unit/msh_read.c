@@ -1,6 +1,6 @@
 /* Mesh files: what is sound is read, in every version of the format; whatever else gives a message and no
  * crash. */
-#include "io/msh.h"
+#include "io/mesh/msh.h"
 #include "msh_fixture.h"
 
 #include <sys/mman.h>

@@ -1,9 +1,9 @@
 /* Cutting a body into parts: owners, balance, and that a part holds all that reaches its own cells. */
 #include "approx_fixture.h"
 
-#include "approx/cloud.h"
-#include "approx/partition.h"
-#include "approx/support.h"
+#include "approx/points/cloud.h"
+#include "approx/partition/partition.h"
+#include "approx/support/support.h"
 
 struct body {
     struct cloud cloud;

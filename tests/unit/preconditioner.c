@@ -2,8 +2,8 @@
  * followed. */
 #include "lattice_fixture.h"
 
-#include "solid/frequency.h"
-#include "solid/preconditioner.h"
+#include "solid/preconditioner/frequency.h"
+#include "solid/preconditioner/preconditioner.h"
 
 /* A slender bar, clamped at one end and strained, and its preconditioner measured there. */
 struct strained {

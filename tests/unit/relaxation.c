@@ -2,7 +2,7 @@
  * and results that depend on neither threads nor the way the load is applied. */
 #include "lattice_fixture.h"
 
-#include "solid/relaxation.h"
+#include "solid/relaxation/relaxation.h"
 
 static struct relaxation_options to(double tolerance)
 {

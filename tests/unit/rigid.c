@@ -2,7 +2,7 @@
 #include "unit.h"
 
 #include "base/vector.h"
-#include "solid/rigid.h"
+#include "solid/rigid/rigid.h"
 
 enum { MAX_FACETS = 4096 };
 

@@ -1,7 +1,7 @@
 /* Rigid modes that conditions leave free: of nodes held one by one, in 2D and 3D, of several bodies. */
 #include "unit.h"
 
-#include "solid/rigid_modes.h"
+#include "solid/system/rigid_modes.h"
 
 enum { MOST_NODES = 16 };
 

@@ -2,8 +2,8 @@
  * over the rows of the transpose. */
 #include "unit.h"
 
-#include "solid/kernel.h"
-#include "solid/row_operator.h"
+#include "solid/body/kernel.h"
+#include "solid/operators/row_operator.h"
 
 enum { ROWS = 300, COLUMNS = 90, STRIDE = 4 };
 

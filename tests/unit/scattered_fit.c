@@ -2,7 +2,7 @@
  * there are enough; nothing made up across a line of points. */
 #include "unit.h"
 
-#include "approx/scattered_fit.h"
+#include "approx/field/scattered_fit.h"
 
 static double linear(const double *x, int v)
 {

@@ -1,7 +1,7 @@
 /* Scenes: what a good one holds, and one clear error with its line for each thing that can be wrong. */
 #include "unit.h"
 
-#include "io/scene.h"
+#include "io/scene/scene.h"
 
 #include <stdio.h>
 #include <unistd.h>

@@ -1,9 +1,9 @@
 /* Choosing by place, connected parts, rings, and the quality of cells. */
 #include "unit.h"
 
-#include "approx/parts.h"
-#include "approx/quality.h"
-#include "approx/select.h"
+#include "approx/cells/parts.h"
+#include "approx/cells/quality.h"
+#include "approx/points/select.h"
 
 TEST(regular_simplices_have_quality_one)
 {

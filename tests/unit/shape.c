@@ -2,8 +2,8 @@
 #include "box_fixture.h"
 #include "cell_table.h"
 
-#include "approx/face_rows.h"
-#include "approx/quadrature.h"
+#include "approx/cells/face_rows.h"
+#include "approx/cells/quadrature.h"
 
 /* Integral of prod lambda_k^p_k over a simplex of volume 1: d! prod p_k! / (d + sum p_k)!. */
 static double exact_monomial(int vertices, const int *power)

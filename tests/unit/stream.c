@@ -1,7 +1,7 @@
 /* The stream: what is read is what was written, to the last bit; and whatever is damaged is an error. */
 #include "stream_fixture.h"
 
-#include "io/sections.h"
+#include "io/stream/sections.h"
 
 #include <fcntl.h>
 

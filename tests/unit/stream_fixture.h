@@ -4,7 +4,7 @@
 
 #include "unit.h"
 
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 #include <float.h>
 #include <stdio.h>

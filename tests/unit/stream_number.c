@@ -1,7 +1,7 @@
 /* Numbers as text, against printf and strtod of the C library, on hard cases and random bit patterns. */
 #include "unit.h"
 
-#include "io/stream_private.h"
+#include "io/stream/stream_private.h"
 
 #include <float.h>
 #include <stdio.h>

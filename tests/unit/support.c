@@ -2,7 +2,7 @@
  * which must give a correct table or one clear error that names the point. */
 #include "approx_fixture.h"
 
-#include "approx/cloud.h"
+#include "approx/points/cloud.h"
 #include "base/lists.h"
 
 /* Radii over three decades, two nodes at one place. */

@@ -1,9 +1,9 @@
 /* Supports that stop at interfaces: whose nodes the lists hold, and fields with a kink. */
 #include "approx_fixture.h"
 
-#include "approx/cloud.h"
-#include "approx/field.h"
-#include "approx/support_space.h"
+#include "approx/points/cloud.h"
+#include "approx/field/field.h"
+#include "approx/support/support_space.h"
 
 /* A lattice over the unit square or cube, its cells on the sides x < .5 and x > .5 of an interface. */
 struct halves {

@@ -1,8 +1,8 @@
 /* Tables and rigid surfaces: what is read is what was written, and one clear error for each fault. */
 #include "unit.h"
 
-#include "io/surface.h"
-#include "io/table.h"
+#include "io/files/surface.h"
+#include "io/files/table.h"
 
 #include <float.h>
 #include <stdio.h>

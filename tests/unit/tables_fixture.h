@@ -3,7 +3,7 @@
 
 #include "unit.h"
 
-#include "approx/cloud.h"
+#include "approx/points/cloud.h"
 #include "stages/stages.h"
 #include "stages/tables.h"
 

@@ -1,7 +1,7 @@
 /* Thin parts of a body: plates of one and more cells, a step between them, and bodies that are not thin. */
 #include "approx_fixture.h"
 
-#include "approx/thin.h"
+#include "approx/cells/thin.h"
 
 enum { MOST_NODES = 400, MOST_CELLS = 1200 };
 

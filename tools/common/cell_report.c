@@ -1,8 +1,8 @@
 #include "cell_report.h"
 
-#include "approx/parts.h"
-#include "approx/support.h"
-#include "approx/thin.h"
+#include "approx/cells/parts.h"
+#include "approx/support/support.h"
+#include "approx/cells/thin.h"
 #include "base/lists.h"
 #include "base/memory.h"
 

@@ -1,8 +1,8 @@
 /* Report on the background cells of a body: connected bodies and poor cells. */
 #pragma once
 
-#include "approx/cells.h"
-#include "approx/quality.h"
+#include "approx/cells/cells.h"
+#include "approx/cells/quality.h"
 #include "base/box.h"
 #include "tool.h"
 

@@ -5,7 +5,7 @@
 #include "stages/solved.h"
 #include "tool.h"
 
-#include "approx/field_compare.h"
+#include "approx/field/field_compare.h"
 
 /* The regions of a stream's cells: their names, and which nodes belong to each; none where there are none. */
 struct regions {

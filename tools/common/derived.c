@@ -2,8 +2,8 @@
 
 #include "base/eigen.h"
 #include "base/memory.h"
-#include "io/sections.h"
-#include "io/vtk.h"
+#include "io/stream/sections.h"
+#include "io/vtk/vtk.h"
 #include "base/vector.h"
 
 #include <math.h>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "derived.h"
-#include "io/sections.h"
-#include "io/vtk.h"
+#include "io/stream/sections.h"
+#include "io/vtk/vtk.h"
 
 struct plot_label;
 

@@ -2,8 +2,8 @@
  * the stages that run with their defaults where their sections are missing. */
 #pragma once
 
-#include "approx/mls.h"
-#include "approx/support.h"
+#include "approx/mls/mls.h"
+#include "approx/support/support.h"
 #include "tool.h"
 
 /* The names of these options, for tool_first_given. */

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/options.h"
 #include "base/status.h"
-#include "io/stream.h"
+#include "io/stream/stream.h"
 
 #include <stdio.h>
 

@@ -1,0 +1,257 @@
+#include "approx/error/size_field.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+
+/* The order of the error of the gradient. */
+static const double gradient_order = 1.0;
+
+/* There is a corner, and no curve, where the normals of a facet and of a node at it are so far from each
+ * other, radians, or where at the facet's other nodes they are so much nearer. */
+static const double corner_angle = 0.7, corner_share = 0.25;
+
+/* What a cell's size is multiplied by to have the error `equal`; size: the present one. */
+static double cell_factor(const struct cells *cells, double squared, double size, double equal, double least)
+{
+    double factor = SIZE_FIELD_MOST;
+    if (squared > 0.0) {
+        factor = pow(equal / sqrt(squared), 1.0 / (gradient_order + 0.5 * cells->dim));
+    }
+    return fmin(fmax(factor, fmax(SIZE_FIELD_LEAST, least / size)), SIZE_FIELD_MOST);
+}
+
+static double cell_size(const struct cells *cells, const double *spacing, int64_t q)
+{
+    double sum = 0.0;
+    for (int k = 0; k <= cells->dim; k++) {
+        sum += spacing[cells->node[q * (cells->dim + 1) + k]];
+    }
+    return sum / (cells->dim + 1);
+}
+
+/* The error that all cells are to have: sum e_K^2 falls to its share, as a cell's part of it falls by the
+ * order of the error, twice; by bisection. Cells that already have the least size are left out, as refining
+ * others cannot reduce their error. */
+static double equal_error(const struct cells *cells, const double *squared, const double *spacing,
+                          const struct size_field_request *request)
+{
+    double wanted = 0.0, largest = 0.0;
+    for (int64_t q = 0; q < cells->count; q++) {
+        bool bound = cell_size(cells, spacing, q) * sqrt(request->share) < request->least;
+        wanted += bound ? 0.0 : request->share * squared[q];
+        largest = fmax(largest, squared[q]);
+    }
+    double low = 1e-6 * sqrt(largest), high = 1e6 * sqrt(largest);
+    for (int step = 0; step < 60 && largest > 0.0; step++) {
+        double middle = sqrt(low * high), after = 0.0;
+        for (int64_t q = 0; q < cells->count; q++) {
+            double size = cell_size(cells, spacing, q);
+            bool bound = size * sqrt(request->share) < request->least;
+            double factor = cell_factor(cells, squared[q], size, middle, request->least);
+            after += bound ? 0.0 : squared[q] * pow(factor, 2.0 * gradient_order);
+        }
+        *(after >= wanted ? &high : &low) = middle;
+    }
+    return low;
+}
+
+/* size[node_count]: the spacing times the geometric mean of the factors of the cells at each node. */
+static enum status node_sizes(const struct cells *cells, const double *squared, const double *spacing,
+                              const struct size_field_request *request, double *size, struct error *error)
+{
+    double equal = equal_error(cells, squared, spacing, request);
+    SCRATCH int64_t *count = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&count, cells->node_count, error));
+    for (int64_t q = 0; q < cells->count; q++) {
+        double now = cell_size(cells, spacing, q);
+        double factor = cell_factor(cells, squared[q], now, equal, request->least);
+        for (int k = 0; k <= cells->dim; k++) {
+            int64_t n = cells->node[q * (cells->dim + 1) + k];
+            size[n] += log(factor);
+            count[n]++;
+        }
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        if (count[n] == 0) {
+            return fail(error, STATUS_INPUT, "node %lld belongs to no cell", (long long)n);
+        }
+        size[n] = spacing[n] * exp(size[n] / (double)count[n]);
+    }
+    return STATUS_OK;
+}
+
+/* Sizes on the boundary do not grow, as the error estimate does not include the error of the boundary's
+ * shape. */
+static void keep_boundary(const struct faces *faces, const double *spacing, double *size)
+{
+    for (int64_t i = 0; i < faces->boundary_count * faces->dim; i++) {
+        int32_t n = faces->node[i];
+        size[n] = fmin(size[n], spacing[n]);
+    }
+}
+
+/* normal[node_count * dim]: sum of the area vectors of the facets at each node of the boundary. */
+static void boundary_normals(const struct cells *cells, const struct faces *faces, double *normal)
+{
+    int dim = cells->dim;
+    for (int64_t f = 0; f < faces->boundary_count; f++) {
+        double vector[3];
+        face_area_vector(dim, cells->x, faces->node + f * dim, vector);
+        for (int k = 0; k < dim; k++) {
+            for (int a = 0; a < dim; a++) {
+                normal[faces->node[f * dim + k] * dim + a] += vector[a];
+            }
+        }
+    }
+}
+
+/* Angle between two vectors. */
+static double angle_between(int dim, const double *u, const double *v)
+{
+    double lengths = sqrt(vector_dot(dim, u, u) * vector_dot(dim, v, v));
+    return acos(fmin(fmax(vector_dot(dim, u, v) / lengths, -1.0), 1.0));
+}
+
+/* angle[node_count]: the largest between the boundary's normal at a node and those of its facets. */
+static void boundary_angles(const struct cells *cells, const struct faces *faces, const double *normal,
+                            double *angle)
+{
+    int dim = cells->dim;
+    for (int64_t f = 0; f < faces->boundary_count; f++) {
+        const int32_t *node = faces->node + f * dim;
+        double vector[3];
+        face_area_vector(dim, cells->x, node, vector);
+        for (int k = 0; k < dim; k++) {
+            angle[node[k]] = fmax(angle[node[k]], angle_between(dim, vector, normal + node[k] * dim));
+        }
+    }
+}
+
+/* A chord of length h is h^2 / (8 R) off a curve of radius R. The normal turns by d / R between a node and
+ * the middle of a facet at it, d away. */
+static void limit_sag(const struct cells *cells, const struct faces *faces, const double *angle, double sag,
+                      double *size)
+{
+    int dim = cells->dim;
+    for (int64_t f = 0; f < faces->boundary_count; f++) {
+        const int32_t *node = faces->node + f * dim;
+        double middle[3],
+            least_angle = 0.0; /* at the nodes of the facet; small next to a corner of flat sides */
+        for (int k = 0; k < dim; k++) {
+            least_angle = k == 0 ? angle[node[k]] : fmin(least_angle, angle[node[k]]);
+        }
+        vector_middle(dim, cells->x, dim, node, middle);
+        for (int k = 0; k < dim; k++) {
+            double distance = 0.0;
+            for (int a = 0; a < dim; a++) {
+                distance = hypot(distance, middle[a] - cells->x[node[k] * dim + a]);
+            }
+            if (angle[node[k]] > 0.0 && angle[node[k]] < corner_angle &&
+                least_angle > corner_share * angle[node[k]]) {
+                size[node[k]] = fmin(size[node[k]], sqrt(8.0 * sag * distance / angle[node[k]]));
+            }
+        }
+    }
+}
+
+/* outer[node_count * dim]: the nodes of the boundary moved outward by half their spacing. */
+static void move_outward(const struct cells *cells, const double *normal, const double *spacing,
+                         double *outer)
+{
+    int dim = cells->dim;
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        double length = 0.0;
+        for (int a = 0; a < dim; a++) {
+            length = hypot(length, normal[n * dim + a]);
+        }
+        for (int a = 0; a < dim; a++) {
+            double shift = length > 0.0 ? 0.5 * spacing[n] * normal[n * dim + a] / length : 0.0;
+            outer[n * dim + a] = cells->x[n * dim + a] + shift;
+        }
+    }
+}
+
+/* Let sizes change by at most the gradation along each edge. */
+static void limit_gradation(const struct cells *cells, double *size)
+{
+    int dim = cells->dim;
+    bool changed = true;
+    while (changed) {
+        changed = false;
+        for (int64_t q = 0; q < cells->count; q++) {
+            const int32_t *node = cells->node + q * (dim + 1);
+            for (int k = 0; k < (dim + 1) * (dim + 1); k++) {
+                int32_t i = node[k / (dim + 1)], j = node[k % (dim + 1)];
+                double length = 0.0;
+                for (int a = 0; a < dim; a++) {
+                    length = hypot(length, cells->x[i * dim + a] - cells->x[j * dim + a]);
+                }
+                double most = size[i] + SIZE_FIELD_GRADATION * length;
+                if (size[j] > most * (1.0 + 1e-9)) {
+                    size[j] = most;
+                    changed = true;
+                }
+            }
+        }
+    }
+}
+
+/* Nodes of a mesh of these sizes, by those of the present one. */
+static double predicted_nodes(const struct cells *cells, const double *spacing, const double *size)
+{
+    double sum = 0.0;
+    for (int64_t q = 0; q < cells->count; q++) {
+        double mean = 0.0;
+        for (int k = 0; k <= cells->dim; k++) {
+            int64_t n = cells->node[q * (cells->dim + 1) + k];
+            mean += log(spacing[n] / size[n]) / (cells->dim + 1);
+        }
+        sum += exp(cells->dim * mean);
+    }
+    return sum * (double)cells->node_count / (double)cells->count;
+}
+
+enum status size_field_build(const struct cells *cells, const double *squared,
+                             const struct size_field_request *request, struct size_field *field,
+                             struct error *error)
+{
+    SCRATCH double *spacing = NULL, *normal = NULL, *angle = NULL;
+    *field = (struct size_field){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&normal, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&angle, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&field->size, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
+    RETURN_IF_ERROR(faces_build(cells, true, &field->boundary, error));
+    RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(node_sizes(cells, squared, spacing, request, field->size, error));
+    boundary_normals(cells, &field->boundary, normal);
+    move_outward(cells, normal, spacing, field->outer);
+    keep_boundary(&field->boundary, spacing, field->size);
+    if (request->sag > 0.0) {
+        boundary_angles(cells, &field->boundary, normal, angle);
+        limit_sag(cells, &field->boundary, angle, request->sag, field->size);
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        field->size[n] = fmax(field->size[n], request->least);
+    }
+    limit_gradation(cells, field->size);
+    field->nodes = field->unbound = predicted_nodes(cells, spacing, field->size);
+    if (field->unbound > request->most_nodes) {
+        double larger = pow(field->unbound / request->most_nodes, 1.0 / cells->dim);
+        for (int64_t n = 0; n < cells->node_count; n++) {
+            field->size[n] *= larger;
+        }
+        field->nodes = request->most_nodes;
+    }
+    return STATUS_OK;
+}
+
+void size_field_free(struct size_field *field)
+{
+    FREE_ALL(field->size, field->outer);
+    faces_free(&field->boundary);
+    *field = (struct size_field){0};
+}

@@ -1,0 +1,184 @@
+#include "approx/field/field.h"
+
+#include "approx/support/support_space.h"
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A point nearer to a cell than this share of its size counts as inside. */
+static const double in_cell = 1e-9;
+
+enum { POINTS_FOR_THREAD = 4000 }; /* see chunks_of */
+
+enum status field_spacing(const struct cells *cells, double *spacing, struct error *error)
+{
+    SCRATCH double *nearest = NULL;
+    bool complete = cells->count > 0;
+    if (cells->count > 0) {
+        RETURN_IF_ERROR(cells_node_spacing(cells, spacing, error));
+        for (int64_t n = 0; n < cells->node_count; n++) {
+            complete = complete && spacing[n] > 0.0;
+        }
+    }
+    if (!complete) {
+        RETURN_IF_ERROR(NEW_ARRAY(&nearest, cells->node_count, error));
+        RETURN_IF_ERROR(nodes_spacing(cells->dim, cells->node_count, cells->x, nearest, error));
+        for (int64_t n = 0; n < cells->node_count; n++) {
+            if (cells->count == 0 || !(spacing[n] > 0.0)) {
+                spacing[n] = nearest[n];
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* centre[count * dim] and radius[count], m: a ball around each cell that holds all that is nearer to it than
+ * `within` times the largest spacing of its nodes, size[count]. */
+static void enclose(const struct cells *cells, const double *spacing, double within, double *centre,
+                    double *radius, double *size)
+{
+    int dim = cells->dim;
+    for (int64_t c = 0; c < cells->count; c++) {
+        cell_centroid(cells, c, centre + c * dim);
+        for (int k = 0; k <= dim; k++) {
+            int64_t node = cells->node[c * (dim + 1) + k];
+            radius[c] = fmax(radius[c], vector_distance(dim, cells->x + node * dim, centre + c * dim));
+            size[c] = fmax(size[c], spacing[node]);
+        }
+        radius[c] = (1.0 + 1e-6) * radius[c] + within * size[c];
+    }
+}
+
+/* cell[count]: the nearest cell to each point of x[count * dim], the first of several; -1: all are farther
+ * than `within` times the largest spacing of their nodes. */
+static enum status nearest_cells(const struct cells *cells, const double *spacing, double within,
+                                 int64_t count, const double *x, int64_t *cell, struct error *error)
+{
+    int dim = cells->dim;
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    SCRATCH double *centre = NULL, *radius = NULL, *size = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&centre, cells->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&size, cells->count, error));
+    enclose(cells, spacing, within, centre, radius, size);
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, cells->count, centre, radius, error));
+    for (int64_t p = 0; p < count; p++) {
+        double least2 = INFINITY;
+        near.count = 0;
+        cell[p] = -1;
+        RETURN_IF_ERROR(point_grid_query(&grid, x + p * dim, 1.0, &near, error));
+        for (int64_t i = 0; i < near.count && least2 > 0.0; i++) {
+            const double *corner[4];
+            int64_t c = near.index[i];
+            cell_corners(cells, c, corner);
+            double most = (within + in_cell) * size[c];
+            double distance2 = simplex_distance2(dim, dim, corner, x + p * dim);
+            if (distance2 <= most * most && distance2 < least2) {
+                least2 = distance2;
+                cell[p] = c;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status field_outside(const struct cells *cells, const double *spacing, double within, int64_t count,
+                          const double *x, bool *outside, struct error *error)
+{
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    if (cells->count > 0) {
+        SCRATCH int64_t *cell = NULL;
+        RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
+        RETURN_IF_ERROR(nearest_cells(cells, spacing, within, count, x, cell, error));
+        for (int64_t p = 0; p < count; p++) {
+            outside[p] = cell[p] < 0;
+        }
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(point_grid_build(&grid, cells->dim, cells->node_count, cells->x, spacing, error));
+    for (int64_t p = 0; p < count; p++) {
+        near.count = 0;
+        RETURN_IF_ERROR(point_grid_query(&grid, x + p * cells->dim, 2.0, &near, error));
+        outside[p] = near.count == 0;
+    }
+    return STATUS_OK;
+}
+
+enum status field_table_build(const struct support_options *options, const struct mls *shapes,
+                              const struct cells *cells, const double *radius, int64_t count, const double *x,
+                              const char *what, struct field_table *table, struct error *error)
+{
+    FREED_BY(support_space_free) struct support_space space = {0};
+    *table = (struct field_table){0};
+    RETURN_IF_ERROR(support_space_build(options, cells, radius, &space, error));
+    RETURN_IF_ERROR(support_space_lists(options, &space, NULL, count, x, what, &table->lists, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&table->phi, table->lists.ptr[count], error));
+    struct neighbours lists = support_view(&table->lists);
+    return shape_table(shapes != NULL ? shapes : &options->mls, cells->x, radius, &lists, x, what, table->phi,
+                       NULL, error);
+}
+
+void field_table_free(struct field_table *table)
+{
+    support_free(&table->lists);
+    free(table->phi);
+    *table = (struct field_table){0};
+}
+
+void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const double *phi, int64_t cols,
+                    const double *field, double *values)
+{
+#pragma omp parallel for schedule(static) num_threads(chunks_of(count, POINTS_FOR_THREAD).threads)
+    for (int64_t p = 0; p < count; p++) {
+        double *row = values + p * cols;
+        for (int64_t c = 0; c < cols; c++) {
+            row[c] = 0.0;
+        }
+        for (int64_t i = ptr[p]; i < ptr[p + 1]; i++) {
+            for (int64_t c = 0; c < cols; c++) {
+                row[c] += phi[i] * field[idx[i] * cols + c];
+            }
+        }
+    }
+}
+
+/* value[cols] at x[dim]: linear in a cell, of the values at its nodes. */
+static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
+                                const double *x, double *value)
+{
+    const int32_t *node = cells->node + cell * (cells->dim + 1);
+    double coordinate[4];
+    cell_barycentric(cells, cell, x, coordinate);
+    for (int64_t c = 0; c < cols; c++) {
+        value[c] = 0.0;
+        for (int k = 0; k <= cells->dim; k++) {
+            value[c] += coordinate[k] * values[node[k] * cols + c];
+        }
+    }
+}
+
+enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
+                         const double *x, double *result, struct error *error)
+{
+    SCRATCH double *spacing = NULL;
+    SCRATCH int64_t *cell = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
+    RETURN_IF_ERROR(field_spacing(cells, spacing, error));
+    RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, x, cell, error));
+    for (int64_t p = 0; p < count; p++) {
+        if (cell[p] < 0) {
+            char place[96];
+            point_text(cells->dim, x + p * cells->dim, place);
+            return fail(error, STATUS_INPUT, "node %lld at %s is far from all its cells", (long long)p,
+                        place);
+        }
+        interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
+    }
+    return STATUS_OK;
+}

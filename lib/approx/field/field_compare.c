@@ -1,0 +1,241 @@
+#include "approx/field/field_compare.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics_double.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool same_place(int dim, const double *a, const double *b, double tolerance)
+{
+    for (int axis = 0; axis < dim; axis++) {
+        if (!(fabs(a[axis] - b[axis]) <= tolerance)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Match nodes in any order through cell lists. */
+static enum status match_any_order(int dim, int64_t count, const double *a, const double *b, double tolerance,
+                                   int32_t *match, bool *matched, struct error *error)
+{
+    FREED_BY(point_grid_free) struct point_grid grid = {0};
+    FREED_BY(index_list_free) struct index_list list = {0};
+    SCRATCH double *radius = NULL;
+    SCRATCH char *used = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&radius, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&used, count, error));
+    for (int64_t n = 0; n < count; n++) {
+        radius[n] = tolerance * sqrt((double)dim);
+    }
+    RETURN_IF_ERROR(point_grid_build(&grid, dim, count, b, radius, error));
+    *matched = true;
+    for (int64_t n = 0; n < count && *matched; n++) {
+        list.count = 0;
+        RETURN_IF_ERROR(point_grid_query(&grid, a + n * dim, 1.0, &list, error));
+        int64_t at = 0;
+        while (at < list.count && used[list.index[at]]) {
+            at++;
+        }
+        *matched = at < list.count;
+        if (*matched) {
+            match[n] = list.index[at];
+            used[match[n]] = 1;
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
+                              int32_t *match, bool *matched, struct error *error)
+{
+    struct box box = box_of(dim, a_count, a);
+    box_add(&box, b_count, b);
+    double tolerance = 1e-9 * box_side(&box);
+    *matched = a_count == b_count;
+    if (!*matched) {
+        return STATUS_OK;
+    }
+    for (int64_t n = 0; n < a_count && *matched; n++) {
+        match[n] = (int32_t)n;
+        *matched = same_place(dim, a + n * dim, b + n * dim, tolerance);
+    }
+    if (*matched || !(tolerance > 0.0)) {
+        return STATUS_OK;
+    }
+    return match_any_order(dim, a_count, a, b, tolerance, match, matched, error);
+}
+
+/* difference[i] = |a_i - b_i|, Euclidean over the columns; not finite wherever a value is not. */
+static void differences(int64_t count, int64_t cols, const double *a, const double *b, double *difference)
+{
+    for (int64_t i = 0; i < count; i++) {
+        difference[i] = vector_distance((int)cols, a + i * cols, b + i * cols);
+    }
+}
+
+double field_largest(int64_t count, int64_t cols, const double *field)
+{
+    double largest2 = 0.0;
+    for (int64_t i = 0; i < count; i++) {
+        double sum = vector_dot((int)cols, field + i * cols, field + i * cols);
+        if (isnan(sum)) {
+            return NAN;
+        }
+        largest2 = fmax(largest2, sum);
+    }
+    return sqrt(largest2);
+}
+
+enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
+                             struct field_statistics *statistics, struct error *error)
+{
+    double sum = 0.0, sum2 = 0.0;
+    bool unknown = count == 0;
+    *statistics = (struct field_statistics){.count = count};
+    RETURN_IF_ERROR(NEW_ARRAY(&statistics->sorted, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        double d = difference[index[i]];
+        statistics->sorted[i] = d;
+        unknown = unknown || isnan(d);
+        sum += d;
+        sum2 += d * d;
+        if (i == 0 || d > statistics->largest || (isnan(d) && !isnan(statistics->largest))) {
+            statistics->largest = d;
+            statistics->largest_at = index[i];
+        }
+    }
+    statistics->average = sum / (double)count;
+    statistics->rmse = sqrt(sum2 / (double)count);
+    if (unknown) {
+        statistics->average = statistics->largest = statistics->rmse = NAN;
+        for (int64_t i = 0; i < count; i++) {
+            statistics->sorted[i] = NAN;
+        }
+    } else {
+        gsl_sort(statistics->sorted, 1, (size_t)count);
+    }
+    return STATUS_OK;
+}
+
+void field_statistics_free(struct field_statistics *statistics)
+{
+    free(statistics->sorted);
+    *statistics = (struct field_statistics){0};
+}
+
+double field_percentile(const struct field_statistics *statistics, double percent)
+{
+    return statistics->count > 0 ? gsl_stats_quantile_from_sorted_data(
+                                       statistics->sorted, 1, (size_t)statistics->count, percent / 100.0)
+                                 : NAN;
+}
+
+/* Drop the chosen nodes outside of B's body, or fail on the first; points: those that are kept. */
+static enum status drop_outside(const struct nodal_field *a, const struct nodal_field *b,
+                                const double *spacing, bool skip, struct field_comparison *comparison,
+                                double *points, struct error *error)
+{
+    SCRATCH bool *outside = NULL;
+    int dim = a->cells.dim;
+    int64_t kept = 0, first = -1;
+    for (int64_t i = 0; i < comparison->count; i++) {
+        memcpy(points + i * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, comparison->count, error));
+    RETURN_IF_ERROR(
+        field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
+    for (int64_t i = 0; i < comparison->count; i++) {
+        if (!outside[i]) {
+            memmove(points + kept * dim, points + i * dim, (size_t)dim * sizeof *points);
+            comparison->node[kept++] = comparison->node[i];
+        } else if (first < 0) {
+            first = comparison->node[i];
+        }
+    }
+    comparison->outside = comparison->count - kept;
+    comparison->count = kept;
+    if (comparison->outside > 0 && !skip) {
+        char place[96];
+        point_text(dim, a->cells.x + first * dim, place);
+        return fail(error, STATUS_INPUT,
+                    "%lld nodes of A lie outside of B's cloud, the first is row %lld at %s",
+                    (long long)comparison->outside, (long long)first, place);
+    }
+    return STATUS_OK;
+}
+
+/* B's field at the chosen nodes of A. */
+static enum status interpolate(const struct nodal_field *a, const struct nodal_field *b, bool skip,
+                               struct field_comparison *comparison, double *reference, struct error *error)
+{
+    enum status status;
+    const struct support_options usual = support_defaults(a->cells.dim);
+    const struct support_options *support = b->parameters != NULL ? b->support : &usual;
+    struct field_table table = {0};
+    double *spacing = NULL, *radius = NULL, *points = NULL, *values = NULL;
+    TRY(NEW_ARRAY(&spacing, b->cells.node_count, error));
+    TRY(NEW_ARRAY(&points, a->cells.node_count * a->cells.dim, error));
+    TRY(NEW_ARRAY(&values, a->cells.node_count * a->cols, error));
+    TRY(field_spacing(&b->cells, spacing, error));
+    TRY(drop_outside(a, b, spacing, skip, comparison, points, error));
+    TRY(NEW_ARRAY(&radius, b->cells.node_count, error));
+    TRY(support_radii(&usual, b->cells.node_count, spacing, radius, error));
+    TRY(field_table_build(support, b->parameters != NULL ? b->shapes : NULL, &b->cells,
+                          b->parameters != NULL ? b->radius : radius, comparison->count, points,
+                          "nodes of A within B", &table, error));
+    field_evaluate(comparison->count, table.lists.ptr, table.lists.idx, table.phi, b->cols,
+                   b->parameters != NULL ? b->parameters : b->values, values);
+    for (int64_t i = 0; i < comparison->count; i++) {
+        memcpy(reference + comparison->node[i] * b->cols, values + i * b->cols,
+               (size_t)b->cols * sizeof *values);
+    }
+done:
+    field_table_free(&table);
+    FREE_ALL(spacing, radius, points, values);
+    return status == STATUS_VERDICT ? STATUS_INPUT : status; /* not comparable is not "differs" */
+}
+
+enum status field_compare(const struct nodal_field *a, const struct nodal_field *b, const bool *chosen,
+                          bool skip_outside, struct field_comparison *comparison, struct error *error)
+{
+    int64_t count = a->cells.node_count, cols = a->cols;
+    SCRATCH int32_t *match = NULL;
+    SCRATCH double *reference = NULL; /* B's values at the nodes of A */
+    *comparison = (struct field_comparison){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&match, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&reference, count * cols, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&comparison->node, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&comparison->difference, count, error));
+    for (int64_t n = 0; n < count; n++) {
+        if (chosen == NULL || chosen[n]) {
+            comparison->node[comparison->count++] = n;
+        }
+    }
+    for (int64_t i = 0; i < count * cols; i++) {
+        reference[i] = NAN;
+    }
+    RETURN_IF_ERROR(field_match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
+                                      &comparison->coincide, error));
+    if (comparison->coincide) {
+        for (int64_t i = 0; i < comparison->count; i++) {
+            int64_t node = comparison->node[i];
+            memcpy(reference + node * cols, b->values + match[node] * cols, (size_t)cols * sizeof(double));
+        }
+    } else {
+        RETURN_IF_ERROR(interpolate(a, b, skip_outside, comparison, reference, error));
+    }
+    differences(count, cols, a->values, reference, comparison->difference);
+    return STATUS_OK;
+}
+
+void field_comparison_free(struct field_comparison *comparison)
+{
+    FREE_ALL(comparison->node, comparison->difference);
+    *comparison = (struct field_comparison){0};
+}

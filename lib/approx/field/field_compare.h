@@ -1,0 +1,62 @@
+/* Comparing two nodal fields, on one cloud of nodes or on two. */
+#pragma once
+
+#include "approx/field/field.h"
+
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, each used once; *matched is
+ * false (and match void) when the counts differ or a node of A has none. "Same" is within 1e-9 of the larger
+ * extent of the clouds. */
+MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
+                                         const double *b, int32_t *match, bool *matched, struct error *error);
+
+/* The largest Euclidean norm of a row; NaN where any value is NaN. */
+double field_largest(int64_t count, int64_t cols, const double *field);
+
+/* Statistics of a list of differences. */
+struct field_statistics {
+    int64_t count;
+    double average, largest, rmse;
+    int64_t largest_at; /* index of the (first) largest, or of the first NaN */
+    double *sorted;     /* count, ascending, for field_percentile */
+};
+
+/* Statistics of difference[index[i]], i < count. All of them are NaN if one difference is NaN, or if there is
+ * none. */
+MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
+                                        struct field_statistics *statistics, struct error *error);
+void field_statistics_free(struct field_statistics *statistics);
+
+/* The value that `percent` of the differences do not exceed, linear between two. */
+double field_percentile(const struct field_statistics *statistics, double percent);
+
+/* A field in view: its nodes, with their cells where there are any, and values[cells.node_count * cols]. */
+struct nodal_field {
+    struct cells cells;
+    int64_t cols;
+    const double *values;
+    /* Parameters, supports and shape functions of a field u_h = sum phi_j d_j that was solved for; else NULL:
+     * the values are taken as the parameters of MMLS with the default supports. */
+    const double *parameters; /* d_j: cells.node_count * cols */
+    const double *radius;     /* supports of the nodes, m */
+    const struct support_options *support;
+    const struct mls *shapes;
+};
+
+/* The difference of field A from field B at the nodes of A. */
+struct field_comparison {
+    bool coincide;      /* the two clouds do; else B was interpolated */
+    int64_t count;      /* nodes compared */
+    int64_t *node;      /* those nodes, ascending */
+    int64_t outside;    /* nodes left out because they lie outside of B's cloud */
+    double *difference; /* for each node of A; NaN where not compared */
+};
+
+/* Compare at the nodes of A with chosen[n] (NULL: all). B's values are taken as they are where the clouds
+ * coincide, else B's field is evaluated there. Nodes of A outside of B's cloud
+ * are left out if skip_outside, else STATUS_INPUT naming the first (and comparison->outside is their number).
+ * Clouds that cannot be interpolated are STATUS_INPUT. Both fields have the same dimension and columns. The
+ * comparison is to be freed also on failure. */
+MUST_CHECK enum status field_compare(const struct nodal_field *a, const struct nodal_field *b,
+                                     const bool *chosen, bool skip_outside,
+                                     struct field_comparison *comparison, struct error *error);
+void field_comparison_free(struct field_comparison *comparison);

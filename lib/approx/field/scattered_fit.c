@@ -1,0 +1,337 @@
+#include "approx/field/scattered_fit.h"
+
+#include "approx/mls/weight.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdbool.h>
+
+/* Singular values below this share of the largest are noise: the points do not determine that combination. */
+static const double cut = 1e-5;
+
+enum { MOST_NEIGHBOURS = 24, MOST_MONOMIALS = 10 };
+
+struct nearest {
+    int64_t count;
+    int64_t row[MOST_NEIGHBOURS];
+    double distance[MOST_NEIGHBOURS]; /* ascending, in the table's unit */
+};
+
+enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
+{
+    int dim = fit->dim;
+    double extent = 0.0;
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->x, fit->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&fit->radius, fit->count, error));
+    for (int64_t i = 0; i < fit->count; i++) {
+        for (int a = 0; a < dim; a++) {
+            fit->x[i * dim + a] = fit->row[i * fit->row_size + a];
+            extent = fmax(extent, fabs(fit->x[i * dim + a] - fit->x[a]));
+        }
+    }
+    /* A start only: the search widens it. */
+    double radius = extent > 0.0 ? 2.0 * extent / pow((double)fit->count, 1.0 / dim) : 1.0;
+    if (!(radius < 1e150)) {
+        return fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart");
+    }
+    for (int64_t i = 0; i < fit->count; i++) {
+        fit->radius[i] = radius;
+    }
+    return point_grid_build(&fit->grid, dim, fit->count, fit->x, fit->radius, error);
+}
+
+void scattered_fit_free(struct scattered_fit *fit)
+{
+    FREE_ALL(fit->x, fit->radius);
+    point_grid_free(&fit->grid);
+    fit->x = fit->radius = NULL;
+}
+
+/* Insert a point among the nearest; of equally near ones the earlier row comes first. */
+static void insert(struct nearest *nearest, int64_t most, int64_t row, double distance)
+{
+    if (nearest->count == most && distance >= nearest->distance[most - 1]) {
+        return;
+    }
+    int64_t at = nearest->count < most ? nearest->count++ : most - 1;
+    for (; at > 0 && nearest->distance[at - 1] > distance; at--) {
+        nearest->distance[at] = nearest->distance[at - 1];
+        nearest->row[at] = nearest->row[at - 1];
+    }
+    nearest->distance[at] = distance;
+    nearest->row[at] = row;
+}
+
+/* Whether a point is connected to the node, or not yet checked. */
+static bool usable(const struct scattered_fit *fit, int64_t row)
+{
+    return fit->paths == NULL || fit->paths->verdict[row] != PATH_NONE;
+}
+
+static int64_t count_usable(const struct scattered_fit *fit, const struct index_list *rows)
+{
+    int64_t count = 0;
+    for (int64_t k = 0; k < rows->count; k++) {
+        count += usable(fit, rows->index[k]);
+    }
+    return count;
+}
+
+/* The nearest points that are connected or not yet checked: those within a radius, which is doubled until
+ * there are enough. */
+static enum status find_nearest(const struct scattered_fit *fit, const double *x, struct nearest *nearest,
+                                struct error *error)
+{
+    int dim = fit->dim;
+    int64_t most = dim == 2 ? 12 : MOST_NEIGHBOURS, wanted = fit->count < most ? fit->count : most;
+    double at[3] = {0.0, 0.0, 0.0};
+    FREED_BY(index_list_free) struct index_list near = {0};
+    for (int a = 0; a < dim; a++) {
+        at[a] = x[a] / fit->unit;
+    }
+    for (double factor = 1.0;
+         count_usable(fit, &near) < wanted && near.count < fit->count && factor < 0x1p500; factor *= 2.0) {
+        near.count = 0;
+        RETURN_IF_ERROR(point_grid_query(&fit->grid, at, factor, &near, error));
+    }
+    nearest->count = 0;
+    for (int64_t k = 0; k < near.count; k++) { /* rows ascend */
+        double distance = vector_distance(dim, fit->x + near.index[k] * dim, at);
+        if (usable(fit, near.index[k])) {
+            insert(nearest, most, near.index[k], distance);
+        }
+    }
+    if (near.count < wanted) {
+        return fail(error, STATUS_INPUT, "interpolation of a table: a point is too far from it");
+    }
+    return STATUS_OK;
+}
+
+/* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 /
+ * n of the plane each, or 4/3 pi r^3 / n of space, if they lie throughout the body; on its boundary they are
+ * closer. */
+static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
+                                  struct error *error)
+{
+    double x[3] = {0.0, 0.0, 0.0};
+    struct nearest nearest;
+    for (int a = 0; a < fit->dim; a++) {
+        x[a] = fit->row[row * fit->row_size + a] * fit->unit;
+    }
+    enum status status = find_nearest(fit, x, &nearest, error);
+    if (status == STATUS_OK) {
+        double radius = nearest.distance[nearest.count - 1], count = (double)nearest.count;
+        *spacing = radius * (fit->dim == 2 ? sqrt(M_PI / count) : cbrt(4.0 / 3.0 * M_PI / count));
+    }
+    return status;
+}
+
+/* The nearest connected points: the connections of the nearest ones are checked until all of them exist. */
+static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
+                                struct nearest *nearest, struct error *error)
+{
+    if (fit->paths != NULL) {
+        edge_paths_begin(fit->paths, from);
+    }
+    for (bool settled = false; !settled;) {
+        settled = true;
+        RETURN_IF_ERROR(find_nearest(fit, x, nearest, error));
+        for (int64_t i = 0; fit->paths != NULL && i < nearest->count; i++) {
+            bool reached;
+            RETURN_IF_ERROR(edge_paths_reach(fit->paths, nearest->row[i], &reached, error));
+            settled = settled && reached;
+        }
+    }
+    if (nearest->count == 0) {
+        return fail(error, STATUS_INPUT, "none of its points is within reach through the cells");
+    }
+    return STATUS_OK;
+}
+
+static void monomials(int dim, const double *xi, double *p)
+{
+    int k = 1 + dim;
+    p[0] = 1.0;
+    for (int a = 0; a < dim; a++) {
+        p[1 + a] = xi[a];
+        for (int b = a; b < dim; b++) {
+            p[k++] = xi[a] * xi[b];
+        }
+    }
+}
+
+/* Columns of a weighted fit, decomposed: U s V^T, those singular values below the cut set to 0. */
+struct part {
+    gsl_matrix *U, *V;
+    gsl_vector *s;
+};
+
+static enum status part_allocate(struct part *part, size_t rows, size_t columns, struct error *error)
+{
+    part->U = gsl_matrix_calloc(rows > columns ? rows : columns, columns); /* padded by zeros */
+    part->V = gsl_matrix_calloc(columns, columns);
+    part->s = gsl_vector_calloc(columns);
+    bool good = part->U != NULL && part->V != NULL && part->s != NULL;
+    return good ? STATUS_OK : fail_memory(error, "interpolation of a table");
+}
+
+static void part_free(struct part *part)
+{
+    gsl_matrix_free(part->U);
+    gsl_matrix_free(part->V);
+    gsl_vector_free(part->s);
+}
+
+/* U holds the columns, and receives the left singular vectors. largest: of the singular values, 0: their own.
+ */
+static enum status part_decompose(struct part *part, double largest, struct error *error)
+{
+    gsl_vector *work = gsl_vector_alloc(part->s->size);
+    if (work == NULL) {
+        return fail_memory(error, "interpolation of a table");
+    }
+    int failure = gsl_linalg_SV_decomp(part->U, part->V, part->s, work);
+    gsl_vector_free(work);
+    if (failure != GSL_SUCCESS) {
+        return fail(error, STATUS_VERDICT, "interpolation of a table: no singular value decomposition");
+    }
+    double least = cut * (largest > 0.0 ? largest : gsl_vector_get(part->s, 0));
+    for (size_t k = 0; k < part->s->size; k++) {
+        if (!(gsl_vector_get(part->s, k) > least)) {
+            gsl_vector_set(part->s, k, 0.0);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* row[i] += sum_j v[j] A^+(j, i), A^+ the pseudo-inverse. */
+static void add_inverse(const struct part *part, const double *v, int64_t count, double *row)
+{
+    for (size_t k = 0; k < part->s->size; k++) {
+        double s = gsl_vector_get(part->s, k), sum = 0.0;
+        if (s == 0.0) {
+            continue;
+        }
+        for (size_t j = 0; j < part->s->size; j++) {
+            sum += v[j] * gsl_matrix_get(part->V, j, k);
+        }
+        for (int64_t i = 0; i < count; i++) {
+            row[i] += sum / s * gsl_matrix_get(part->U, (size_t)i, k);
+        }
+    }
+}
+
+/* Make the columns of Q orthogonal to the linear part: Q -= U U^T Q. */
+static void orthogonalise(const struct part *linear, int64_t count, gsl_matrix *Q)
+{
+    for (size_t c = 0; c < Q->size2; c++) {
+        for (size_t k = 0; k < linear->s->size; k++) {
+            double product = 0.0;
+            for (int64_t i = 0; i < count && gsl_vector_get(linear->s, k) > 0.0; i++) {
+                product += gsl_matrix_get(linear->U, (size_t)i, k) * gsl_matrix_get(Q, (size_t)i, c);
+            }
+            for (int64_t i = 0; i < count; i++) {
+                double value =
+                    gsl_matrix_get(Q, (size_t)i, c) - product * gsl_matrix_get(linear->U, (size_t)i, k);
+                gsl_matrix_set(Q, (size_t)i, c, value);
+            }
+        }
+    }
+}
+
+/* The weighted basis at the neighbours, in coordinates from their weighted mean: the linear columns, and the
+ * quadratic ones. at_x: the basis at x. With coordinates from the mean, the combinations that the points do
+ * not determine are those that vanish on them. */
+static void fill_columns(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
+                         double *root, gsl_matrix *linear, gsl_matrix *quadratic, double *at_x)
+{
+    int dim = fit->dim == 2 ? 2 : 3;
+    double radius = 1.1 * nearest->distance[nearest->count - 1], total = 0.0;
+    double mean[3] = {0.0, 0.0, 0.0}, xi[3], p[MOST_MONOMIALS];
+    for (int64_t i = 0; i < nearest->count; i++) {
+        double weight, slope, relative = nearest->distance[i] / radius;
+        weight_evaluate(WEIGHT_QUARTIC, relative * relative, &weight, &slope);
+        root[i] = sqrt(weight);
+        total += weight;
+        add_scaled(dim, weight, fit->row + nearest->row[i] * fit->row_size, mean);
+    }
+    for (int a = 0; a < dim; a++) {
+        mean[a] /= total;
+        xi[a] = (x[a] / fit->unit - mean[a]) / radius;
+    }
+    monomials(dim, xi, at_x);
+    for (int64_t i = 0; i < nearest->count; i++) {
+        for (int a = 0; a < dim; a++) {
+            xi[a] = (fit->row[nearest->row[i] * fit->row_size + a] - mean[a]) / radius;
+        }
+        monomials(dim, xi, p);
+        for (size_t k = 0; k < linear->size2; k++) {
+            gsl_matrix_set(linear, (size_t)i, k, root[i] * p[k]);
+        }
+        for (size_t k = 0; k < quadratic->size2; k++) {
+            gsl_matrix_set(quadratic, (size_t)i, k, root[i] * p[linear->size2 + k]);
+        }
+    }
+}
+
+/* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit what the linear ones
+ * leave, so that linear fields come out exactly however few the points are. */
+static enum status weights_of(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
+                              double *phi, struct error *error)
+{
+    size_t linear_columns = (size_t)(1 + fit->dim);
+    size_t quadratic_columns = (size_t)(fit->dim * (fit->dim + 1) / 2);
+    size_t rows = (size_t)nearest->count;
+    FREED_BY(part_free) struct part linear = {0}, quadratic = {0};
+    double root[MOST_NEIGHBOURS], value[MOST_NEIGHBOURS] = {0.0}, at_x[MOST_MONOMIALS];
+    double beyond[MOST_MONOMIALS] = {0.0}, moment[MOST_NEIGHBOURS * MOST_MONOMIALS];
+    RETURN_IF_ERROR(part_allocate(&linear, rows, linear_columns, error));
+    RETURN_IF_ERROR(part_allocate(&quadratic, rows, quadratic_columns, error));
+    fill_columns(fit, x, nearest, root, linear.U, quadratic.U, at_x);
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < quadratic_columns; k++) {
+            moment[i * quadratic_columns + k] = gsl_matrix_get(quadratic.U, i, k);
+        }
+    }
+    RETURN_IF_ERROR(part_decompose(&linear, 0.0, error));
+    orthogonalise(&linear, nearest->count, quadratic.U);
+    RETURN_IF_ERROR(part_decompose(&quadratic, gsl_vector_get(linear.s, 0), error));
+    /* p_l c_l + p_q c_q with c_l = L^+ (b - Q c_q), c_q = Q'^+ b. */
+    add_inverse(&linear, at_x, nearest->count, value);
+    for (size_t k = 0; k < quadratic_columns; k++) {
+        beyond[k] = at_x[linear_columns + k];
+        for (size_t i = 0; i < rows; i++) {
+            beyond[k] -= value[i] * moment[i * quadratic_columns + k];
+        }
+    }
+    add_inverse(&quadratic, beyond, nearest->count, value);
+    for (int64_t i = 0; i < nearest->count; i++) {
+        phi[i] = value[i] * root[i];
+    }
+    return STATUS_OK;
+}
+
+enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
+                                   double *values, double *distance, double *spacing, struct error *error)
+{
+    struct nearest nearest = {0};
+    double phi[MOST_NEIGHBOURS] = {1.0};
+    RETURN_IF_ERROR(find_reached(fit, from, x, &nearest, error));
+    int64_t last = nearest.count - 1;
+    *distance = nearest.distance[0] * fit->unit;
+    RETURN_IF_ERROR(spacing_around(fit, nearest.row[0], spacing, error));
+    *spacing *= fit->unit;
+    if (nearest.count > 1 && nearest.distance[last] > 0.0) {
+        RETURN_IF_ERROR(weights_of(fit, x, &nearest, phi, error));
+    }
+    for (int v = 0; v < fit->value_count; v++) {
+        values[v] = 0.0;
+        for (int64_t i = 0; i < nearest.count; i++) {
+            values[v] += phi[i] * fit->row[nearest.row[i] * fit->row_size + fit->dim + v] * fit->unit;
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,40 @@
+/* Scattered-data fit: moving least squares on measured points that may lie on a curve or a surface, or be
+ * few.
+ *
+ * At each x the nearest points, weighted by the quartic spline, are fitted by the linear basis in local
+ * scaled coordinates, and the remainder by the quadratic monomials. Combinations of monomials that the points
+ * do not determine (singular values below a cut) are left out, so that the fit is constant along directions
+ * in which nothing was measured. Linear fields are reproduced, however few the points. */
+#pragma once
+
+#include "approx/points/point_grid.h"
+#include "approx/visibility/edge_paths.h"
+
+#include <stdint.h>
+
+/* Measured values in the caller's arrays: each row holds a point, then the values. */
+struct scattered_fit {
+    int dim;
+    int value_count;
+    int64_t count;     /* >= 1 */
+    int64_t row_size;  /* doubles per row, >= dim + value_count */
+    const double *row; /* count * row_size; coordinates in units of `unit` */
+    double unit;       /* m; scales coordinates and values */
+    struct edge_paths
+        *paths;         /* unless NULL, only rows connected to a node are used (scattered_fit_evaluate) */
+    double *x, *radius; /* what scattered_fit_build() makes: the points, count * dim, in a grid */
+    struct point_grid grid;
+};
+
+/* Sort the points into a grid: the other members are set. STATUS_INPUT for coordinates that are not finite
+ * or too far apart for a grid. */
+MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct error *error);
+void scattered_fit_free(struct scattered_fit *fit);
+
+/* values[value_count] at x[dim] (m), a place near node `from`. With `paths` only rows connected to that node
+ * are used (edge_paths.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest
+ * point and *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller
+ * can refuse to extrapolate far. */
+MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
+                                              double *values, double *distance, double *spacing,
+                                              struct error *error);

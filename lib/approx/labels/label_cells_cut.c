@@ -1,0 +1,221 @@
+#include "approx/labels/label_cells_cut_private.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A cut edge of a cell, and its rank among the cuts of the cell: edges of larger order[0] are cut first;
+ * among equal ones those of lower order[1], then those of lower number. */
+struct bisection {
+    int32_t end[2], node;
+    double order[2];
+};
+
+static bool on_interface(const struct cutting *cutting, int32_t node)
+{
+    return node >= cutting->lattice->node_count || cutting->lattice->on[node];
+}
+
+/* The label of a piece: that of its points off the interfaces, or the one at its middle where there are none;
+ * where points off the interfaces are all left out, the piece is left out, too, so that gaps stay open. */
+static int32_t label_of(const struct cutting *cutting, const int32_t *node)
+{
+    const struct lattice *lattice = cutting->lattice;
+    int dim = lattice->dim;
+    bool left_out = true;
+    double middle[3] = {0};
+    for (int k = 0; k <= dim; k++) {
+        if (!on_interface(cutting, node[k])) {
+            return lattice->label[node[k]];
+        }
+        left_out = left_out && node[k] < lattice->node_count && !lattice->keep[lattice->label[node[k]]];
+        for (int d = 0; d < dim; d++) {
+            middle[d] += cutting->x[(int64_t)node[k] * dim + d] / (dim + 1);
+        }
+    }
+    return left_out ? lattice->label[node[0]] : labels_at(lattice->labels, middle);
+}
+
+static enum status append(struct cutting *cutting, const int32_t *node, struct error *error)
+{
+    struct label_cells *mesh = cutting->mesh;
+    int32_t label = label_of(cutting, node);
+    int corners = mesh->dim + 1;
+    RETURN_IF_ERROR(GROW_ARRAY(&mesh->cell, (mesh->cell_count + 1) * corners, &cutting->cell_room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&mesh->label, mesh->cell_count + 1, &cutting->label_room, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&cutting->between, mesh->cell_count + 1, &cutting->between_room, error));
+    memcpy(mesh->cell + mesh->cell_count * corners, node, (size_t)corners * sizeof *node);
+    cutting->between[mesh->cell_count] = true;
+    for (int k = 0; k < corners; k++) {
+        cutting->between[mesh->cell_count] =
+            cutting->between[mesh->cell_count] && on_interface(cutting, node[k]);
+    }
+    mesh->label[mesh->cell_count++] = label;
+    return STATUS_OK;
+}
+
+/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal
+ * diagonals of cubes, two of which meet in a face, the one whose ends stand at an even place: the parity rule
+ * of Labelle and Shewchuk 2007, section 3. In the plane faces are edges: there the shorter diagonal goes
+ * first. */
+static void set_order(const struct cutting *cutting, const int32_t *node, struct bisection *bisection)
+{
+    const struct lattice *lattice = cutting->lattice;
+    if (lattice->dim == 2) {
+        for (int k = 0; k < 3; k++) {
+            const double *x = cutting->x + 2 * (int64_t)node[k],
+                         *cut = cutting->x + 2 * (int64_t)bisection->node;
+            if (node[k] != bisection->end[0] && node[k] != bisection->end[1]) {
+                bisection->order[0] = -hypot(x[0] - cut[0], x[1] - cut[1]);
+            }
+        }
+        return;
+    }
+    const int32_t *p = lattice->place + 3 * (int64_t)bisection->end[0];
+    const int32_t *q = lattice->place + 3 * (int64_t)bisection->end[1];
+    int32_t size = abs(p[0] - q[0]), sum = 0;
+    for (int d = 0; d < 3; d++) {
+        bisection->order[0] += (double)(p[d] - q[d]) * (p[d] - q[d]);
+        sum += size > 0 ? p[d] / (2 * size) + q[d] / (2 * size) : 0;
+    }
+    bisection->order[1] = sum % 2;
+}
+
+static bool comes_before(const struct bisection *a, const struct bisection *b)
+{
+    if (a->order[0] != b->order[0]) {
+        return a->order[0] > b->order[0];
+    }
+    return a->order[1] != b->order[1] ? a->order[1] < b->order[1] : a->node < b->node;
+}
+
+/* The cuts of a cell in their order. */
+static int find_bisections(const struct cutting *cutting, const int32_t *node, struct bisection bisections[6])
+{
+    const struct lattice *lattice = cutting->lattice;
+    int count = 0;
+    for (int k = 0; k <= lattice->dim; k++) {
+        for (int l = k + 1; l <= lattice->dim; l++) {
+            int64_t edge = lattice->label[node[k]] != lattice->label[node[l]]
+                               ? lattice_edge(lattice, node[k], node[l])
+                               : -1;
+            if (edge < 0) {
+                continue;
+            }
+            struct bisection fresh = {.end = {node[k], node[l]}, .node = cutting->cut_node[edge]};
+            set_order(cutting, node, &fresh);
+            int at = count++;
+            for (; at > 0 && comes_before(&fresh, &bisections[at - 1]); at--) {
+                bisections[at] = bisections[at - 1];
+            }
+            bisections[at] = fresh;
+        }
+    }
+    return count;
+}
+
+bool cutting_bisect(struct cutting_pieces *pieces, int32_t p, int32_t q, int32_t middle)
+{
+    int before = pieces->count;
+    for (int i = 0; i < before; i++) {
+        int first = -1, second = -1;
+        for (int k = 0; k < pieces->corners; k++) {
+            first = pieces->node[i][k] == p ? k : first;
+            second = pieces->node[i][k] == q ? k : second;
+        }
+        if (first < 0 || second < 0) {
+            continue;
+        }
+        if (pieces->count == CUTTING_MOST_PIECES) {
+            return false;
+        }
+        memcpy(pieces->node[pieces->count], pieces->node[i], sizeof pieces->node[i]);
+        pieces->node[i][first] = middle;
+        pieces->node[pieces->count++][second] = middle;
+    }
+    return true;
+}
+
+/* Cut one cell of the lattice, and append its pieces. */
+static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct error *error)
+{
+    struct cutting_pieces pieces = {.count = 1, .corners = cutting->lattice->dim + 1};
+    struct bisection bisections[6];
+    memcpy(pieces.node[0], node, (size_t)pieces.corners * sizeof *node);
+    int count = find_bisections(cutting, node, bisections);
+    for (int b = 0; b < count; b++) {
+        cutting_bisect(&pieces, bisections[b].end[0], bisections[b].end[1], bisections[b].node);
+    }
+    enum status status = cutting_again(cutting, &pieces, error);
+    for (int i = 0; i < pieces.count && status == STATUS_OK && !cutting->searching; i++) {
+        status = append(cutting, pieces.node[i], error);
+    }
+    return status;
+}
+
+/* Collect the second cuts of all cells and find where they lie. */
+static enum status find_seconds(struct cutting *cutting, struct error *error)
+{
+    const struct lattice *lattice = cutting->lattice;
+    cutting->searching = true;
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        RETURN_IF_ERROR(cut_cell(cutting, lattice->cell + c * (lattice->dim + 1), error));
+    }
+    cutting->searching = false;
+    return cutting_seconds(cutting, error);
+}
+
+/* Number the cuts behind the nodes of the lattice. */
+static enum status set_nodes(struct cutting *cutting, struct error *error)
+{
+    const struct lattice *lattice = cutting->lattice;
+    int dim = lattice->dim;
+    int64_t *count = &cutting->node_count;
+    *count = lattice->node_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_edge, lattice->edge_count, error));
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        cutting->cut_node[e] = -1;
+        if (lattice->cut[e] > 0) {
+            cutting->cut_edge[*count - lattice->node_count] = (int32_t)e;
+            cutting->cut_node[e] = (int32_t)(*count)++;
+        }
+    }
+    cutting->cuts = *count - lattice->node_count;
+    if (*count > INT32_MAX / 2) {
+        return fail(error, STATUS_INPUT, "more than 1073741823 nodes: a larger spacing?");
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&cutting->x, *count * dim, error));
+    memcpy(cutting->x, lattice->x, (size_t)(lattice->node_count * dim) * sizeof *cutting->x);
+    for (int64_t e = 0; e < lattice->edge_count; e++) {
+        const double *from = lattice->x + (int64_t)lattice->end[2 * e] * dim;
+        const double *to = lattice->x + (int64_t)lattice->end[2 * e + 1] * dim;
+        for (int d = 0; d < dim && lattice->cut[e] > 0; d++) {
+            cutting->x[(int64_t)cutting->cut_node[e] * dim + d] =
+                from[d] + lattice->cut[e] * (to[d] - from[d]);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status lattice_cells(const struct lattice *lattice, struct label_cells *mesh, bool **between,
+                          struct error *error)
+{
+    struct cutting cutting = {.lattice = lattice, .mesh = mesh};
+    enum status status;
+    *mesh = (struct label_cells){.dim = lattice->dim, .unsized = lattice->unsized};
+    TRY(set_nodes(&cutting, error));
+    TRY(find_seconds(&cutting, error));
+    for (int64_t c = 0; c < lattice->cell_count; c++) {
+        TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
+    }
+    mesh->x = cutting.x;
+    mesh->node_count = cutting.node_count;
+    cutting.x = NULL;
+    TRY(label_cells_compact(mesh, error));
+done:
+    FREE_ALL(cutting.x, cutting.cut_node, cutting.cut_edge, cutting.second);
+    *between = cutting.between;
+    return status;
+}

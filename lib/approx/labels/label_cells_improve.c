@@ -1,0 +1,293 @@
+#include "approx/cells/cells.h"
+#include "approx/cells/quality.h"
+#include "approx/labels/label_cells_private.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
+static const double goal = 1.3;
+/* Cells that score less are improved. In the end nodes that are more than so many voxels off their interface
+ * are brought nearer to it, down to that score. */
+static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
+/* Nodes that were separated move towards the middle of their own cells, by this share of the distance and at
+ * most so many voxels. */
+static const double separation = 0.25, most_separation = 0.5;
+enum { FIT_SWEEPS = 4 };
+
+static double label_cells_score(const struct label_cells *mesh, int64_t cell)
+{
+    int dim = mesh->dim;
+    const double *x[4];
+    double angles[2];
+    struct cells cells = label_cells_view(mesh);
+    cell_corners(&cells, cell, x);
+    simplex_angles(dim, x, angles);
+    if (angles[0] > 0) {
+        double of_angles =
+            fmin(angles[0] / LABEL_CELLS_LEAST_ANGLE, (180 - angles[1]) / (180 - LABEL_CELLS_MOST_ANGLE));
+        return fmin(of_angles, cell_quality(&cells, cell) / POOR_QUALITY);
+    }
+    /* Inverted: its volume, of the product of its edges at one corner. */
+    double product = 1;
+    for (int k = 1; k <= dim; k++) {
+        product *= vector_distance(dim, x[k], x[0]);
+    }
+    double volume = cell_volume(&cells, cell);
+    return volume < 0 ? volume / product : 0;
+}
+
+double shaping_score(const struct shaping *shaping, int64_t cell)
+{
+    struct cells cells = label_cells_view(shaping->mesh);
+    if (!shaping->kept->wanted[cell] && cell_volume(&cells, cell) > 0) {
+        return INFINITY;
+    }
+    return label_cells_score(shaping->mesh, cell);
+}
+
+double star_score(const struct shaping *shaping, int64_t node)
+{
+    const struct label_cells_star *star = &shaping->star;
+    double least = INFINITY;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        least = fmin(least, shaping_score(shaping, star->cell[i]));
+    }
+    return least;
+}
+
+void star_move(const struct shaping *shaping, int64_t node, const double target[])
+{
+    int dim = shaping->mesh->dim;
+    double *x = shaping->mesh->x + node * dim, before[3] = {0};
+    double score = fmin(star_score(shaping, node), goal);
+    memcpy(before, x, (size_t)dim * sizeof *x);
+    double share = 1;
+    for (int halving = 0; halving < 4; halving++, share /= 2) {
+        vector_between(dim, before, target, share, x);
+        if (star_score(shaping, node) >= score) {
+            return;
+        }
+    }
+    memcpy(x, before, (size_t)dim * sizeof *x);
+}
+
+/* ---- onto the interfaces ---- */
+
+/* Of the labels that meet at a node, how many are kept. */
+static int kept_labels(const struct shaping *shaping, int64_t node)
+{
+    int count = 0;
+    for (int i = 0; i < shaping->star.labels[node]; i++) {
+        count += shaping->keep[shaping->star.label[node][i]];
+    }
+    return count;
+}
+
+static bool meets(const struct label_cells_star *star, int64_t node, uint16_t label)
+{
+    for (int i = 0; i < star->labels[node]; i++) {
+        if (star->label[node][i] == label) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void move_there(const struct shaping *shaping, double voxel, int64_t node, const double target[])
+{
+    int dim = shaping->mesh->dim;
+    double distance = 0;
+    for (int d = 0; d < dim; d++) {
+        distance = fmax(distance, fabs(target[d] - shaping->mesh->x[node * dim + d]));
+    }
+    if (distance > 0.01 * voxel) {
+        star_move(shaping, node, target);
+    }
+}
+
+/* Nodes on the rim of a part, where three labels meet, and others that are off their interface. In a gap
+ * between labels that no cell fills, the label there counts as well. */
+static void fit(const struct shaping *shaping)
+{
+    const struct labels *labels = &shaping->labels;
+    const struct label_cells *mesh = shaping->mesh;
+    const struct label_cells_star *star = &shaping->star;
+    const bool *keep = shaping->keep;
+    int dim = labels->dim;
+    double voxel = labels_voxel(labels);
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double target[3] = {0};
+        uint16_t label[LABEL_CELLS_MOST_LABELS + 1];
+        int count = star->labels[n];
+        const uint16_t *rim = shaping->rim[n];
+        if (count < 2) {
+            continue;
+        }
+        memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
+        memcpy(label, star->label[n], sizeof star->label[n]);
+        if (!(rim[0] != 0 && rim_project(shaping, rim, target)) &&
+            !line_project(labels, keep, 0, count, label, target)) {
+            label[count] = (uint16_t)labels_at(labels, mesh->x + n * dim);
+            if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
+                memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
+            }
+        }
+        if (!(rim[0] != 0 && star_make_room(shaping, goal, n, target))) {
+            move_there(shaping, voxel, n, target);
+        }
+        /* Where the line on which labels meet cannot be reached, the surface counts, or the interface. */
+        memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
+        if (node_project(shaping, n, target)) {
+            move_there(shaping, voxel, n, target);
+        }
+    }
+}
+
+/* ---- apart ---- */
+
+/* Move nodes that have others at the same place towards the middle of their own cells. */
+static void separate(const struct shaping *shaping)
+{
+    const struct label_cells *mesh = shaping->mesh;
+    const struct label_cells_star *star = &shaping->star;
+    const bool *apart = shaping->kept->apart, *wanted = shaping->kept->wanted;
+    int dim = mesh->dim;
+    double most = most_separation * labels_voxel(&shaping->labels);
+    struct cells cells = label_cells_view(mesh);
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double target[3] = {0};
+        int64_t count = 0;
+        for (int64_t i = star->ptr[n]; i < star->ptr[n + 1] && apart[n]; i++) {
+            double middle[3];
+            cell_centroid(&cells, star->cell[i], middle);
+            for (int d = 0; d < dim && wanted[star->cell[i]]; d++) {
+                target[d] += middle[d];
+            }
+            count += wanted[star->cell[i]];
+        }
+        double square = 0;
+        for (int d = 0; d < dim; d++) {
+            target[d] = separation * (target[d] / (double)count - mesh->x[n * dim + d]);
+            square += target[d] * target[d];
+        }
+        for (int d = 0; d < dim; d++) {
+            target[d] = mesh->x[n * dim + d] + target[d] * fmin(1, most / sqrt(square));
+        }
+        if (apart[n]) {
+            star_move(shaping, n, target);
+        }
+    }
+}
+
+/* How far a node of interfaces is off them, m: on the boundary from the surface of the body, elsewhere from
+ * where the label there gives way to another one that meets at the node, or to a gap that cells fill. */
+static double distance(const struct shaping *shaping, int64_t node)
+{
+    const struct labels *labels = &shaping->labels;
+    const struct label_cells_star *star = &shaping->star;
+    const bool *keep = shaping->keep;
+    const double *x = shaping->mesh->x + node * labels->dim;
+    if (kept_labels(shaping, node) < star->labels[node]) {
+        const struct interface_beyond body = {-1, keep, true}, outside = {-1, keep, false};
+        return fmax(interface_distance(labels, x, &body), interface_distance(labels, x, &outside));
+    }
+    int32_t here = labels_at(labels, x);
+    double least = INFINITY;
+    for (int i = 0; i < star->labels[node]; i++) {
+        const struct interface_beyond region = {star->label[node][i], keep, true};
+        least = region.label != here ? fmin(least, interface_distance(labels, x, &region)) : least;
+    }
+    if (keep[here] && least > LABEL_CELLS_MOST_ASTRAY * labels_voxel(labels)) {
+        const struct interface_beyond gap = {-1, keep, false};
+        least = fmin(least, interface_distance(labels, x, &gap));
+    }
+    return least;
+}
+
+/* Where a node that is still off its rim or interface belongs; false where it is near or there is none. */
+static bool find_astray(const struct shaping *shaping, int64_t node, double target[3])
+{
+    int dim = shaping->mesh->dim;
+    double most = last_slack * labels_voxel(&shaping->labels);
+    const double *x = shaping->mesh->x + node * dim;
+    const uint16_t *rim = shaping->rim[node];
+    memcpy(target, x, (size_t)dim * sizeof *target);
+    if (rim[0] != 0 && rim_project(shaping, rim, target)) {
+        if (vector_distance(dim, target, x) > most) {
+            return true;
+        }
+        memcpy(target, x, (size_t)dim * sizeof *target);
+    }
+    return shaping->star.labels[node] >= 2 && distance(shaping, node) > most &&
+           node_project(shaping, node, target);
+}
+
+/* Bring nodes that are still off their rim or interface as near as cells within the bounds of the angles
+ * allow. */
+static void settle(const struct shaping *shaping)
+{
+    struct label_cells *mesh = shaping->mesh;
+    int dim = mesh->dim;
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double *x = mesh->x + n * dim, from[3] = {0}, target[3] = {0};
+        if (!find_astray(shaping, n, target)) {
+            continue;
+        }
+        memcpy(from, x, (size_t)dim * sizeof *x);
+        for (int step = 8; step > 0; step--) {
+            double place[3];
+            vector_between(dim, from, target, step / 8.0, place);
+            if (star_make_room(shaping, last_score, n, place)) {
+                break;
+            }
+        }
+    }
+}
+
+static void measure(const struct shaping *shaping)
+{
+    struct label_cells *mesh = shaping->mesh;
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double off = shaping->star.labels[n] > 1 ? distance(shaping, n) : 0;
+        mesh->astray += off > LABEL_CELLS_MOST_ASTRAY * labels_voxel(&shaping->labels);
+        mesh->farthest = off < INFINITY ? fmax(mesh->farthest, off) : mesh->farthest;
+    }
+}
+
+enum status label_cells_improve(const struct labels *parts, const struct label_cells_options *options,
+                                const struct label_cells_kept *kept, struct label_cells *mesh,
+                                struct error *error)
+{
+    enum status status;
+    struct shaping shaping = {.parts = parts,
+                              .labels = *parts,
+                              .keep = options->keep,
+                              .kept = kept,
+                              .mesh = mesh,
+                              .reach = options->spacing};
+    TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
+    TRY(label_cells_rims(options, &shaping, &shaping.rim, error));
+    TRY(star_make(mesh, kept->wanted, options->whole, &shaping.star, error));
+    for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
+        fit(&shaping);
+        label_cells_repair(&shaping, least_score, 0);
+    }
+    separate(&shaping);
+    for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
+        settle(&shaping);
+    }
+    TRY(label_cells_volumes(&shaping, options, error));
+    label_cells_repair(&shaping, last_score, last_slack * labels_voxel(parts));
+    measure(&shaping);
+done:
+    if (shaping.labels.label != parts->label) {
+        free((void *)shaping.labels.label);
+    }
+    free(shaping.rim);
+    star_free(&shaping.star);
+    return status;
+}

@@ -1,0 +1,172 @@
+#include "approx/cells/cells.h"
+#include "approx/cells/raster.h"
+#include "approx/labels/label_cells.h"
+#include "base/memory.h"
+#include "base/sets.h"
+#include "base/vector.h"
+
+/* The grid of the labels without the axis across a slice. */
+struct grid {
+    int64_t size[3];
+    int axis[3]; /* of the labels' grid */
+};
+
+static struct grid grid_of(const struct labels *labels)
+{
+    struct grid grid = {.size = {1, 1, 1}};
+    int count = 0;
+    for (int d = 0; d < 3; d++) {
+        if (labels->dim == 3 || labels->size[d] > 1) {
+            grid.axis[count] = d;
+            grid.size[count++] = labels->size[d];
+        }
+    }
+    return grid;
+}
+
+/* 1 where the map from the world to the grid preserves orientation, else -1. */
+static int sign_of(const struct labels *labels, const struct grid *grid)
+{
+    double edge[3][3] = {{0}}, origin[3] = {0}, voxel[2][3];
+    int dim = labels->dim;
+    for (int d = 0; d < dim; d++) {
+        double unit[3] = {0};
+        unit[d] = 1;
+        labels_to_voxel(labels, origin, voxel[0]);
+        labels_to_voxel(labels, unit, voxel[1]);
+        for (int e = 0; e < dim; e++) {
+            edge[d][e] = voxel[1][grid->axis[e]] - voxel[0][grid->axis[e]];
+        }
+    }
+    if (dim == 2) {
+        edge[2][2] = 1;
+    }
+    return determinant3(edge[0], edge[1], edge[2]) > 0 ? 1 : -1;
+}
+
+/* Whether a cell of the label lies at a voxel or at one that touches it; of a label that is not kept, whether
+ * no cell does, or the grid ends there. */
+static bool is_near(const struct grid *grid, const struct label_cells *mesh, const int32_t *owner,
+                    int64_t voxel, int32_t label, bool kept)
+{
+    const int64_t *n = grid->size;
+    const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
+    for (int k = 0; k < (n[2] > 1 ? 27 : 9); k++) {
+        const int64_t next[3] = {at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1,
+                                 at[2] + (n[2] > 1 ? k / 9 - 1 : 0)};
+        bool within = true;
+        for (int d = 0; d < 3; d++) {
+            within = within && next[d] >= 0 && next[d] < n[d];
+        }
+        int32_t cell = within ? owner[(next[2] * n[1] + next[1]) * n[0] + next[0]] : -1;
+        if (kept ? cell >= 0 && mesh->label[cell] == label : cell < 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* owner[voxels]: the cell that each voxel's centre lies in, -1: none. */
+static enum status own_voxels(const struct labels *labels, const struct label_cells *mesh,
+                              const struct grid *grid, int32_t *owner, struct error *error)
+{
+    int dim = labels->dim;
+    int64_t doubly;
+    SCRATCH double *x = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&x, mesh->node_count * dim, error));
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double voxel[3];
+        labels_to_voxel(labels, mesh->x + n * dim, voxel);
+        for (int d = 0; d < dim; d++) {
+            x[n * dim + d] = voxel[grid->axis[d]];
+        }
+    }
+    struct cells cells = {dim, mesh->node_count, x, mesh->cell_count, mesh->cell};
+    raster_cells(&cells, sign_of(labels, grid), grid->size, owner, &doubly);
+    return STATUS_OK;
+}
+
+enum status label_cells_lost(const struct labels *labels, const bool *keep, const struct label_cells *mesh,
+                             int64_t *lost, struct error *error)
+{
+    struct grid grid = grid_of(labels);
+    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
+    SCRATCH int32_t *owner = NULL;
+    for (int32_t l = 0; l < labels->count; l++) {
+        lost[l] = 0;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&owner, voxels, error));
+    RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, owner, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : -1;
+        if (there != (keep[label] ? label : -1)) {
+            lost[label] += !is_near(&grid, mesh, owner, v, label, keep[label]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Voxel number k of those with a common face, 0 to 5; -1 beyond the grid. */
+static int64_t beside(const struct grid *grid, int64_t voxel, int k)
+{
+    const int64_t *n = grid->size;
+    const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
+    const int64_t stride[3] = {1, n[0], n[0] * n[1]};
+    int64_t place = at[k / 2] + (k % 2 == 0 ? -1 : 1);
+    return place < 0 || place >= n[k / 2] ? -1 : voxel + (place - at[k / 2]) * stride[k / 2];
+}
+
+/* Voxels of the labels that are kept take the body of their neighbours, ring by ring: body[voxels], -1 at
+ * first where no cell is. Bodies that meet so are joined in set[]. */
+static enum status flood(const struct labels *labels, const bool *keep, const struct grid *grid,
+                         int32_t *body, int32_t *set, struct label_cells_apart *apart, struct error *error)
+{
+    int64_t voxels = grid->size[0] * grid->size[1] * grid->size[2], count = 0;
+    SCRATCH int64_t *queue = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&queue, voxels, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        body[v] = keep[labels->label[v]] ? body[v] : -1;
+        if (body[v] >= 0) {
+            queue[count++] = v;
+        }
+    }
+    for (int64_t i = 0; i < count; i++) {
+        int64_t v = queue[i];
+        for (int k = 0; k < 6; k++) {
+            int64_t w = beside(grid, v, k);
+            if (w < 0 || !keep[labels->label[w]]) {
+                continue;
+            }
+            if (body[w] < 0) {
+                body[w] = body[v];
+                queue[count++] = w;
+            } else if (set_first(set, body[v]) != set_first(set, body[w])) {
+                set_join(set, body[v], body[w]);
+                apart->voxel[0] = apart->count == 0 ? v : apart->voxel[0];
+                apart->voxel[1] = apart->count == 0 ? w : apart->voxel[1];
+                apart->count++;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status label_cells_find_apart(const struct labels *labels, const bool *keep,
+                                   const struct label_cells *mesh, const int32_t *part, int32_t part_count,
+                                   struct label_cells_apart *apart, struct error *error)
+{
+    struct grid grid = grid_of(labels);
+    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
+    SCRATCH int32_t *body = NULL, *set = NULL;
+    *apart = (struct label_cells_apart){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&body, voxels, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&set, part_count, error));
+    RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, body, error));
+    for (int64_t v = 0; v < voxels; v++) {
+        body[v] = body[v] >= 0 ? part[body[v]] : -1;
+    }
+    for (int32_t p = 0; p < part_count; p++) {
+        set[p] = p;
+    }
+    return flood(labels, keep, &grid, body, set, apart, error);
+}

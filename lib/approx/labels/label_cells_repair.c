@@ -1,0 +1,162 @@
+#include "approx/labels/label_cells_private.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS = 10, STEPS = 5 };
+
+/* Mean length of the edges of the cells at a node that end there. */
+static double edge_length(const struct shaping *shaping, int64_t node)
+{
+    const struct label_cells *mesh = shaping->mesh;
+    const struct label_cells_star *star = &shaping->star;
+    int dim = mesh->dim;
+    double sum = 0;
+    int64_t count = 0;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        for (int k = 0; k <= dim; k++) {
+            int64_t other = mesh->cell[(int64_t)star->cell[i] * (dim + 1) + k];
+            sum += vector_distance(dim, mesh->x + other * dim, mesh->x + node * dim);
+            count += other != node;
+        }
+    }
+    return sum / (double)count;
+}
+
+/* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
+ * False where there is no interface near. */
+static bool keep_to_interface(const struct shaping *shaping, int64_t node, double slack, double place[3])
+{
+    int dim = shaping->mesh->dim;
+    double projected[3] = {place[0], place[1], place[2]};
+    if (shaping->star.labels[node] < 2) {
+        return true;
+    }
+    if (!node_project(shaping, node, projected)) {
+        return false;
+    }
+    if (!(vector_distance(dim, projected, place) <= slack)) {
+        memcpy(place, projected, (size_t)dim * sizeof *place);
+    }
+    return true;
+}
+
+/* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
+ * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
+static bool search(const struct shaping *shaping, double slack, int64_t node)
+{
+    int dim = shaping->mesh->dim;
+    double *x = shaping->mesh->x + node * dim, length = 0.25 * edge_length(shaping, node);
+    double score = star_score(shaping, node);
+    bool improved = false;
+    for (int step = 0; step < STEPS; step++, length /= 2) {
+        double here[3] = {0}, best[3] = {0}, best_score = score;
+        memcpy(here, x, (size_t)dim * sizeof *x);
+        for (int direction = 0; direction < label_cells_directions(dim); direction++) {
+            double place[3], norm = label_cells_direction(dim, direction, place);
+            for (int d = 0; d < dim; d++) {
+                place[d] = here[d] + (norm > 0 ? length / norm * place[d] : 0);
+            }
+            if (!keep_to_interface(shaping, node, slack, place)) {
+                continue;
+            }
+            memcpy(x, place, (size_t)dim * sizeof *x);
+            double fresh = star_score(shaping, node);
+            if (fresh > best_score) {
+                best_score = fresh;
+                memcpy(best, place, sizeof best);
+            }
+        }
+        improved = improved || best_score > score;
+        memcpy(x, best_score > score ? best : here, (size_t)dim * sizeof *x);
+        score = best_score;
+    }
+    return improved;
+}
+
+void label_cells_repair(const struct shaping *shaping, double least, double slack)
+{
+    const struct label_cells *mesh = shaping->mesh;
+    bool improved = true;
+    for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
+        improved = false;
+        for (int64_t c = 0; c < mesh->cell_count; c++) {
+            for (int k = 0; k <= mesh->dim && shaping_score(shaping, c) < least; k++) {
+                int64_t node = mesh->cell[c * (mesh->dim + 1) + k];
+                improved = (shaping->star.labels[node] > 0 && search(shaping, slack, node)) || improved;
+            }
+        }
+    }
+}
+
+/* ---- room for a node ---- */
+
+enum { ROOM_MOST = 64, ROOM_SWEEPS = 3 };
+
+/* The nodes around a node that may move, and their places. */
+struct room {
+    int count;
+    int64_t node[ROOM_MOST];
+    double x[ROOM_MOST][3];
+};
+
+static void find_room(const struct shaping *shaping, int64_t node, struct room *room)
+{
+    const struct label_cells *mesh = shaping->mesh;
+    const struct label_cells_star *star = &shaping->star;
+    int dim = mesh->dim;
+    room->count = 0;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        for (int k = 0; k <= dim; k++) {
+            int64_t other = mesh->cell[(int64_t)star->cell[i] * (dim + 1) + k];
+            bool fixed = shaping->rim[other][0] != 0 || shaping->kept->apart[other] ||
+                         shaping->star.labels[other] == 0;
+            bool listed = other == node || fixed || room->count == ROOM_MOST;
+            for (int r = 0; r < room->count && !listed; r++) {
+                listed = room->node[r] == other;
+            }
+            if (!listed) {
+                memcpy(room->x[room->count], mesh->x + other * dim, (size_t)dim * sizeof(double));
+                room->node[room->count++] = other;
+            }
+        }
+    }
+}
+
+/* The poorest cell at the node and at those around it. */
+static double room_score(const struct shaping *shaping, int64_t node, const struct room *room)
+{
+    double least = star_score(shaping, node);
+    for (int r = 0; r < room->count; r++) {
+        least = fmin(least, star_score(shaping, room->node[r]));
+    }
+    return least;
+}
+
+bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[])
+{
+    struct label_cells *mesh = shaping->mesh;
+    int dim = mesh->dim;
+    double *x = mesh->x + node * dim, before[3] = {0};
+    struct room room;
+    find_room(shaping, node, &room);
+    double wanted = fmin(least, room_score(shaping, node, &room));
+    memcpy(before, x, (size_t)dim * sizeof *x);
+    memcpy(x, target, (size_t)dim * sizeof *x);
+    for (int sweep = 0; sweep < ROOM_SWEEPS; sweep++) {
+        for (int r = 0; r < room.count; r++) {
+            if (star_score(shaping, room.node[r]) < wanted) {
+                (void)search(shaping, 0, room.node[r]);
+            }
+        }
+        if (room_score(shaping, node, &room) >= wanted) {
+            return true;
+        }
+    }
+    memcpy(x, before, (size_t)dim * sizeof *x);
+    for (int r = 0; r < room.count; r++) {
+        memcpy(mesh->x + room.node[r] * dim, room.x[r], (size_t)dim * sizeof *x);
+    }
+    return false;
+}

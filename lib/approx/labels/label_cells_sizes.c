@@ -1,0 +1,73 @@
+#include "approx/cells/raster.h"
+#include "approx/labels/label_cells_private.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+
+/* Mean length of the edges of the lattice's tetrahedra, two along axes and four half diagonals, by that of a
+ * cube's edge: what cells_node_spacing finds. */
+static const double mean_edge = 0.91068;
+
+int size_level(double spacing, double size)
+{
+    return (int)fmin(fmax(round(log2(mean_edge * spacing / size)), 0), OCTREE_MOST_LEVELS);
+}
+
+/* The size at a place in a cell, linear between its nodes. */
+static double size_at(const struct cells *cells, const double *size, int64_t cell, const double at[3])
+{
+    const int32_t *node = cells->node + 4 * cell;
+    double edge[3][3], offset[3];
+    const double *first = cells->x + 3 * (int64_t)node[0];
+    vector_subtract(3, at, first, offset);
+    for (int k = 0; k < 3; k++) {
+        vector_subtract(3, cells->x + 3 * (int64_t)node[k + 1], first, edge[k]);
+    }
+    double whole = determinant3(edge[0], edge[1], edge[2]), value = size[node[0]];
+    const double share[3] = {determinant3(offset, edge[1], edge[2]) / whole,
+                             determinant3(edge[0], offset, edge[2]) / whole,
+                             determinant3(edge[0], edge[1], offset) / whole};
+    double least = value, most = value;
+    for (int k = 0; k < 3; k++) {
+        value += share[k] * (size[node[k + 1]] - size[node[0]]);
+        least = fmin(least, size[node[k + 1]]);
+        most = fmax(most, size[node[k + 1]]);
+    }
+    return fmin(fmax(value, least), most);
+}
+
+enum status sizes_wish(const struct label_cells_options *options, int levels, const int64_t count[3],
+                       const double low[3], double edge, const bool *inside, uint8_t *wish, double *unsized,
+                       struct error *error)
+{
+    struct cells scaled = *options->sized;
+    int64_t total = count[0] * count[1] * count[2], doubly = 0, within = 0, beyond = 0;
+    SCRATCH double *x = NULL;
+    SCRATCH int32_t *owner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&x, 3 * scaled.node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&owner, total, error));
+    for (int64_t i = 0; i < 3 * scaled.node_count; i++) {
+        x[i] = (options->sized->x[i] - low[i % 3]) / edge;
+    }
+    scaled.x = x;
+    raster_cells(&scaled, 1, count, owner, &doubly);
+#pragma omp parallel for schedule(static) reduction(+ : within, beyond)
+    for (int64_t c = 0; c < total; c++) {
+        const int64_t cube[3] = {c % count[0], c / count[0] % count[1], c / count[0] / count[1]};
+        const double at[3] = {(double)cube[0], (double)cube[1], (double)cube[2]};
+        within += inside[c];
+        beyond += inside[c] && owner[c] < 0;
+        if (owner[c] >= 0) {
+            int level = size_level(options->spacing, size_at(&scaled, options->size, owner[c], at));
+            uint8_t wanted = OCTREE_WISH(level < levels - 1 ? level : levels - 1, false);
+            wish[c] = wanted > wish[c] ? wanted : wish[c];
+        }
+    }
+    if (within > 0 && beyond == within) {
+        return fail(error, STATUS_INPUT,
+                    "the sizes lie elsewhere: none of their cells reaches into the body");
+    }
+    *unsized = within > 0 ? (double)beyond / (double)within : 0;
+    return STATUS_OK;
+}

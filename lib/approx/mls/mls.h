@@ -1,0 +1,78 @@
+/* Moving least squares at one point: linear, quadratic, and modified (MMLS) with a regularised quadratic
+ * basis.
+ *
+ * u_h(x) = p(x)^T (P^T W P + H)^-1 P^T W u = sum_j phi_j(x) u_j, where H is zero but for mu on the diagonal
+ * entries of the second-order monomials (Joldes et al. 2015; equations (2) to (4) of lib/README.md). All work
+ * is done in local coordinates xi = (x_j - x) / s, centred on the point and scaled by the largest support
+ * radius s, so that metres, millimetres and a distant origin give the same numbers. An absolute mu (in the
+ * units of x) becomes the dimensionless mu / s^4. */
+#pragma once
+
+#include "approx/mls/weight.h"
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum basis { BASIS_LINEAR, BASIS_QUADRATIC, BASIS_MODIFIED, BASIS_COUNT };
+
+/* "mls1", "mls2", "mmls2". */
+extern const char *const basis_names[BASIS_COUNT];
+
+#define MLS_MAX_BASIS 10 /* monomials: 1, x, y[, z], then x^2, xy, y^2 or x^2, xy, xz, y^2, yz, z^2 */
+#define MLS_MAX_SECOND 6
+
+struct mls {
+    int dim; /* 2 or 3 */
+    enum basis basis;
+    enum weight_function weight;
+    bool mu_absolute;          /* mu belongs to the monomials of x, not of xi, as in the paper */
+    double mu[MLS_MAX_SECOND]; /* one for each second-order monomial (3 in 2D, 6 in 3D); MMLS only */
+};
+
+/* The project's default: MMLS, quartic spline, dimensionless mu. */
+#define MLS_DEFAULT_MU 1e-7
+struct mls mls_default(int dim);
+
+/* Number of second-order monomials: 3 or 6. */
+int mls_second_order_count(int dim);
+
+/* Number of monomials of the basis. */
+int mls_basis_size(const struct mls *mls);
+
+enum mls_verdict {
+    MLS_GOOD,
+    MLS_TOO_FEW,        /* fewer neighbours than the basis needs (MMLS: than its linear part needs) */
+    MLS_ILL_CONDITIONED /* the moment matrix is singular or too close to it */
+};
+
+/* Why, in a few words. */
+const char *mls_verdict_text(enum mls_verdict verdict);
+
+/* Scratch space for one thread, all zero at first; grows on demand. */
+struct mls_work {
+    double *values;
+    int64_t capacity; /* neighbours that `values` serves */
+};
+void mls_work_free(struct mls_work *work);
+
+/* The neighbours of one point. */
+struct mls_support {
+    const double *x;      /* the point, dim */
+    const double *nodes;  /* all nodes, row-major, dim each */
+    const double *radius; /* all support radii */
+    double widen;         /* factor on the radii at this point */
+    const int32_t *neighbours;
+    int64_t count;
+    const double *image; /* count * dim, or NULL: for each neighbour the vector from x along the first leg of
+                            the shortest path, as long as the path; weights follow it (see visibility.h).
+                            NULL: all neighbours are visible */
+};
+
+/* Values phi[count] and full gradients dphi[count * dim] (per unit of x) at a point, of which one may be
+ * NULL. Every result is checked: unity and linear reproduction hold to 1e-10 (relative to s) whenever the
+ * verdict is MLS_GOOD. The same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
+ * (memory). */
+MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_support *support,
+                                    struct mls_work *work, double *phi, double *dphi,
+                                    enum mls_verdict *verdict, struct error *error);

@@ -1,0 +1,317 @@
+#include "approx/mls/mls_kernel.h"
+
+#include "approx/mls/mls_vector.h"
+
+/* One point's neighbours in local scaled coordinates. */
+struct mls_point {
+    int64_t count, padded; /* padded to a multiple of LANES by neighbours beyond the support */
+    int64_t stride;
+    double scale; /* s */
+    double *row;  /* [MLS_KERNEL_ROWS][stride] */
+};
+
+/* Unaligned loads and stores as copies, which compilers turn into single instructions. */
+KERNEL_INLINE void load_row(const struct mls_point *point, int row, int64_t j, lanes *v)
+{
+    memcpy(v, point->row + row * point->stride + j, sizeof *v);
+}
+
+KERNEL_INLINE void store_row(const struct mls_point *point, int row, int64_t j, const lanes *v)
+{
+    memcpy(point->row + row * point->stride + j, v, sizeof *v);
+}
+
+KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, int64_t j, lanes *v)
+{
+    for (int a = 0; a < dim; a++) {
+        load_row(point, row + a, j, &v[a]);
+    }
+}
+
+KERNEL_INLINE void load_xi(int dim, const struct mls_point *point, int64_t j, lanes *xi)
+{
+    load_vector(dim, point, ROW_XI, j, xi);
+}
+
+/* Differences of coordinates and radii, side by side; the largest radius. */
+KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
+{
+    double *xi = point->row, *radius = point->row + ROW_RATIO * point->stride;
+    double largest = 0.0;
+    for (int64_t j = 0; j < support->count; j++) {
+        int64_t node = support->neighbours[j];
+        for (int a = 0; a < dim; a++) {
+            xi[a * point->stride + j] = support->nodes[node * dim + a] - support->x[a];
+        }
+        double own = support->radius[node];
+        radius[j] = own;
+        largest = own > largest ? own : largest;
+    }
+    for (int64_t j = support->count; j < point->padded; j++) {
+        for (int a = 0; a < dim; a++) {
+            xi[a * point->stride + j] = 2.0 * largest * support->widen;
+        }
+        radius[j] = largest;
+    }
+    point->scale = largest * support->widen;
+}
+
+/* The same for the images of the neighbours (see mls_support), which their weights follow. */
+KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, struct mls_point *point)
+{
+    double *image = point->row + ROW_IMAGE * point->stride, inverse = 1.0 / point->scale;
+    for (int64_t j = 0; j < support->count; j++) {
+        for (int a = 0; a < dim; a++) {
+            image[a * point->stride + j] = support->image[j * dim + a] * inverse;
+        }
+    }
+    for (int64_t j = support->count; j < point->padded; j++) {
+        for (int a = 0; a < dim; a++) {
+            image[a * point->stride + j] = 2.0;
+        }
+    }
+}
+
+#define WEIGHT_LOOP(formula)                                                                                 \
+    for (int64_t j = 0; j < point->padded; j++) {                                                            \
+        double relative = 0.0, value, slope_over_r, square = ratio[j] * ratio[j];                            \
+        for (int a = 0; a < dim; a++) {                                                                      \
+            relative += seen[a * stride + j] * seen[a * stride + j];                                         \
+        }                                                                                                    \
+        relative *= square;                                                                                  \
+        formula(relative < 1.0 ? relative : 1.0, &value, &slope_over_r);                                     \
+        weight[j] = relative < 1.0 ? value : 0.0;                                                            \
+        slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
+    }
+
+/* Scale the coordinates; weights, and slopes: grad w = -slope xi / s, or the image for xi. */
+KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, bool images,
+                         struct mls_point *point)
+{
+    int64_t stride = point->stride;
+    double *restrict xi = point->row, *restrict ratio = point->row + ROW_RATIO * stride;
+    double *restrict weight = point->row + ROW_WEIGHT * stride, *restrict slope =
+                                                                    point->row + ROW_SLOPE * stride;
+    const double *seen = images ? point->row + ROW_IMAGE * stride : xi;
+    double inverse = 1.0 / point->scale, relative_scale = point->scale / widen;
+    for (int a = 0; a < dim; a++) {
+        for (int64_t j = 0; j < point->padded; j++) {
+            xi[a * stride + j] *= inverse;
+        }
+    }
+    for (int64_t j = 0; j < point->padded; j++) {
+        ratio[j] = relative_scale / ratio[j];
+    }
+    if (function == WEIGHT_REGULARISED) {
+        WEIGHT_LOOP(weight_regularised)
+    } else {
+        WEIGHT_LOOP(weight_quartic)
+    }
+}
+
+/* Moment matrix. */
+KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struct mls_system *system)
+{
+    int degree = m > dim + 1 ? 4 : 2;
+    lanes sum[MLS_MOMENTS];
+    double moment[MLS_MOMENTS];
+    memset(sum, 0, sizeof sum);
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], weight;
+        load_xi(dim, point, j, xi);
+        load_row(point, ROW_WEIGHT, j, &weight);
+        add_moments(dim, degree, &weight, xi, sum);
+    }
+    for (int k = 0; k < moment_count(dim, degree); k++) {
+        moment[k] = lane_sum(&sum[k]);
+    }
+    for (int k = 0; k < m; k++) {
+        for (int l = 0; l < m; l++) {
+            system->matrix[k][l] = moment[moment_index(dim, k, l)];
+        }
+        for (int l = m; l < (m + 3) / 4 * 4; l++) {
+            system->matrix[k][l] = 0.0;
+        }
+    }
+}
+
+KERNEL_INLINE void regularise(const struct mls *mls, int dim, int m, double scale, struct mls_system *system)
+{
+    if (mls->basis == BASIS_MODIFIED) {
+        double unit = mls->mu_absolute ? 1.0 / (scale * scale * scale * scale) : 1.0;
+        for (int k = 1 + dim; k < m; k++) {
+            system->matrix[k][k] += mls->mu[k - 1 - dim] * unit;
+        }
+    }
+}
+
+KERNEL_INLINE double larger_defect(double worst, double defect)
+{
+    return fabs(defect) <= worst ? worst : isnan(defect) ? INFINITY : fabs(defect);
+}
+
+/* phi_j = w_j p_j.c into ROW_PHI, slope_j p_j.c into ROW_SLOPE; where gradients are wanted, the right sides
+ * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a per lane: moments again,
+ * of one degree more, or with images for xi_a those of each. Returns the largest defect of sum phi p = p(0),
+ * p linear. */
+KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, bool images,
+                            const struct mls_point *point, lanes *right)
+{
+    enum { OF_ONE = 10 }; /* moments up to the second degree */
+    int degree = images ? 2 : m > dim + 1 ? 3 : 2, moments = moment_count(dim, degree) * (images ? dim : 1);
+    lanes moment[3 * OF_ONE], defect[4];
+    memset(moment, 0, sizeof moment);
+    memset(defect, 0, sizeof defect);
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], projection, phi, slope;
+        load_xi(dim, point, j, xi);
+        polynomial(dim, m, c, xi, &projection);
+        load_row(point, ROW_WEIGHT, j, &phi);
+        phi *= projection;
+        store_row(point, ROW_PHI, j, &phi);
+        defect[0] += phi;
+        for (int a = 0; a < dim; a++) {
+            defect[1 + a] += phi * xi[a];
+        }
+        if (gradients) {
+            load_row(point, ROW_SLOPE, j, &slope);
+            slope *= projection;
+            store_row(point, ROW_SLOPE, j, &slope);
+            if (images) {
+                lanes image[3];
+                load_vector(dim, point, ROW_IMAGE, j, image);
+                for (int a = 0; a < dim; a++) {
+                    image[a] *= slope;
+                    add_moments(dim, degree, &image[a], xi, moment + a * moment_count(dim, degree));
+                }
+            } else {
+                add_moments(dim, degree, &slope, xi, moment);
+            }
+        }
+    }
+    if (gradients) {
+        double total[3 * OF_ONE];
+        for (int k = 0; k < moments; k++) {
+            total[k] = lane_sum(&moment[k]);
+        }
+        for (int k = 0; k < m; k++) {
+            right[k] = (lanes){0.0, 0.0, 0.0, 0.0};
+            for (int a = 0; a < dim; a++) {
+                double sum = images ? total[a * moment_count(dim, degree) + moment_index(dim, 0, k)]
+                                    : total[moment_index(dim, 1 + a, k)];
+                right[k][a] = sum + (k == 1 + a ? 1.0 : 0.0);
+            }
+        }
+    }
+    double worst = larger_defect(0.0, lane_sum(&defect[0]) - 1.0);
+    for (int a = 0; a < dim; a++) {
+        worst = larger_defect(worst, lane_sum(&defect[1 + a]));
+    }
+    return worst;
+}
+
+/* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (the image for xi_a) into ROW_GRADIENT + a. Returns the
+ * largest defect of sum grad phi p = grad p(0), p linear. */
+KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
+                               const struct mls_point *point)
+{
+    double g[3][MLS_MAX_BASIS], worst = 0.0;
+    lanes defect[3][4];
+    memset(defect, 0, sizeof defect);
+    for (int k = 0; k < m; k++) {
+        for (int a = 0; a < dim; a++) {
+            g[a][k] = coefficient[k][a];
+        }
+    }
+    for (int64_t j = 0; j < point->padded; j += LANES) {
+        lanes xi[3], image[3], weight, slope;
+        load_xi(dim, point, j, xi);
+        load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
+        load_row(point, ROW_WEIGHT, j, &weight);
+        load_row(point, ROW_SLOPE, j, &slope);
+        for (int a = 0; a < dim; a++) {
+            lanes gradient;
+            polynomial(dim, m, g[a], xi, &gradient);
+            gradient = weight * gradient - slope * image[a];
+            store_row(point, ROW_GRADIENT + a, j, &gradient);
+            defect[a][0] += gradient;
+            for (int b = 0; b < dim; b++) {
+                defect[a][1 + b] += gradient * xi[b];
+            }
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        for (int k = 0; k <= dim; k++) {
+            worst = larger_defect(worst, lane_sum(&defect[a][k]) - (k == 1 + a ? 1.0 : 0.0));
+        }
+    }
+    return worst;
+}
+
+/* Gradients side by side, per unit of x. */
+KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double *dphi)
+{
+    const double *row = point->row + ROW_GRADIENT * point->stride;
+    double inverse = 1.0 / point->scale;
+    for (int64_t j = 0; j < point->count; j++) {
+        for (int a = 0; a < dim; a++) {
+            dphi[j * dim + a] = row[a * point->stride + j] * inverse;
+        }
+    }
+}
+
+KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
+                                   bool images, double *scratch, int64_t stride, double *phi, double *dphi)
+{
+    /* With pivots above this the condition is good, as the matrix is small: no estimate is needed. */
+    static const double safe_pivot = 1e-5;
+    /* With H a pivot may be smaller, but not too small for the normal equations. */
+    static const double least_pivot = 1e-9;
+    static const double most_defect = 1e-13;
+    struct mls_point point = {.count = support->count,
+                              .padded = (support->count + LANES - 1) / LANES * LANES,
+                              .stride = stride,
+                              .row = scratch};
+    struct mls_system system;
+    double c[MLS_MAX_BASIS];
+    lanes right[MLS_MAX_BASIS];
+    gather(support, dim, &point);
+    if (images) {
+        gather_images(support, dim, &point);
+    }
+    weigh(mls->weight, support->widen, dim, images, &point);
+    assemble(dim, m, &point, &system);
+    regularise(mls, dim, m, point.scale, &system);
+    if (!factorise(dim, m, safe_pivot, mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot, &system)) {
+        return false;
+    }
+    substitute_unit(m, &system, c);
+    if (!(values(dim, m, c, dphi != NULL, images, &point, right) <= most_defect)) {
+        return false;
+    }
+    if (dphi != NULL) {
+        substitute(m, &system, right);
+        if (!(gradients(dim, m, right, images, &point) <= most_defect)) {
+            return false;
+        }
+        put_gradients(dim, &point, dphi);
+    }
+    if (phi != NULL) {
+        memcpy(phi, point.row + ROW_PHI * stride, (size_t)point.count * sizeof *phi);
+    }
+    return true;
+}
+
+/* What is known when compiling: dimension, number of monomials, whether there are images. */
+#define EVALUATE(dim, m)                                                                                     \
+    (support->image == NULL ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)       \
+                            : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi))
+
+ALL_SETS bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch,
+                         int64_t stride, double *phi, double *dphi)
+{
+    if (mls->basis == BASIS_LINEAR) {
+        return mls->dim == 2 ? EVALUATE(2, 3) : EVALUATE(3, 4);
+    }
+    return mls->dim == 2 ? EVALUATE(2, 6) : EVALUATE(3, 10);
+}

@@ -1,0 +1,26 @@
+/* Moving least squares by the normal equations, in vectors of the compiler; private to lib/approx.
+ *
+ * Sums over the neighbours run in the same partial sums whatever the instructions, and no multiplication
+ * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
+ * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
+ * left to the orthogonal factorisation of mls_orthogonal(). */
+#pragma once
+
+#include "approx/mls/mls.h"
+
+/* Rows of scratch. Their stride is at least the number of neighbours and a whole vector. */
+enum mls_row {
+    ROW_XI,
+    ROW_RATIO = ROW_XI + 3,
+    ROW_WEIGHT,
+    ROW_SLOPE,
+    ROW_PHI,
+    ROW_GRADIENT,
+    ROW_IMAGE = ROW_GRADIENT + 3,
+    MLS_KERNEL_ROWS = ROW_IMAGE + 3
+};
+
+/* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, where not NULL; false when that is
+ * left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
+bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
+                double *phi, double *dphi);

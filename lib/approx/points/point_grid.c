@@ -1,0 +1,324 @@
+#include "approx/points/point_grid.h"
+
+#include "approx/points/sorted.h"
+#include "base/lists.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int level_of(double radius, double least)
+{
+    int level = (int)floor(log2(radius / least));
+    return level < 0 ? 0 : level < POINT_GRID_LEVELS ? level : POINT_GRID_LEVELS - 1;
+}
+
+/* Bin of a coordinate along one axis, clamped to the grid. */
+static int64_t bin_along(const struct point_grid_level *level, int axis, double x)
+{
+    double at = (x - level->origin[axis]) * level->per_length;
+    double last = (double)(level->bins[axis] - 1);
+    return (int64_t)(at > 0.0 ? (at > last ? last : at) : 0.0);
+}
+
+static int64_t bin_of(const struct point_grid *grid, const struct point_grid_level *level, const double *x)
+{
+    int64_t bin = 0;
+    for (int a = grid->dim - 1; a >= 0; a--) {
+        bin = bin * level->bins[a] + bin_along(level, a, x[a]);
+    }
+    return bin;
+}
+
+/* Choose the bins of a level from its nodes' extent: at least half the largest radius, and no more than a few
+ * bins per node. */
+static int64_t choose_bins(struct point_grid_level *level, int dim, const double *upper, int64_t nodes)
+{
+    level->bin = 0.5 * level->largest_radius;
+    for (;;) {
+        double product = 1.0;
+        for (int a = 0; a < dim; a++) {
+            product *= floor((upper[a] - level->origin[a]) / level->bin) + 1.0;
+        }
+        if (product <= 4.0 * (double)nodes + 64.0) {
+            break;
+        }
+        level->bin *= 1.25;
+    }
+    level->per_length = 1.0 / level->bin;
+    int64_t total = 1;
+    for (int a = 0; a < 3; a++) {
+        level->bins[a] = a < dim ? (int64_t)floor((upper[a] - level->origin[a]) / level->bin) + 1 : 1;
+        total *= level->bins[a];
+    }
+    return total;
+}
+
+/* bin[node_count]: scratch. */
+static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
+                               int32_t *bin, struct error *error)
+{
+    struct point_grid_level *level = &grid->level[number];
+    int dim = grid->dim;
+    double upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    int64_t nodes = 0;
+    for (int a = 0; a < 3; a++) {
+        level->origin[a] = INFINITY;
+    }
+    for (int64_t n = 0; n < grid->node_count; n++) {
+        if (level_of_node[n] != number) {
+            continue;
+        }
+        nodes++;
+        level->largest_radius = fmax(level->largest_radius, grid->radius[n]);
+        for (int a = 0; a < dim; a++) {
+            level->origin[a] = fmin(level->origin[a], grid->x[n * dim + a]);
+            upper[a] = fmax(upper[a], grid->x[n * dim + a]);
+        }
+    }
+    if (nodes == 0) {
+        return STATUS_OK;
+    }
+    int64_t bins = choose_bins(level, dim, upper, nodes);
+    for (int64_t n = 0; n < grid->node_count; n++) {
+        bin[n] = level_of_node[n] == number ? (int32_t)bin_of(grid, level, grid->x + n * dim) : -1;
+    }
+    RETURN_IF_ERROR(lists_by_row(grid->node_count, 1, bin, bins, &level->start, &level->node, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&level->place, nodes * (dim + 1), error));
+    for (int64_t i = 0; i < nodes; i++) {
+        double *place = level->place + i * (dim + 1);
+        for (int a = 0; a < dim; a++) {
+            place[a] = grid->x[(int64_t)level->node[i] * dim + a];
+        }
+        place[dim] = grid->radius[level->node[i]];
+    }
+    return STATUS_OK;
+}
+
+enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
+                             const double *radius, struct error *error)
+{
+    SCRATCH uint8_t *level_of_node = NULL;
+    SCRATCH int32_t *bin = NULL;
+    double least = INFINITY;
+    *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
+    for (int64_t n = 0; n < node_count; n++) {
+        if (!(radius[n] > 0.0) || !isfinite(radius[n])) {
+            return fail(error, STATUS_INPUT, "support.radius: row %lld: %g is no radius", (long long)n,
+                        radius[n]);
+        }
+        least = fmin(least, radius[n]);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&level_of_node, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bin, node_count, error));
+    for (int64_t n = 0; n < node_count; n++) {
+        level_of_node[n] = (uint8_t)level_of(radius[n], least);
+        if (level_of_node[n] >= grid->level_count) {
+            grid->level_count = level_of_node[n] + 1;
+        }
+    }
+    for (int l = 0; l < grid->level_count; l++) {
+        RETURN_IF_ERROR(build_level(grid, l, level_of_node, bin, error));
+    }
+    return STATUS_OK;
+}
+
+void index_list_free(struct index_list *list)
+{
+    free(list->index);
+    *list = (struct index_list){0};
+}
+
+void point_grid_free(struct point_grid *grid)
+{
+    for (int l = 0; l < grid->level_count; l++) {
+        const struct point_grid_level *level = &grid->level[l];
+        FREE_ALL(level->start, level->node, level->place, level->touch_start, level->touch);
+    }
+    *grid = (struct point_grid){0};
+}
+
+/* The square of how far a place along an axis is from a bin, in bins. */
+static inline double gap2(int64_t bin, double at)
+{
+    double gap = fmax(fmax((double)bin - at, at - (double)(bin + 1)), 0.0);
+    return gap * gap;
+}
+
+/* Count, or with a list file, the bins that the support at a place of a level touches. */
+static void file_bins(const struct point_grid_level *level, int dim, int32_t slot, int64_t *start,
+                      int32_t *list)
+{
+    const double *place = level->place + (int64_t)slot * (dim + 1);
+    double at[3] = {0.0, 0.0, 0.0}, radius = place[dim] * level->per_length * (1.0 + 1e-9) + 1e-9;
+    int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+    for (int a = 0; a < dim; a++) {
+        at[a] = (place[a] - level->origin[a]) * level->per_length;
+        from[a] = at[a] > radius ? (int64_t)(at[a] - radius) : 0;
+        to[a] = at[a] + radius < (double)level->bins[a] ? (int64_t)(at[a] + radius) : level->bins[a] - 1;
+    }
+    for (int64_t k = from[2]; k <= to[2]; k++) {
+        for (int64_t j = from[1]; j <= to[1]; j++) {
+            double rest = radius * radius - gap2(k, at[2]) - gap2(j, at[1]);
+            int64_t *row = start + (k * level->bins[1] + j) * level->bins[0];
+            for (int64_t i = from[0]; i <= to[0]; i++) {
+                if (gap2(i, at[0]) <= rest && list == NULL) {
+                    row[i + 2]++;
+                } else if (gap2(i, at[0]) <= rest) {
+                    list[row[i + 1]++] = slot;
+                }
+            }
+        }
+    }
+}
+
+enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
+{
+    SCRATCH int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
+    for (int l = 0; l < grid->level_count; l++) {
+        struct point_grid_level *level = &grid->level[l];
+        int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
+        free(slot);
+        RETURN_IF_ERROR(NEW_ARRAY(&slot, grid->node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch_start, bins + 2, error));
+        for (int32_t i = 0; level->start != NULL && i < level->start[bins]; i++) {
+            slot[level->node[i]] = i + 1;
+            file_bins(level, grid->dim, i, level->touch_start, NULL);
+        }
+        for (int64_t b = 0; b < bins; b++) {
+            level->touch_start[b + 2] += level->touch_start[b + 1];
+        }
+        RETURN_IF_ERROR(NEW_ARRAY(&level->touch, level->touch_start[bins + 1], error));
+        for (int64_t n = 0; n < grid->node_count; n++) {
+            if (slot[n] > 0) {
+                file_bins(level, grid->dim, slot[n] - 1, level->touch_start, level->touch);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status index_list_reserve(struct index_list *list, int64_t count, struct error *error)
+{
+    return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
+}
+
+/* Append those of the places [first, last) of a level whose supports meet the box; or, with a list of places,
+ * those of slot[first .. last) whose supports contain the point `low`. */
+static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
+                                                            const int32_t *slot, int64_t first, int64_t last,
+                                                            const double *low, const double *high,
+                                                            double factor, struct index_list *list)
+{
+    int32_t *index = list->index + list->count;
+    int64_t found = 0;
+    for (int64_t i = first; i < last; i++) {
+        int64_t at = slot != NULL ? slot[i] : i;
+        const double *place = level->place + at * (dim + 1);
+        double radius = place[dim] * factor, distance2 = 0.0;
+        for (int a = 0; a < dim; a++) {
+            double difference = place[a] - low[a];
+            if (slot == NULL) {
+                double below = -difference, above = place[a] - high[a];
+                difference = (below > 0.0 ? below : 0.0) + (above > 0.0 ? above : 0.0);
+            }
+            distance2 += difference * difference;
+        }
+        index[found] = (int32_t)at;
+        found += distance2 < radius * radius;
+    }
+    list->count += found;
+}
+
+/* The same for each kind. */
+static void query_any_run(const struct point_grid_level *level, int dim, const int32_t *slot, int64_t first,
+                          int64_t last, const double *low, const double *high, double factor,
+                          struct index_list *list)
+{
+    if (slot != NULL && dim == 2) {
+        query_run(level, 2, slot, first, last, low, high, factor, list);
+    } else if (slot != NULL) {
+        query_run(level, 3, slot, first, last, low, high, factor, list);
+    } else if (dim == 2) {
+        query_run(level, 2, NULL, first, last, low, high, factor, list);
+    } else {
+        query_run(level, 3, NULL, first, last, low, high, factor, list);
+    }
+}
+
+enum status point_grid_list_places(const struct point_grid *grid, const struct point_grid_level *level,
+                                   const double *low, const double *high, double factor,
+                                   struct index_list *list, struct error *error)
+{
+    int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+    double reach = level->largest_radius * factor * (1.0 + 1e-9); /* rounding at the edges of bins */
+    for (int a = 0; a < grid->dim; a++) {
+        double end = level->origin[a] + level->bin * (double)level->bins[a];
+        if (high[a] + reach < level->origin[a] || low[a] - reach > end) {
+            return STATUS_OK;
+        }
+        from[a] = bin_along(level, a, low[a] - reach);
+        to[a] = bin_along(level, a, high[a] + reach);
+    }
+    /* The bins of a row follow each other. (Leaving out those beyond the ball costs more than it saves.) */
+    for (int64_t k = from[2]; k <= to[2]; k++) {
+        for (int64_t j = from[1]; j <= to[1]; j++) {
+            int64_t row = (k * level->bins[1] + j) * level->bins[0];
+            int64_t first = level->start[row + from[0]], last = level->start[row + to[0] + 1];
+            RETURN_IF_ERROR(index_list_reserve(list, last - first, error));
+            query_any_run(level, grid->dim, NULL, first, last, low, high, factor, list);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status point_grid_query_box(const struct point_grid *grid, const double *low, const double *high,
+                                 double factor, struct index_list *list, struct error *error)
+{
+    int64_t first = list->count;
+    for (int l = 0; l < grid->level_count; l++) {
+        int64_t before = list->count;
+        if (grid->level[l].start != NULL) {
+            RETURN_IF_ERROR(point_grid_list_places(grid, &grid->level[l], low, high, factor, list, error));
+        }
+        for (int64_t i = before; i < list->count; i++) {
+            list->index[i] = grid->level[l].node[list->index[i]];
+        }
+    }
+    if (list->count > first) {
+        qsort(list->index + first, (size_t)(list->count - first), sizeof *list->index, compare_int32);
+    }
+    return STATUS_OK;
+}
+
+/* The same for a point, by what touches its bins. */
+static enum status query_touching(const struct point_grid *grid, const double *x, double factor,
+                                  struct index_list *list, struct error *error)
+{
+    int64_t first = list->count;
+    for (int l = 0; l < grid->level_count; l++) {
+        const struct point_grid_level *level = &grid->level[l];
+        int64_t before = list->count, bin = level->start != NULL ? bin_of(grid, level, x) : 0;
+        int64_t from = level->touch_start[bin], to = level->touch_start[bin + 1];
+        RETURN_IF_ERROR(index_list_reserve(list, before - first + 2 * (to - from), error));
+        query_any_run(level, grid->dim, level->touch, from, to, x, x, factor, list);
+        int32_t *index = list->index + first, *own = list->index + before, *end = list->index + list->count;
+        for (int32_t *i = own; i < end; i++) {
+            *i = level->node[*i];
+        }
+        if (own > index && end > own) {
+            (void)sorted_union(index, own - index, own, end - own, end); /* no node is of two levels */
+            memcpy(index, end, (size_t)(end - index) * sizeof *index);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status point_grid_query(const struct point_grid *grid, const double *x, double factor,
+                             struct index_list *list, struct error *error)
+{
+    return factor <= 1.0 && grid->level[0].touch != NULL
+               ? query_touching(grid, x, factor, list, error)
+               : point_grid_query_box(grid, x, x, factor, list, error);
+}

@@ -1,0 +1,54 @@
+/* Tables of shape functions: values and gradients at points (equations (3) and (4) of lib/README.md), and
+ * averages over faces of cells (equation (6) of lib/README.md). */
+#pragma once
+
+#include "approx/cells/face_rows.h"
+#include "approx/mls/mls.h"
+#include "approx/support/support.h"
+
+/* The neighbours that points see around corners (see visibility.h). */
+struct around {
+    int64_t count;
+    const int64_t *pair;  /* count: places in idx, ascending */
+    const double *offset; /* count * dim: from the point to where the neighbour seems to be, m */
+};
+
+/* Lists of neighbours in view (CSR), as support_build makes them. */
+struct neighbours {
+    int64_t count;
+    const int64_t *ptr; /* count + 1 */
+    const int32_t *idx;
+    const double *widen; /* count */
+    struct around around;
+};
+
+/* A view of lists. */
+struct neighbours support_view(const struct support_lists *lists);
+
+/* phi[ptr[count]] and, unless NULL, dphi[ptr[count] * dim] (1/m) at the points x[count * dim]. `what` names
+ * the points in messages. STATUS_VERDICT, naming the first point whose moment matrix is singular,
+ * ill-conditioned, or has too few neighbours. Threaded; the same bits for any number of threads. */
+MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
+                                   const struct neighbours *neighbours, const double *x, const char *what,
+                                   double *phi, double *dphi, struct error *error);
+
+/* Rows that averages of the shape functions over faces of cells are made of (face_rows.h), on lists of their
+ * own. */
+struct face_averages {
+    int64_t count;        /* of rows */
+    int64_t *ptr;         /* count + 1 */
+    int32_t *idx;         /* union of the lists of the row's points, ascending */
+    double *phi;          /* means over these points */
+    double *boundary_phi; /* values at the points of faces on the boundary, following their lists */
+};
+
+/* The rows of the averages of the shape functions over faces, with the points x (face_rows_points). By
+ * the divergence theorem the mean gradient over a cell is the sum over its faces of such an
+ * average times the outward normal, per volume: gradients that are smoothed over smoothed cells, for which
+ * the linear patch test holds to round-off (Chen et al. 2001, on background cells). Errors and threads as
+ * shape_table. */
+MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
+                                           const struct neighbours *neighbours, const double *x,
+                                           const char *what, const struct faces *faces,
+                                           struct face_averages *averages, struct error *error);
+void face_averages_free(struct face_averages *averages);

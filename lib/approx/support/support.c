@@ -1,0 +1,236 @@
+#include "approx/support/support_private.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
+static const int64_t chunk_points = 512;
+
+struct support_options support_defaults(int dim)
+{
+    return (struct support_options){
+        .factor = dim == 2 ? 1.8 : 2.0, .widen = true, .gradient_bound = 6.0, .mls = mls_default(dim)};
+}
+
+void point_text(int dim, const double *x, char text[96])
+{
+    if (dim == 2) {
+        snprintf(text, 96, "(%.6g, %.6g)", x[0], x[1]);
+    } else {
+        snprintf(text, 96, "(%.6g, %.6g, %.6g)", x[0], x[1], x[2]);
+    }
+}
+
+static void worker_free(int64_t body_count, struct worker *worker)
+{
+    free(worker->list.index);
+    free(worker->around_pair);
+    free(worker->around_offset);
+    for (int64_t b = 0; b < body_count && worker->visibility != NULL; b++) {
+        visibility_work_free(&worker->visibility[b]);
+    }
+    free(worker->visibility);
+    free(worker->order);
+    free(worker->gradient);
+    mls_work_free(&worker->work);
+}
+
+static enum status check_finite(const struct search *search, int64_t count, struct error *error)
+{
+    for (int64_t i = 0; i < count * search->dim; i++) {
+        if (!isfinite(search->x[i])) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite coordinate", search->what,
+                        (long long)(i / search->dim));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The message for a point without a good support; the radius in it reveals a stray node. */
+static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
+                                struct error *error)
+{
+    char place[96], stray[96] = "";
+    const struct support_body *body = &search->body[search_body(search, row)];
+    const double *radius = body->grid->radius;
+    point_text(search->dim, search->x + row * search->dim, place);
+    if (count > 0) {
+        int32_t widest = index[0];
+        for (int64_t i = 1; i < count; i++) {
+            widest = radius[index[i]] > radius[widest] ? index[i] : widest;
+        }
+        snprintf(stray, sizeof stray, ", the largest radius being %.3g m, of node %d", radius[widest],
+                 body->node != NULL ? body->node[widest] : widest);
+    }
+    return fail(error, STATUS_VERDICT,
+                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
+                "coplanar, stray or too few nodes there",
+                search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
+                body->visibility != NULL ? " reach through the cells" : "", stray);
+}
+
+/* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
+static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
+                               struct support_lists *lists, struct worker *worker, struct error *error)
+{
+    worker->list.count = worker->around_count = 0;
+    for (int64_t p = first; p < last; p++) {
+        bool serves;
+        int64_t before = worker->list.count;
+        RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
+        int32_t *index = worker->list.index + before;
+        const int32_t *node = search->body[search_body(search, p)].node;
+        int64_t count = worker->list.count - before;
+        if (!serves) {
+            return fail_support(search, p, index, count, error);
+        }
+        for (int64_t i = 0; i < count && node != NULL; i++) {
+            index[i] = node[index[i]];
+        }
+        lists->ptr[p + 1] = count;
+    }
+    return STATUS_OK;
+}
+
+/* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */
+static enum status append_around(int dim, const struct worker *worker, int64_t before,
+                                 struct support_lists *lists, struct error *error)
+{
+    int64_t count = lists->around_count + worker->around_count;
+    if (worker->around_count == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_pair, count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&lists->around_offset, count * dim, error));
+    for (int64_t i = 0; i < worker->around_count; i++) {
+        lists->around_pair[lists->around_count + i] = before + worker->around_pair[i];
+    }
+    memcpy(lists->around_offset + lists->around_count * dim, worker->around_offset,
+           (size_t)(worker->around_count * dim) * sizeof(double));
+    lists->around_count = count;
+    return STATUS_OK;
+}
+
+/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
+static enum status append_chunk(int dim, struct support_lists *lists, int64_t first, int64_t last,
+                                const struct worker *worker, struct index_list *all, struct error *error)
+{
+    const struct index_list *own = &worker->list;
+    RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
+    RETURN_IF_ERROR(append_around(dim, worker, all->count, lists, error));
+    if (own->count > 0) {
+        memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
+        all->count += own->count;
+    }
+    for (int64_t p = first; p < last; p++) {
+        int64_t neighbours = lists->ptr[p + 1];
+        lists->fewest = p == 0 || neighbours < lists->fewest ? neighbours : lists->fewest;
+        lists->most = neighbours > lists->most ? neighbours : lists->most;
+        lists->ptr[p + 1] += lists->ptr[p];
+        lists->widened += lists->widen[p] > 1.0;
+        lists->widest = fmax(lists->widest, lists->widen[p]);
+    }
+    return STATUS_OK;
+}
+
+/* All chunks, appended to `all` in their order whichever thread has built them. Of several that fail the
+ * first tells. */
+static enum status build_chunks(const struct search *search, struct support_lists *lists,
+                                struct index_list *all, struct error *error)
+{
+    int64_t chunk_count = (lists->count + chunk_points - 1) / chunk_points;
+    enum status failure = STATUS_OK;
+#pragma omp parallel
+    {
+        struct worker worker = {0};
+#pragma omp for ordered schedule(dynamic, 1)
+        for (int64_t c = 0; c < chunk_count; c++) {
+            struct error own;
+            int64_t first = c * chunk_points;
+            int64_t last = first + chunk_points < lists->count ? first + chunk_points : lists->count;
+            enum status outcome = worker.visibility != NULL
+                                      ? STATUS_OK
+                                      : NEW_ARRAY(&worker.visibility, search->body_count, &own);
+            if (outcome == STATUS_OK) {
+                outcome = build_chunk(search, first, last, lists, &worker, &own);
+            }
+#pragma omp ordered
+            if (failure == STATUS_OK) {
+                failure = outcome == STATUS_OK
+                              ? append_chunk(search->dim, lists, first, last, &worker, all, &own)
+                              : outcome;
+                if (failure != STATUS_OK) {
+                    *error = own;
+                }
+            }
+        }
+        worker_free(search->body_count, &worker);
+    }
+    return failure;
+}
+
+enum status support_build(const struct support_options *options, const struct point_grid *grid,
+                          const struct visibility *visibility, const struct visibility_places *places,
+                          int64_t count, const double *x, const char *what, struct support_lists *lists,
+                          struct error *error)
+{
+    const struct support_body body = {.grid = grid, .visibility = visibility};
+    return support_build_among(options, 1, &body, NULL, places, count, x, what, lists, error);
+}
+
+enum status support_build_among(const struct support_options *options, int64_t body_count,
+                                const struct support_body *body, const int32_t *body_of,
+                                const struct visibility_places *places, int64_t count, const double *x,
+                                const char *what, struct support_lists *lists, struct error *error)
+{
+    enum status status;
+    struct index_list all = {0};
+    *lists = (struct support_lists){.count = count, .widest = 1.0};
+    struct search search = {.options = options,
+                            .dim = options->mls.dim, /* some bodies may have no nodes */
+                            .body_count = body_count,
+                            .body = body,
+                            .body_of = body_of,
+                            .x = x,
+                            .what = what};
+    TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
+    TRY(NEW_ARRAY(&lists->widen, count, error));
+    if (places != NULL) {
+        search.places = *places;
+    }
+    TRY(check_finite(&search, count, error));
+    TRY(NEW_ARRAY(&search.shadows, body_count, error));
+    for (int32_t b = 0; b < body_count && !search.places.nodes; b++) {
+        if (body[b].visibility != NULL) {
+            TRY(visibility_shadows_build(body[b].visibility, count, x, body_of, b, &search.shadows[b],
+                                         error));
+        }
+    }
+    TRY(build_chunks(&search, lists, &all, error));
+    lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
+    if (lists->idx == NULL) {
+        TRY(fail_memory(error, "neighbour list"));
+    }
+    all.index = NULL;
+done:
+    for (int64_t b = 0; b < body_count && search.shadows != NULL; b++) {
+        visibility_shadows_free(&search.shadows[b]);
+    }
+    free(search.shadows);
+    free(all.index);
+    return status;
+}
+
+void support_free(struct support_lists *lists)
+{
+    free(lists->ptr);
+    free(lists->idx);
+    free(lists->widen);
+    free(lists->around_pair);
+    free(lists->around_offset);
+    *lists = (struct support_lists){0};
+}

@@ -1,0 +1,168 @@
+/* The support of one point. */
+#include "approx/support/support_private.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double widen_step = 1.05;
+
+/* Squared distance from x to a neighbour; around a corner, along the path. */
+static double neighbour_distance2(const struct point_grid *grid, const double *x, int32_t node,
+                                  const double *image)
+{
+    static const double origin[3] = {0.0, 0.0, 0.0};
+    return image != NULL ? vector_distance2(grid->dim, image, origin)
+                         : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
+}
+
+/* Keep the `most` nearest of the neighbours in index[count], of equally near ones those of lower index;
+ * image[count * dim] or NULL. */
+static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
+                                double *image, int64_t *count, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
+    if (most <= 0 || *count <= most) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->order, *count, &worker->order_room, error));
+    double *distance2 = worker->order;
+    for (int64_t i = 0; i < *count; i++) {
+        distance2[i] = neighbour_distance2(grid, x, index[i], image != NULL ? image + i * dim : NULL);
+    }
+    /* Drop the farthest (of equals the highest index) until `most` remain; the order stays ascending. */
+    for (; *count > most; --*count) {
+        int64_t farthest = 0;
+        for (int64_t i = 1; i < *count; i++) {
+            farthest = distance2[i] >= distance2[farthest] ? i : farthest;
+        }
+        for (int64_t i = farthest; i + 1 < *count; i++) {
+            index[i] = index[i + 1];
+            distance2[i] = distance2[i + 1];
+        }
+        if (image != NULL) {
+            memmove(image + farthest * dim, image + (farthest + 1) * dim,
+                    (size_t)((*count - 1 - farthest) * dim) * sizeof *image);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
+ * list cut to the nearest reaches only as far as its farthest node. */
+static double spacing_within(const struct support_options *options, const struct point_grid *grid,
+                             const double *x, const int32_t *index, const double *image, int64_t count,
+                             double widen)
+{
+    double farthest = 0.0;
+    if (count == options->most) {
+        for (int64_t i = 0; i < count; i++) {
+            double distance2 =
+                neighbour_distance2(grid, x, index[i], image != NULL ? image + i * grid->dim : NULL);
+            farthest = distance2 > farthest ? distance2 : farthest;
+        }
+        farthest = sqrt(farthest);
+    } else {
+        for (int64_t i = 0; i < count; i++) {
+            farthest = grid->radius[index[i]] > farthest ? grid->radius[index[i]] : farthest;
+        }
+        farthest *= widen;
+    }
+    double unit_ball = grid->dim == 2 ? 3.141592653589793 : 4.1887902047863905;
+    return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
+}
+
+/* Whether a support is admissible: enough nodes, a well-conditioned moment matrix, bounded gradients. */
+static enum status judge(const struct support_options *options, const struct point_grid *grid,
+                         const double *x, double widen, const int32_t *index, const double *image,
+                         int64_t count, struct worker *worker, bool *serves, struct error *error)
+{
+    enum mls_verdict verdict;
+    struct mls_support support = {.x = x,
+                                  .nodes = grid->x,
+                                  .radius = grid->radius,
+                                  .widen = widen,
+                                  .neighbours = index,
+                                  .count = count,
+                                  .image = image};
+    double largest2 = 0.0;
+    *serves = false;
+    if (count < options->least) {
+        return STATUS_OK;
+    }
+    double spacing = spacing_within(options, grid, x, index, image, count, widen);
+    int dim = grid->dim;
+    RETURN_IF_ERROR(GROW_ARRAY(&worker->gradient, count * dim, &worker->gradient_room, error));
+    RETURN_IF_ERROR(
+        mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &verdict, error));
+    for (int64_t i = 0; i < count && verdict == MLS_GOOD; i++) {
+        double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
+        largest2 = square > largest2 ? square : largest2;
+    }
+    *serves = verdict == MLS_GOOD && sqrt(largest2) * spacing <= options->gradient_bound;
+    return STATUS_OK;
+}
+
+/* Record the neighbours of the list from `first` on that are connected around corners: those whose image is
+ * not at the node. */
+static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
+                               int64_t first, struct worker *worker, struct error *error)
+{
+    int dim = grid->dim;
+    for (int64_t i = first; i < worker->list.count; i++, image += dim) {
+        const double *node = grid->x + (int64_t)worker->list.index[i] * dim;
+        bool straight = true;
+        for (int a = 0; a < dim; a++) {
+            straight = straight && image[a] == node[a] - x[a];
+        }
+        if (straight) {
+            continue;
+        }
+        int64_t at = worker->around_count;
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_pair, at + 1, &worker->pair_room, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&worker->around_offset, (at + 1) * dim, &worker->offset_room, error));
+        worker->around_pair[at] = i;
+        memcpy(worker->around_offset + at * dim, image, (size_t)dim * sizeof *image);
+        worker->around_count++;
+    }
+    return STATUS_OK;
+}
+
+enum status support_find(const struct search *search, int64_t p, struct worker *worker, double *widen,
+                         bool *serves, struct error *error)
+{
+    const struct support_options *options = search->options;
+    int32_t body = search_body(search, p);
+    const struct point_grid *grid = search->body[body].grid;
+    const struct visibility *visibility = search->body[body].visibility;
+    struct visibility_work *work = &worker->visibility[body];
+    const double *x = search->x + p * grid->dim;
+    int64_t first = worker->list.count;
+    if (visibility != NULL) {
+        RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p, x, work, error));
+    }
+    for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
+        worker->list.count = first;
+        RETURN_IF_ERROR(point_grid_query(grid, x, *widen, &worker->list, error));
+        int64_t count = worker->list.count - first;
+        int32_t *index = worker->list.index + first;
+        double *image = NULL;
+        if (visibility != NULL) {
+            RETURN_IF_ERROR(
+                visibility_filter(visibility, &search->shadows[body], *widen, index, &count, work, error));
+            image = work->around > 0 ? work->image : NULL;
+        }
+        RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
+        worker->list.count = first + count;
+        *serves = true;
+        if (options->widen) {
+            RETURN_IF_ERROR(judge(options, grid, x, *widen, index, image, count, worker, serves, error));
+        }
+        if (*serves) {
+            return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,42 @@
+/* Declarations shared by support.c and support_point.c; private to lib/approx. */
+#pragma once
+
+#include "approx/support/support.h"
+
+#define SUPPORT_WIDEN_LIMIT 8.0
+
+/* The input of a search for neighbours. */
+struct search {
+    const struct support_options *options;
+    int dim;
+    int64_t body_count;
+    const struct support_body *body;
+    const int32_t *body_of; /* of each point; NULL: the first */
+    struct visibility_places places;
+    struct visibility_shadows *shadows; /* body_count: of its points, within reach */
+    const double *x;
+    const char *what;
+};
+
+/* One thread's growing lists and scratch. */
+struct worker {
+    struct index_list list;
+    int64_t around_count, pair_room, offset_room; /* neighbours seen around corners */
+    int64_t *around_pair;                         /* places in the list */
+    double *around_offset;
+    struct visibility_work *visibility; /* for each body */
+    struct mls_work work;
+    double *order, *gradient;
+    int64_t order_room, gradient_room;
+};
+
+/* Append the neighbours of point p to the worker's list. The radii are widened until the support is
+ * admissible, at most by SUPPORT_WIDEN_LIMIT; *serves: whether it is. */
+MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
+                                    double *widen, bool *serves, struct error *error);
+
+/* The number of the body in which neighbours of point p are searched. */
+static inline int32_t search_body(const struct search *search, int64_t p)
+{
+    return search->body_of != NULL ? search->body_of[p] : 0;
+}

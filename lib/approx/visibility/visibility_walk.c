@@ -1,0 +1,183 @@
+/* Segments through the cells. */
+#include "approx/visibility/visibility_private.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Barycentric coordinates within this of 0 are on a face. */
+static const double on_face = 1e-9;
+
+/* The barycentric coordinates of two points in a cell. */
+static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
+                        double *of_x, double *of_y)
+{
+    int dim = cells->dim;
+    const int32_t *v = cells->node + cell * (dim + 1);
+    const double *first = cells->x + (int64_t)v[0] * dim;
+    double edge[3][3], dual[3][3], from_x[3], from_y[3];
+    for (int k = 0; k < dim; k++) {
+        vector_subtract(dim, cells->x + (int64_t)v[k + 1] * dim, first, edge[k]);
+    }
+    vector_subtract(dim, x, first, from_x);
+    vector_subtract(dim, y, first, from_y);
+    if (dim == 2) {
+        dual[0][0] = edge[1][1];
+        dual[0][1] = -edge[1][0];
+        dual[1][0] = -edge[0][1];
+        dual[1][1] = edge[0][0];
+    } else {
+        vector_cross(edge[1], edge[2], dual[0]);
+        vector_cross(edge[2], edge[0], dual[1]);
+        vector_cross(edge[0], edge[1], dual[2]);
+    }
+    double volume = vector_dot(dim, edge[0], dual[0]);
+    of_x[0] = of_y[0] = 1.0;
+    for (int k = 0; k < dim; k++) {
+        of_x[k + 1] = vector_dot(dim, from_x, dual[k]) / volume;
+        of_y[k + 1] = vector_dot(dim, from_y, dual[k]) / volume;
+        of_x[0] -= of_x[k + 1];
+        of_y[0] -= of_y[k + 1];
+    }
+}
+
+/* Whether the segment touches a cell; least[dim + 1]: its coordinates there. */
+static bool touches(const struct cells *cells, int64_t cell, const double *x, const double *y, double *least)
+{
+    double a[4], b[4], begin = 0.0, end = 1.0;
+    int corners = cells->dim + 1;
+    barycentric(cells, cell, x, y, a, b);
+    for (int k = 0; k < corners; k++) {
+        double slope = b[k] - a[k];
+        if (a[k] < -on_face && b[k] < -on_face) {
+            return false;
+        }
+        if (a[k] < -on_face) {
+            begin = fmax(begin, (-on_face - a[k]) / slope);
+        } else if (b[k] < -on_face) {
+            end = fmin(end, (-on_face - a[k]) / slope);
+        }
+    }
+    for (int k = 0; k < corners; k++) {
+        double at_begin = a[k] + begin * (b[k] - a[k]), at_end = a[k] + end * (b[k] - a[k]);
+        least[k] = fmin(at_begin, at_end);
+    }
+    return begin <= end + on_face;
+}
+
+static bool contains(const struct index_list *list, int32_t value)
+{
+    for (int64_t i = list->count; i-- > 0;) {
+        if (list->index[i] == value) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static enum status visit(int32_t cell, struct visibility_work *work, struct error *error)
+{
+    if (cell >= 0 && !contains(&work->visited, cell)) {
+        RETURN_IF_ERROR(index_list_reserve(&work->visited, 1, error));
+        RETURN_IF_ERROR(index_list_reserve(&work->stack, 1, error));
+        work->visited.index[work->visited.count++] = cell;
+        work->stack.index[work->stack.count++] = cell;
+    }
+    return STATUS_OK;
+}
+
+static bool has_node(const struct cells *cells, int64_t cell, int32_t node)
+{
+    const int32_t *v = cells->node + cell * (cells->dim + 1);
+    return v[0] == node || v[1] == node || v[2] == node || (cells->dim == 3 && v[3] == node);
+}
+
+enum status visibility_walk(const struct visibility *visibility, const double *x, const int32_t *cell,
+                            int64_t cell_count, int32_t node, struct visibility_work *work, bool *arrives,
+                            struct error *error)
+{
+    int corners = visibility->cells.dim + 1;
+    const double *y = node < 0 ? x : visibility->cells.x + (int64_t)node * visibility->cells.dim;
+    work->visited.count = work->stack.count = 0;
+    *arrives = false;
+    for (int64_t i = 0; i < cell_count; i++) {
+        RETURN_IF_ERROR(visit(cell[i], work, error));
+    }
+    while (work->stack.count > 0) {
+        double least[4];
+        int32_t at = work->stack.index[--work->stack.count];
+        if (!touches(&visibility->cells, at, x, y, least)) {
+            continue;
+        }
+        if (has_node(&visibility->cells, at, node)) {
+            *arrives = true;
+            break;
+        }
+        for (int k = 0; k < corners; k++) {
+            if (least[k] <= on_face) {
+                RETURN_IF_ERROR(visit(visibility->across[(int64_t)at * corners + k], work, error));
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The point of a cell that has x's barycentric coordinates but for negative ones; returns its distance from
+ * x. */
+static double pull_into(const struct cells *cells, int64_t cell, const double *x, double *pulled)
+{
+    int dim = cells->dim;
+    double place[4], same[4], sum = 0.0;
+    barycentric(cells, cell, x, x, place, same);
+    for (int a = 0; a < dim; a++) {
+        pulled[a] = 0.0;
+    }
+    for (int k = 0; k <= dim; k++) {
+        place[k] = place[k] > 0.0 ? place[k] : 0.0;
+        sum += place[k];
+    }
+    for (int i = 0; i < (dim + 1) * dim; i++) {
+        int32_t node = cells->node[cell * (dim + 1) + i / dim];
+        pulled[i % dim] += place[i / dim] / sum * cells->x[(int64_t)node * dim + i % dim];
+    }
+    return vector_distance(dim, x, pulled);
+}
+
+enum status visibility_locate(const struct visibility *visibility, const double *x,
+                              struct visibility_work *work, struct error *error)
+{
+    FREED_BY(index_list_free) struct index_list near = {0};
+    double least[4], nearest = INFINITY, pulled[3];
+    work->own.count = 0;
+    work->outside = false;
+    RETURN_IF_ERROR(point_grid_query(visibility->grid, x, 1.0, &near, error));
+    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
+    for (int64_t i = 0; i < near.count; i++) {
+        for (int64_t s = visibility->star_ptr[near.index[i]]; s < visibility->star_ptr[near.index[i] + 1];
+             s++) {
+            int32_t cell = visibility->star[s];
+            if (touches(&visibility->cells, cell, x, x, least)) {
+                work->own.count = work->outside ? 0 : work->own.count;
+                work->outside = false;
+                nearest = 0.0;
+                if (!contains(&work->own, cell)) {
+                    RETURN_IF_ERROR(index_list_reserve(&work->own, 1, error));
+                    work->own.index[work->own.count++] = cell;
+                }
+            } else if (nearest > 0.0 && pull_into(&visibility->cells, cell, x, pulled) < nearest) {
+                nearest = pull_into(&visibility->cells, cell, x, work->from);
+                work->own.index[0] = cell;
+                work->own.count = 1;
+                work->outside = true;
+            }
+        }
+    }
+    if (!work->outside) {
+        memcpy(work->from, x, (size_t)visibility->cells.dim * sizeof *x);
+    }
+    work->cell = work->own.index;
+    work->cell_count = work->own.count;
+    return STATUS_OK;
+}

@@ -1,0 +1,251 @@
+#include "io/checkpoint/checkpoint.h"
+
+#include "base/memory.h"
+#include "io/files/descriptor.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The run's values are sections `state.NAME`. */
+
+enum { NAME_SIZE = 112 };
+
+static void section_name(const struct state_value *value, char name[NAME_SIZE])
+{
+    snprintf(name, NAME_SIZE, "state.%s", value->name);
+}
+
+/* Flags travel as numbers. */
+static enum status save_flags(struct stream *stream, const char *name, const struct state_value *value,
+                              struct error *error)
+{
+    const bool *flags = value->values;
+    int32_t *numbers;
+    RETURN_IF_ERROR(NEW_ARRAY(&numbers, value->count, error));
+    for (int64_t i = 0; i < value->count; i++) {
+        numbers[i] = flags[i];
+    }
+    return stream_put(stream, name, TYPE_I4, value->count, 1, "", numbers, true, error);
+}
+
+static enum status save(void *context, const struct state_value *value, struct error *error)
+{
+    char name[NAME_SIZE];
+    section_name(value, name);
+    if (value->type == STATE_FLAGS) {
+        return save_flags(context, name, value, error);
+    }
+    return stream_put(context, name, value->type == STATE_NUMBERS ? TYPE_F8 : TYPE_I8, value->count, 1, "",
+                      value->values, false, error);
+}
+
+static enum status restore(void *context, const struct state_value *value, struct error *error)
+{
+    static const enum element_type types[] = {
+        [STATE_NUMBERS] = TYPE_F8, [STATE_COUNTS] = TYPE_I8, [STATE_FLAGS] = TYPE_I4};
+    char name[NAME_SIZE];
+    section_name(value, name);
+    const struct section *section = stream_find(context, name);
+    if (section == NULL || section->type != types[value->type] || section->rows != value->count ||
+        section->cols != 1) {
+        return fail(error, STATUS_INPUT, "checkpoint: section %s is missing or does not fit", name);
+    }
+    if (value->type == STATE_FLAGS) {
+        for (int64_t i = 0; i < value->count; i++) {
+            ((bool *)value->values)[i] = ((const int32_t *)section->data)[i] != 0;
+        }
+    } else if (value->count > 0) {
+        memcpy(value->values, section->data, (size_t)value->count * element_size(section->type));
+    }
+    return STATUS_OK;
+}
+
+struct state checkpoint_state(const struct stream *stream)
+{
+    /* restore() only looks at it. */
+    return (struct state){.visit = restore, .context = (void *)(uintptr_t)stream};
+}
+
+enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity, int64_t step,
+                            state_function *function, void *owner, struct error *error)
+{
+    char attributes[128];
+    struct state state = {.visit = save, .context = stream};
+    int64_t *value = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&value, 1, error));
+    *value = step;
+    snprintf(attributes, sizeof attributes,
+             "version=" MTS_VERSION " scene=%08" PRIx32 " input=%08" PRIx32 " cols=step", identity->scene,
+             identity->input);
+    RETURN_IF_ERROR(stream_put(stream, "checkpoint", TYPE_I8, 1, 1, attributes, value, true, error));
+    return function(owner, &state, error);
+}
+
+static bool is_same(const struct section *section, const char *key, uint32_t checksum)
+{
+    char text[16], expected[16];
+    snprintf(expected, sizeof expected, "%08" PRIx32, checksum);
+    return section_attribute(section, key, text, sizeof text) && strcmp(text, expected) == 0;
+}
+
+/* Is it of this version, scene and input? */
+static enum status check_identity(const struct stream *stream, const char *name,
+                                  const struct checkpoint_identity *identity, int64_t *step,
+                                  struct error *error)
+{
+    char version[32] = "";
+    const struct section *section = stream_find(stream, "checkpoint");
+    if (section == NULL || section->type != TYPE_I8 || section->rows != 1 || section->cols != 1) {
+        return fail(error, STATUS_INPUT, "%s: a stream, but not a checkpoint: name another file", name);
+    }
+    if (!section_attribute(section, "version", version, sizeof version) ||
+        strcmp(version, MTS_VERSION) != 0) {
+        return fail(error, STATUS_INPUT,
+                    "%s: checkpoint of version %s, this is " MTS_VERSION ": remove it to begin anew", name,
+                    version);
+    }
+    if (!is_same(section, "scene", identity->scene)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: checkpoint of another scene, or its tables have changed: remove it to begin anew",
+                    name);
+    }
+    if (!is_same(section, "input", identity->input)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: checkpoint of another cloud or table of shape functions: remove it to begin anew",
+                    name);
+    }
+    *step = *(const int64_t *)section->data;
+    return STATUS_OK;
+}
+
+static enum status fail_file(const char *file, struct error *error)
+{
+    return fail(error, STATUS_SYSTEM, "%s: %s", file, strerror(errno));
+}
+
+static enum status sibling_name(const char *file, const char *ending, char **name, struct error *error)
+{
+    return asprintf(name, "%s%s", file, ending) < 0 ? (*name = NULL, fail_memory(error, file)) : STATUS_OK;
+}
+
+/* A device, folder or link must not be replaced. */
+static enum status check_regular(const char *file, struct error *error)
+{
+    struct stat present;
+    if (lstat(file, &present) == 0 && !S_ISREG(present.st_mode)) {
+        return fail(error, STATUS_INPUT, "%s: is no regular file: name another one for the checkpoint", file);
+    }
+    return STATUS_OK;
+}
+
+/* A whole file on the disk, under a name that does not count. */
+static enum status write_new(const char *name, const struct stream *stream, struct error *error)
+{
+    int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+        return fail_file(name, error);
+    }
+    enum status status = fail_in(error, stream_write(stream, descriptor, false, error), "%s", name);
+    if (status == STATUS_OK && fsync(descriptor) != 0) {
+        status = fail_file(name, error);
+    }
+    if (close(descriptor) != 0 && status == STATUS_OK) {
+        status = fail_file(name, error);
+    }
+    return status;
+}
+
+/* Renamings reach the disk with the folder. */
+static enum status sync_folder(const char *file, struct error *error)
+{
+    const char *slash = strrchr(file, '/');
+    SCRATCH char *folder = slash == NULL   ? strdup(".")
+                           : slash == file ? strdup("/")
+                                           : strndup(file, (size_t)(slash - file));
+    if (folder == NULL) {
+        return fail_memory(error, file);
+    }
+    FREED_BY(descriptor_close) int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0 || (fsync(descriptor) != 0 && errno != EINVAL)) { /* EINVAL: it has none to offer */
+        return fail_file(folder, error);
+    }
+    return STATUS_OK;
+}
+
+enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
+                             struct error *error)
+{
+    SCRATCH char *new = NULL, *old = NULL;
+    RETURN_IF_ERROR(sibling_name(file, ".new", &new, error));
+    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
+    RETURN_IF_ERROR(check_regular(file, error));
+    enum status status = write_new(new, stream, error);
+    if (status == STATUS_OK &&
+        ((keep_old && rename(file, old) != 0 && errno != ENOENT) || rename(new, file) != 0)) {
+        status = fail_file(file, error);
+    }
+    if (status != STATUS_OK) {
+        unlink(new);
+        return status;
+    }
+    return sync_folder(file, error);
+}
+
+enum status checkpoint_remove(const char *file, struct error *error)
+{
+    static const char *const endings[] = {".new", ".old", ""};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        SCRATCH char *name = NULL;
+        RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));
+        if (unlink(name) != 0 && errno != ENOENT) {
+            return fail_file(name, error);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Read one file; *exists tells whether it is there. */
+static enum status read_one(const char *name, struct stream *stream, bool *exists, struct error *error)
+{
+    stream_init(stream);
+    FREED_BY(descriptor_close) int descriptor = open(name, O_RDONLY | O_CLOEXEC);
+    *exists = descriptor >= 0 || errno != ENOENT;
+    return descriptor < 0 ? fail_file(name, error) : stream_read(stream, descriptor, name, error);
+}
+
+enum status checkpoint_read(const char *file, const struct checkpoint_identity *identity,
+                            struct stream *stream, enum checkpoint_source *source, int64_t *step,
+                            struct error *error)
+{
+    struct error later;
+    SCRATCH char *old = NULL;
+    bool exists, old_exists;
+    *source = CHECKPOINT_NEWEST;
+    stream_init(stream);
+    RETURN_IF_ERROR(check_regular(file, error));
+    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
+    if (read_one(file, stream, &exists, error) != STATUS_OK) {
+        *source = CHECKPOINT_OLD;
+        enum status older = read_one(old, stream, &old_exists, &later);
+        if (older != STATUS_OK && !exists && !old_exists) {
+            *source = CHECKPOINT_NONE;
+            return STATUS_OK;
+        }
+        if (older != STATUS_OK) {
+            struct error why = exists ? *error : later;
+            return fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew", why.text, old);
+        }
+    }
+    enum status status =
+        check_identity(stream, *source == CHECKPOINT_OLD ? old : file, identity, step, error);
+    if (status != STATUS_OK) {
+        stream_free(stream);
+    }
+    return status;
+}

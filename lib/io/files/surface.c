@@ -1,0 +1,216 @@
+#include "io/files/surface.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+#include "io/files/textfile.h"
+#include "base/vector.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+#include <strings.h>
+
+static const size_t size_limit = (size_t)1 << 31;
+enum { STL_HEADER = 84, STL_TRIANGLE = 50 };
+
+static uint32_t little_endian(const unsigned char *bytes)
+{
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+/* The bytes a binary STL file of that header must have; 0 when there is no header. */
+static size_t binary_stl_size(const struct textfile *file)
+{
+    if (file->size < STL_HEADER) {
+        return 0;
+    }
+    size_t count = little_endian((const unsigned char *)file->text + STL_HEADER - 4);
+    return STL_HEADER + count * STL_TRIANGLE;
+}
+
+static enum status read_binary_stl(const char *path, const struct textfile *file, struct table *table,
+                                   struct error *error)
+{
+    int64_t room = 0;
+    int64_t count = (int64_t)(file->size - STL_HEADER) / STL_TRIANGLE;
+    for (int64_t t = 0; t < count; t++) {
+        const unsigned char *at = (const unsigned char *)file->text + STL_HEADER + t * STL_TRIANGLE;
+        double row[9];
+        for (int i = 0; i < 9; i++) {
+            uint32_t bits = little_endian(at + 12 + 4 * i); /* behind the normal */
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            row[i] = (double)value;
+            if (!isfinite(value)) {
+                return fail(error, STATUS_INPUT, "%s: triangle %lld: coordinate that is not finite", path,
+                            (long long)t + 1);
+            }
+        }
+        RETURN_IF_ERROR(table_append(table, row, t + 1, &room, error));
+    }
+    return STATUS_OK;
+}
+
+/* The words of a text, with their lines. */
+struct words {
+    const char *path;
+    const char *at;
+    int64_t line;
+};
+
+/* Move to the next word; its length, 0 at the end. */
+static size_t next_word(struct words *words, const char **word)
+{
+    size_t blanks;
+    while ((blanks = strspn(words->at, " \t\n")) > 0) {
+        for (; blanks > 0; blanks--) {
+            words->line += *words->at++ == '\n';
+        }
+    }
+    *word = words->at;
+    words->at += strcspn(words->at, " \t\n");
+    return (size_t)(words->at - *word);
+}
+
+static enum status expect(struct words *words, const char *expected, struct error *error)
+{
+    const char *word;
+    size_t length = next_word(words, &word);
+    return length == strlen(expected) && strncmp(word, expected, length) == 0
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of '%s'", words->path,
+                      (long long)words->line, (int)(length < 40 ? length : 40), word, expected);
+}
+
+static enum status expect_number(struct words *words, double *value, struct error *error)
+{
+    const char *word;
+    size_t length = next_word(words, &word);
+    char copy[64] = "";
+    struct error why;
+    memcpy(copy, word, length < sizeof copy ? length : sizeof copy - 1);
+    return length < sizeof copy && parse_double(copy, "", -DBL_MAX, DBL_MAX, value, &why) == STATUS_OK
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "%s:%lld: '%s' is not a finite number", words->path,
+                      (long long)words->line, copy);
+}
+
+/* One facet, from `normal` to `endfacet`. */
+static enum status read_facet(struct words *words, double row[9], struct error *error)
+{
+    double normal[3];
+    RETURN_IF_ERROR(expect(words, "normal", error));
+    for (int i = 0; i < 3; i++) {
+        RETURN_IF_ERROR(expect_number(words, &normal[i], error));
+    }
+    RETURN_IF_ERROR(expect(words, "outer", error));
+    RETURN_IF_ERROR(expect(words, "loop", error));
+    for (int corner = 0; corner < 3; corner++) {
+        RETURN_IF_ERROR(expect(words, "vertex", error));
+        for (int i = 0; i < 3; i++) {
+            RETURN_IF_ERROR(expect_number(words, &row[3 * corner + i], error));
+        }
+    }
+    RETURN_IF_ERROR(expect(words, "endloop", error));
+    return expect(words, "endfacet", error);
+}
+
+/* solid NAME, facets, endsolid NAME; once. */
+static enum status read_ascii_stl(const char *path, const struct textfile *file, struct table *table,
+                                  struct error *error)
+{
+    struct words words = {.path = path, .at = file->text, .line = 1};
+    int64_t room = 0;
+    const char *word;
+    size_t length;
+    RETURN_IF_ERROR(expect(&words, "solid", error));
+    words.at += strcspn(words.at, "\n"); /* the rest of the line is a name */
+    while ((length = next_word(&words, &word)) == 5 && strncmp(word, "facet", 5) == 0) {
+        double row[9];
+        int64_t line = words.line;
+        RETURN_IF_ERROR(read_facet(&words, row, error));
+        RETURN_IF_ERROR(table_append(table, row, line, &room, error));
+    }
+    if (length != 8 || strncmp(word, "endsolid", 8) != 0) {
+        return fail(error, STATUS_INPUT, "%s:%lld: '%.*s' instead of 'facet' or 'endsolid': truncated?", path,
+                    (long long)words.line, (int)(length < 40 ? length : 40), word);
+    }
+    words.at += strcspn(words.at, "\n");
+    if (next_word(&words, &word) > 0) {
+        return fail(error, STATUS_INPUT, "%s:%lld: text behind endsolid: one solid is read", path,
+                    (long long)words.line);
+    }
+    return STATUS_OK;
+}
+
+static enum status read_stl(const char *path, struct table *table, struct error *error)
+{
+    FREED_BY(textfile_free) struct textfile file = {0};
+    *table = (struct table){.cols = 9};
+    RETURN_IF_ERROR(bytefile_read(path, size_limit, &file, error));
+    if (binary_stl_size(&file) == file.size) {
+        RETURN_IF_ERROR(read_binary_stl(path, &file, table, error));
+    } else if (strncmp(file.text, "solid", 5) == 0) {
+        RETURN_IF_ERROR(textfile_check(path, &file, error));
+        RETURN_IF_ERROR(read_ascii_stl(path, &file, table, error));
+    } else {
+        return fail(
+            error, STATUS_INPUT,
+            "%s: neither ASCII STL (first word 'solid') nor binary STL of the size in its header: truncated?",
+            path);
+    }
+    if (table->rows == 0) {
+        return fail(error, STATUS_INPUT, "%s: holds no triangle", path);
+    }
+    return table_end_block(table, error);
+}
+
+static enum status check_curves(const char *path, const struct table *table, struct error *error)
+{
+    for (int64_t b = 0; b < table->block_count; b++) {
+        int64_t begin = table->block_ptr[b];
+        int64_t end = table->block_ptr[b + 1];
+        if (end - begin < 2) {
+            return fail(error, STATUS_INPUT, "%s:%lld: curve of one point: a curve has at least two", path,
+                        (long long)table->line[begin]);
+        }
+        for (int64_t r = begin + 1; r < end; r++) {
+            const double *a = table->values + 2 * (r - 1);
+            if (!(hypot(a[2] - a[0], a[3] - a[1]) > 0)) {
+                return fail(error, STATUS_INPUT, "%s:%lld: repeats the point before: remove it", path,
+                            (long long)table->line[r]);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_triangles(const char *path, const struct table *table, struct error *error)
+{
+    for (int64_t r = 0; r < table->rows; r++) {
+        const double *a = table->values + 9 * r;
+        double u[3], v[3], normal[3];
+        vector_subtract(3, a + 3, a, u);
+        vector_subtract(3, a + 6, a, v);
+        vector_cross(u, v, normal);
+        double area = hypot(hypot(normal[0], normal[1]), normal[2]);
+        if (!(area > 0 && isfinite(area))) {
+            return fail(error, STATUS_INPUT, "%s:%lld: triangle without area: remove it", path,
+                        (long long)table->line[r]);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status surface_read(const char *path, int dim, struct table *table, struct error *error)
+{
+    size_t length = strlen(path);
+    if (dim == 2) {
+        RETURN_IF_ERROR(table_read(path, 2, 2, table, error));
+        return check_curves(path, table, error);
+    }
+    bool stl = length > 4 && strcasecmp(path + length - 4, ".stl") == 0;
+    RETURN_IF_ERROR(stl ? read_stl(path, table, error) : table_read(path, 9, 9, table, error));
+    return check_triangles(path, table, error);
+}

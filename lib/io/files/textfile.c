@@ -1,0 +1,101 @@
+#include "io/files/textfile.h"
+
+#include "base/memory.h"
+#include "io/files/descriptor.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* Looking before opening keeps devices untouched; a name changed in between can only make the read fail. */
+static enum status check_kind(const char *path, struct error *error)
+{
+    struct stat facts;
+    if (stat(path, &facts) != 0) {
+        return fail(error, STATUS_INPUT, "%s: %s", path, strerror(errno));
+    }
+    if (S_ISDIR(facts.st_mode)) {
+        return fail(error, STATUS_INPUT, "%s: is a folder: name a text file", path);
+    }
+    if (!S_ISREG(facts.st_mode) && !S_ISFIFO(facts.st_mode)) {
+        return fail(error, STATUS_INPUT, "%s: is a device or socket: name a text file", path);
+    }
+    return STATUS_OK;
+}
+
+static enum status read_all(const char *path, int descriptor, size_t most, struct textfile *file,
+                            struct error *error)
+{
+    size_t capacity = 0;
+    for (;;) {
+        size_t got;
+        if (file->size + 1 >= capacity) {
+            capacity = capacity == 0 ? 65536 : 2 * capacity;
+            RETURN_IF_ERROR(RESIZE_ARRAY(&file->text, (int64_t)capacity, error));
+        }
+        RETURN_IF_ERROR(fail_in(
+            error,
+            descriptor_read(descriptor, file->text + file->size, capacity - file->size - 1, &got, error),
+            "%s", path));
+        if (got == 0) {
+            file->text[file->size] = '\0';
+            return STATUS_OK;
+        }
+        file->size += got;
+        if (file->size > most) {
+            return fail(error, STATUS_INPUT, "%s: larger than %zu bytes", path, most);
+        }
+    }
+}
+
+enum status textfile_check(const char *path, const struct textfile *file, struct error *error)
+{
+    const unsigned char *bytes = (const unsigned char *)file->text;
+    if (memcmp(file->text, "\xef\xbb\xbf", file->size < 3 ? 1 : 3) == 0 || bytes[0] >= 0xfe) {
+        return fail(error, STATUS_INPUT, "%s:1: begins with a byte order mark: save as plain text", path);
+    }
+    long long line = 1;
+    for (size_t i = 0; i < file->size; i++) {
+        unsigned char c = bytes[i];
+        if (c == '\n') {
+            line++;
+        } else if (c == '\r') {
+            return fail(error, STATUS_INPUT, "%s:%lld: carriage return: save with Unix line ends", path,
+                        line);
+        } else if ((c < 0x20 && c != '\t') || c == 0x7f) {
+            return fail(error, STATUS_INPUT, "%s:%lld: control character 0x%02x", path, line, (unsigned)c);
+        }
+    }
+    if (file->text[file->size - 1] != '\n') {
+        return fail(error, STATUS_INPUT,
+                    "%s:%lld: last line without newline: truncated? end it with a newline", path, line);
+    }
+    return STATUS_OK;
+}
+
+enum status bytefile_read(const char *path, size_t most, struct textfile *file, struct error *error)
+{
+    *file = (struct textfile){0};
+    RETURN_IF_ERROR(check_kind(path, error));
+    FREED_BY(descriptor_close) int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    if (descriptor < 0) {
+        return fail(error, STATUS_SYSTEM, "%s: %s", path, strerror(errno));
+    }
+    RETURN_IF_ERROR(read_all(path, descriptor, most, file, error));
+    return file->size > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "%s: is empty", path);
+}
+
+enum status textfile_read(const char *path, size_t most, struct textfile *file, struct error *error)
+{
+    RETURN_IF_ERROR(bytefile_read(path, most, file, error));
+    return textfile_check(path, file, error);
+}
+
+void textfile_free(struct textfile *file)
+{
+    free(file->text);
+    *file = (struct textfile){0};
+}

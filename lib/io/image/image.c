@@ -1,0 +1,61 @@
+#include "io/image/image_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+static const struct nifti_type types[] = {
+    {IMAGE_UINT8, "uint8", 1, 1, 0, UINT8_MAX},
+    {IMAGE_INT16, "int16", 2, 1, INT16_MIN, INT16_MAX},
+    {IMAGE_INT32, "int32", 4, 1, INT32_MIN, INT32_MAX},
+    {IMAGE_FLOAT32, "float32", 4, 1, 0, 0},
+    {IMAGE_FLOAT64, "float64", 8, 1, 0, 0},
+    {IMAGE_RGB24, "RGB24", 1, 3, 0, UINT8_MAX},
+    {IMAGE_INT8, "int8", 1, 1, INT8_MIN, INT8_MAX},
+    {IMAGE_UINT16, "uint16", 2, 1, 0, UINT16_MAX},
+    {IMAGE_UINT32, "uint32", 4, 1, 0, UINT32_MAX},
+    {IMAGE_INT64, "int64", 8, 1, -9223372036854774784.0, 9223372036854774784.0},
+    {IMAGE_UINT64, "uint64", 8, 1, 0, 18446744073709549568.0},
+    {IMAGE_RGBA32, "RGBA32", 1, 4, 0, UINT8_MAX},
+};
+
+const struct nifti_type *nifti_type(int code)
+{
+    for (size_t t = 0; t < sizeof types / sizeof *types; t++) {
+        if (types[t].code == code) {
+            return &types[t];
+        }
+    }
+    return NULL;
+}
+
+enum status image_new(struct image *image, const size_t size[3], size_t components, struct error *error)
+{
+    size_t count = components;
+    *image = (struct image){.components = components,
+                            .datatype = IMAGE_FLOAT32,
+                            .slope = 1,
+                            .unit = 1e-3,
+                            .version = 1,
+                            .intent = components > 1 ? IMAGE_INTENT_VECTOR : 0};
+    for (int i = 0; i < 3; i++) {
+        image->size[i] = size[i];
+        image->to_world[i][i] = image->unit;
+        if (__builtin_mul_overflow(count, size[i], &count)) {
+            return fail_memory(error, "values of the image");
+        }
+    }
+    return count > INT64_MAX ? fail_memory(error, "values of the image")
+                             : NEW_ARRAY(&image->values, (int64_t)count, error);
+}
+
+void image_free(struct image *image)
+{
+    free(image->values);
+    *image = (struct image){0};
+}
+
+size_t image_voxels(const struct image *image)
+{
+    return image->size[0] * image->size[1] * image->size[2];
+}

@@ -1,0 +1,212 @@
+/* The 348 bytes of a NIfTI-1 header and the 540 of NIfTI-2: where each field stands. */
+#include "io/image/image_private.h"
+
+#include <string.h>
+
+enum kind { I1, I2, I4, I8, F4, F8 };
+
+/* Where a field stands in each version. */
+struct place {
+    int offset;
+    enum kind kind;
+};
+struct field {
+    struct place at[2];
+};
+
+static const struct field dim_field = {{{40, I2}, {16, I8}}}, intent_field = {{{68, I2}, {504, I4}}},
+                          datatype_field = {{{70, I2}, {12, I2}}}, bitpix_field = {{{72, I2}, {14, I2}}},
+                          pixdim_field = {{{76, F4}, {104, F8}}}, offset_field = {{{108, F4}, {168, I8}}},
+                          slope_field = {{{112, F4}, {176, F8}}}, inter_field = {{{116, F4}, {184, F8}}},
+                          units_field = {{{123, I1}, {500, I4}}}, qform_field = {{{252, I2}, {344, I4}}},
+                          sform_field = {{{254, I2}, {348, I4}}}, quatern_field = {{{256, F4}, {352, F8}}},
+                          qoffset_field = {{{268, F4}, {376, F8}}}, srow_field = {{{280, F4}, {400, F8}}};
+static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {328, 508},
+                 magic_offset[2] = {344, 4};
+static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
+
+static int bytes_of(enum kind kind)
+{
+    static const int bytes[] = {1, 2, 4, 8, 4, 8};
+    return bytes[kind];
+}
+
+static double get(const unsigned char *bytes, const struct nifti *header, struct field field, int index)
+{
+    struct place at = field.at[header->version - 1];
+    int size = bytes_of(at.kind);
+    const unsigned char *from = bytes + at.offset + index * size;
+    uint64_t bits = 0;
+    for (int b = 0; b < size; b++) {
+        bits |= (uint64_t)from[header->swapped ? size - 1 - b : b] << (8 * b);
+    }
+    uint32_t low = (uint32_t)bits;
+    float single;
+    double number;
+    switch (at.kind) {
+    case I1:
+        return (double)bits;
+    case I2:
+        return (int16_t)bits;
+    case I4:
+        return (int32_t)bits;
+    case I8:
+        return (double)(int64_t)bits;
+    case F4:
+        memcpy(&single, &low, sizeof single);
+        return (double)single;
+    case F8:
+        memcpy(&number, &bits, sizeof number);
+        return number;
+    }
+    return 0;
+}
+
+static void put(unsigned char *bytes, int version, struct field field, int index, double value)
+{
+    struct place at = field.at[version - 1];
+    int size = bytes_of(at.kind);
+    uint64_t bits = 0;
+    if (at.kind == F4) {
+        float single = (float)value;
+        memcpy(&bits, &single, sizeof single);
+    } else if (at.kind == F8) {
+        memcpy(&bits, &value, sizeof value);
+    } else {
+        bits = (uint64_t)(int64_t)value;
+    }
+    for (int b = 0; b < size; b++) {
+        bytes[at.offset + index * size + b] = (unsigned char)(bits >> (8 * b));
+    }
+}
+
+int nifti_version(const unsigned char *bytes, bool *swapped)
+{
+    static const int sizes[2] = {NIFTI1_HEADER, NIFTI2_HEADER};
+    for (int version = 1; version <= 2; version++) {
+        int low = sizes[version - 1] & 255, high = sizes[version - 1] >> 8;
+        if (bytes[0] == low && bytes[1] == high && bytes[2] == 0 && bytes[3] == 0) {
+            *swapped = false;
+            return version;
+        }
+        if (bytes[0] == 0 && bytes[1] == 0 && bytes[2] == high && bytes[3] == low) {
+            *swapped = true;
+            return version;
+        }
+    }
+    return 0;
+}
+
+/* Printable characters of a field of text, '?' for others. */
+static void copy_text(char *text, const unsigned char *bytes, size_t size)
+{
+    size_t length = 0;
+    while (length < size && bytes[length] != '\0') {
+        length++;
+    }
+    memcpy(text, bytes, length);
+    text[length] = '\0';
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] < ' ' || text[i] > '~') {
+            text[i] = '?';
+        }
+    }
+}
+
+void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
+                  struct image *image)
+{
+    *header = (struct nifti){.version = version, .swapped = swapped};
+    for (int i = 0; i < 8; i++) {
+        header->dim[i] = get(bytes, header, dim_field, i);
+        header->pixdim[i] = get(bytes, header, pixdim_field, i);
+    }
+    header->datatype = (int)get(bytes, header, datatype_field, 0);
+    header->bits = (int)get(bytes, header, bitpix_field, 0);
+    header->intent = (int)get(bytes, header, intent_field, 0);
+    header->offset = get(bytes, header, offset_field, 0);
+    header->slope = get(bytes, header, slope_field, 0);
+    header->inter = get(bytes, header, inter_field, 0);
+    header->units = (int)get(bytes, header, units_field, 0);
+    header->qform = (int)get(bytes, header, qform_field, 0);
+    header->sform = (int)get(bytes, header, sform_field, 0);
+    for (int r = 0; r < 3; r++) {
+        header->quatern[r] = get(bytes, header, quatern_field, r);
+        header->qoffset[r] = get(bytes, header, qoffset_field, r);
+        for (int c = 0; c < 4; c++) {
+            header->srow[r][c] = get(bytes, header, srow_field, 4 * r + c);
+        }
+    }
+    image->version = version;
+    image->intent = header->intent;
+    copy_text(image->description, bytes + description_offset[version - 1], 80);
+    copy_text(image->intent_name, bytes + intent_name_offset[version - 1], 16);
+}
+
+/* dim[0] .. dim[7]. */
+static void sizes_of(const struct image *image, const struct nifti_type *type, double dim[8])
+{
+    bool vector = image->components != (size_t)type->components;
+    for (int i = 0; i < 8; i++) {
+        dim[i] = 1;
+    }
+    dim[0] = vector ? 5 : image->size[2] > 1 ? 3 : 2;
+    for (int i = 0; i < 3; i++) {
+        dim[1 + i] = (double)image->size[i];
+    }
+    dim[5] = vector ? (double)image->components : 1;
+}
+
+/* What fits the first version: sizes of 16 bits. */
+static int version_of(const struct image *image)
+{
+    bool fits = image->components <= INT16_MAX;
+    for (int i = 0; i < 3; i++) {
+        fits = fits && image->size[i] <= INT16_MAX;
+    }
+    return fits && image->version != 2 ? 1 : 2;
+}
+
+size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4])
+{
+    const struct nifti_type *type = nifti_type(image->datatype);
+    int version = version_of(image), size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
+    double dim[8], matrix[3][4], quatern[3], pixdim[4];
+    memset(bytes, 0, NIFTI2_HEADER + 4);
+    bytes[0] = (unsigned char)(size & 255);
+    bytes[1] = (unsigned char)(size >> 8);
+    sizes_of(image, type, dim);
+    for (int i = 0; i < 8; i++) {
+        put(bytes, version, dim_field, i, dim[i]);
+        put(bytes, version, pixdim_field, i, 1);
+    }
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 4; c++) {
+            matrix[r][c] = image->to_world[r][c] / image->unit;
+            put(bytes, version, srow_field, 4 * r + c, matrix[r][c]);
+        }
+    }
+    bool rotation = nifti_quaternion(matrix, quatern, pixdim);
+    for (int i = 0; i < 4; i++) {
+        put(bytes, version, pixdim_field, i, pixdim[i]);
+    }
+    /* Where the file tells no space, none is made up; what a quaternion cannot tell stands in the sform
+     * alone. */
+    put(bytes, version, sform_field, 0, image->space);
+    put(bytes, version, qform_field, 0, rotation ? image->space : 0);
+    for (int r = 0; r < 3 && rotation; r++) {
+        put(bytes, version, quatern_field, r, quatern[r]);
+        put(bytes, version, qoffset_field, r, matrix[r][3]);
+    }
+    put(bytes, version, datatype_field, 0, type->code);
+    put(bytes, version, bitpix_field, 0, 8 * type->bytes * type->components);
+    put(bytes, version, intent_field, 0, image->intent);
+    put(bytes, version, slope_field, 0, image->slope);
+    put(bytes, version, inter_field, 0, image->inter);
+    put(bytes, version, units_field, 0, image->unit > 0.5 ? 1 : image->unit > 0.5e-3 ? 2 : 3);
+    put(bytes, version, offset_field, 0, size + 4);
+    memcpy(bytes + description_offset[version - 1], image->description, strlen(image->description));
+    memcpy(bytes + intent_name_offset[version - 1], image->intent_name, strlen(image->intent_name));
+    memcpy(bytes + magic_offset[version - 1], version == 1 ? magic1 : magic2, version == 1 ? 4 : 8);
+    return (size_t)size + 4;
+}

@@ -1,0 +1,153 @@
+#include "io/image/label_table.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+#include "io/files/textfile.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const size_t size_limit = (size_t)1 << 24;
+static const int64_t label_limit = INT32_MAX;
+enum { NAMES_LIMIT = 1000 };
+
+enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
+                             struct error *error)
+{
+    for (int32_t n = 0; n < table->name_count; n++) {
+        if (strcmp(table->name[n].text, text) == 0) {
+            *name = n;
+            return table->name[n].kept == kept
+                       ? STATUS_OK
+                       : fail(error, STATUS_INPUT, "'%.60s' is kept in one row and left out in another",
+                              text);
+        }
+    }
+    if (table->name_count == NAMES_LIMIT) {
+        return fail(error, STATUS_INPUT, "more than %d names", NAMES_LIMIT);
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->name, table->name_count + 1, error));
+    char *copy = strdup(text);
+    if (copy == NULL) {
+        return fail_memory(error, "names of labels");
+    }
+    *name = table->name_count++;
+    table->name[*name] = (struct label_name){copy, kept};
+    return STATUS_OK;
+}
+
+enum status label_table_add(struct label_table *table, const struct label_range *range, struct error *error)
+{
+    for (int32_t r = 0; r < table->range_count; r++) {
+        if (range->first <= table->range[r].last && table->range[r].first <= range->last) {
+            return fail(
+                error, STATUS_INPUT, "label %lld stands in another row already",
+                (long long)(range->first > table->range[r].first ? range->first : table->range[r].first));
+        }
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->range, table->range_count + 1, error));
+    table->range[table->range_count++] = *range;
+    return STATUS_OK;
+}
+
+bool label_table_find(const struct label_table *table, int64_t label, int32_t *name)
+{
+    for (int32_t r = 0; r < table->range_count; r++) {
+        if (table->range[r].first <= label && label <= table->range[r].last) {
+            *name = table->range[r].name;
+            return true;
+        }
+    }
+    *name = label == 0 ? -1 : table->name_of_others;
+    return label == 0 || table->others;
+}
+
+static enum status check_name(const char *name, struct error *error)
+{
+    if (strcmp(name, "outside") == 0) {
+        return fail(error, STATUS_INPUT, "'outside' is what no label names: write - to leave labels out");
+    }
+    return strpbrk(name, ",\"=:|") == NULL
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "'%.60s': no commas, quotes, colons, = or | in names", name);
+}
+
+/* "1,3-5" or "*" */
+static enum status add_labels(struct label_table *table, char *labels, int32_t name, struct error *error)
+{
+    if (strcmp(labels, "*") == 0) {
+        if (table->others) {
+            return fail(error, STATUS_INPUT, "a second row for all other labels");
+        }
+        table->others = true;
+        table->name_of_others = name;
+        return STATUS_OK;
+    }
+    char *rest = labels;
+    while (rest != NULL) {
+        char *item = strsep(&rest, ",");
+        char *dash = strchr(item, '-');
+        struct label_range range = {.name = name};
+        if (dash != NULL) {
+            *dash = '\0';
+        }
+        RETURN_IF_ERROR(parse_integer(item, "label", 0, label_limit, &range.first, error));
+        range.last = range.first;
+        if (dash != NULL) {
+            RETURN_IF_ERROR(parse_integer(dash + 1, "label", range.first, label_limit, &range.last, error));
+        }
+        RETURN_IF_ERROR(label_table_add(table, &range, error));
+    }
+    return STATUS_OK;
+}
+
+/* One line, which is written into. */
+static enum status add_row(struct label_table *table, char *line, struct error *error)
+{
+    char *word[4] = {NULL};
+    int count = 0;
+    for (char *rest = line; rest != NULL && count < 4;) {
+        char *next = strsep(&rest, " \t");
+        if (*next == '#') {
+            break;
+        }
+        if (*next != '\0') {
+            word[count++] = next;
+        }
+    }
+    if (count == 0) {
+        return STATUS_OK;
+    }
+    if (count == 1 || count > 3 || (count == 3 && strcmp(word[2], "-") != 0)) {
+        return fail(error, STATUS_INPUT, "a row is LABELS NAME, or LABELS NAME - to leave the cells out");
+    }
+    int32_t name = -1;
+    RETURN_IF_ERROR(check_name(word[1], error));
+    if (strcmp(word[1], "-") != 0) {
+        RETURN_IF_ERROR(label_table_name(table, word[1], count == 2, &name, error));
+    }
+    return add_labels(table, word[0], name, error);
+}
+
+enum status label_table_read(const char *path, struct label_table *table, struct error *error)
+{
+    FREED_BY(textfile_free) struct textfile file = {0};
+    int64_t number = 1;
+    *table = (struct label_table){0};
+    RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
+    for (char *rest = file.text; *rest != '\0'; number++) {
+        char *line = strsep(&rest, "\n");
+        RETURN_IF_ERROR(fail_in(error, add_row(table, line, error), "%s:%lld", path, (long long)number));
+    }
+    return table->range_count > 0 || table->others ? STATUS_OK
+                                                   : fail(error, STATUS_INPUT, "%s: names no label", path);
+}
+
+void label_table_free(struct label_table *table)
+{
+    for (int32_t n = 0; n < table->name_count; n++) {
+        free(table->name[n].text);
+    }
+    FREE_ALL(table->name, table->range);
+    *table = (struct label_table){0};
+}

@@ -1,0 +1,116 @@
+/* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
+ * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
+ * of it. */
+#pragma once
+
+#include "base/status.h"
+#include "io/stream/stream.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A physical group. */
+struct msh_group {
+    int dim;    /* 0 points, 1 curves, 2 surfaces, 3 volumes */
+    int tag;    /* as in the file; not negative */
+    char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
+                   dimension */
+    int64_t element_count; /* 0 for a group that is named and has nothing in it */
+    char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
+};
+
+/* A mesh file as it is: elements of all dimensions, in the order of the file. */
+struct msh {
+    int64_t node_count;
+    double *x;         /* node_count x 3, in the unit of the file; finite */
+    int64_t *node_tag; /* node_count, distinct */
+    int64_t element_count;
+    int64_t *element_tag; /* element_count, distinct */
+    int8_t *element_type; /* element_count: gmsh's number of the type, one that msh_type knows */
+    int64_t *node_ptr;    /* element_count + 1 */
+    int32_t *node_idx;    /* the nodes of each element, in gmsh's order: indices into x and node_tag */
+    int64_t *member_ptr;  /* element_count + 1 */
+    int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
+    int32_t group_count;
+    struct msh_group *groups; /* ascending in (dim, tag) */
+    int64_t partitions;       /* number of partitions of the mesh (MSH 4 only); 0: not partitioned */
+    int64_t partitions_here;  /* how many of them have elements of the highest dimension in this file */
+};
+
+/* A type of element. */
+struct msh_type {
+    const char *name; /* "triangle", or NULL: not an element of first or second order */
+    int dim;
+    int node_count;
+    int linear; /* the number of the first-order type on its corners, which come first; its own: first order
+                 */
+};
+
+/* The type that gmsh numbers so; a type with name NULL for numbers that are no element of first or second
+ * order. */
+struct msh_type msh_type(int64_t number);
+
+/* Read a mesh from its bytes. STATUS_INPUT for whatever is not a whole, sound mesh file, with a message that
+ * names section and record; for a file of another program the message states the command that converts it.
+ * STATUS_SYSTEM where memory is short. Time and memory are in proportion to the size, whatever the file says
+ * of its own. On failure *msh is empty. */
+MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
+
+/* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
+ * Errors as for msh_parse; STATUS_SYSTEM also for read failures. */
+MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
+void msh_free(struct msh *msh);
+
+/* Names of regions, facet sets or node sets. */
+struct mesh_names {
+    int32_t count;
+    char **name; /* count, distinct, without blanks and commas */
+};
+
+/* Append a name, a copy. */
+MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
+
+/* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */
+struct mesh {
+    int dim; /* 2 or 3 */
+    int64_t node_count;
+    double *x; /* node_count x dim, m; every node belongs to a cell */
+    int64_t cell_count;
+    int32_t *cells;       /* cell_count x (dim + 1), positively oriented */
+    int32_t *cell_region; /* cell_count: index into regions */
+    int64_t facet_count;
+    int32_t *facets;    /* facet_count x dim, each the face of exactly one cell, oriented outward */
+    int32_t *facet_set; /* facet_count: index into facet_sets; ascending */
+    int64_t *set_ptr;   /* node_sets.count + 1 */
+    int32_t *set_idx;   /* nodes, ascending within each set */
+    struct mesh_names regions, facet_sets, node_sets;
+    struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
+};
+
+/* The parts of a file that a mesh is made of. */
+struct mesh_options {
+    double unit;         /* of the file's lengths, m */
+    const char *regions; /* comma-separated list of regions to keep, or NULL: all */
+    bool midside; /* nodes amid the edges of second-order elements stay, and the elements are split there;
+                     else they are dropped */
+};
+
+/* Make the mesh of `msh`.
+ * The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or
+ * quadrangles in a plane z = const. Quadrangles and the cells of more than four nodes are split into
+ * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
+ * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). Nodes keep their
+ * order; those that belong to no kept cell are dropped. A cell in two groups is of the one with the lowest
+ * tag, a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other,
+ * else 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident
+ * nodes of one body, a name that is no name of a region, two node sets of one name, elements that cannot be
+ * split at their midside nodes (those without a node in the middle of each quadrangular face, and prisms and
+ * pyramids). On failure *mesh is empty. */
+MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
+                                  const struct mesh_options *options, struct error *error);
+void mesh_free(struct mesh *mesh);
+
+/* Put the mesh's sections into a stream: nodes.x, cells and cells.region if there are cells, facets and
+ * facets.set if there are facets, sets.ptr and sets.idx if there are sets. The stream borrows the arrays of
+ * *mesh. */
+MUST_CHECK enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error);

@@ -1,0 +1,135 @@
+#include "io/mesh/msh_build.h"
+
+#include "base/memory.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error)
+{
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
+    names->name[names->count] = strdup(name);
+    if (names->name[names->count] == NULL) {
+        return fail_memory(error, "names");
+    }
+    names->count++;
+    return STATUS_OK;
+}
+
+enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
+{
+    char note[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(note, sizeof note, format, arguments);
+    va_end(arguments);
+    return mesh_add_name(&draft->mesh->notes, note, draft->error);
+}
+
+int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length)
+{
+    for (int32_t i = 0; i < names->count; i++) {
+        if (strncmp(names->name[i], name, length) == 0 && names->name[i][length] == '\0') {
+            return i;
+        }
+    }
+    return -1;
+}
+
+void mesh_names_free(struct mesh_names *names)
+{
+    for (int32_t i = 0; i < names->count; i++) {
+        free(names->name[i]);
+    }
+    free(names->name);
+    *names = (struct mesh_names){0};
+}
+
+enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
+                       struct error *error)
+{
+    enum status status = STATUS_OK;
+    struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
+    *mesh = (struct mesh){0};
+    TRY(mesh_find_roles(&draft));
+    TRY(mesh_find_dim(&draft));
+    TRY(mesh_pick_regions(&draft));
+    TRY(mesh_build_nodes(&draft));
+    TRY(mesh_build_cells(&draft));
+    TRY(mesh_check_coincident(&draft));
+    TRY(mesh_build_facets(&draft));
+done:
+    FREE_ALL(draft.role, draft.region_of, draft.node_of, draft.origin);
+    if (status != STATUS_OK) {
+        mesh_free(mesh);
+    }
+    return status;
+}
+
+void mesh_free(struct mesh *mesh)
+{
+    FREE_ALL(mesh->x, mesh->cells, mesh->cell_region, mesh->facets, mesh->facet_set, mesh->set_ptr,
+             mesh->set_idx);
+    mesh_names_free(&mesh->regions);
+    mesh_names_free(&mesh->facet_sets);
+    mesh_names_free(&mesh->node_sets);
+    mesh_names_free(&mesh->notes);
+    *mesh = (struct mesh){0};
+}
+
+/* ---- into a stream ---- */
+
+/* "names=a,b,c" (allocated), or NULL. */
+static char *names_attribute(const struct mesh_names *names)
+{
+    size_t size = sizeof "names=";
+    for (int32_t i = 0; i < names->count; i++) {
+        size += strlen(names->name[i]) + 1;
+    }
+    char *text = malloc(size);
+    char *at = text != NULL ? stpcpy(text, "names=") : NULL;
+    for (int32_t i = 0; i < names->count && text != NULL; i++) {
+        at = stpcpy(stpcpy(at, i > 0 ? "," : ""), names->name[i]);
+    }
+    return text;
+}
+
+/* A section whose header lists names. */
+static enum status put_named(struct stream *stream, const char *section, enum element_type type, int64_t rows,
+                             const struct mesh_names *names, void *data, struct error *error)
+{
+    SCRATCH char *attributes = names_attribute(names);
+    if (attributes == NULL) {
+        return fail_memory(error, "names");
+    }
+    return stream_put(stream, section, type, rows, 1, attributes, data, false, error);
+}
+
+enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
+{
+    int dim = mesh->dim;
+    int32_t sets = mesh->node_sets.count;
+    RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
+                               dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
+    if (mesh->cell_count > 0) {
+        RETURN_IF_ERROR(
+            stream_put(stream, "cells", TYPE_I4, mesh->cell_count, dim + 1, "", mesh->cells, false, error));
+        RETURN_IF_ERROR(put_named(stream, "cells.region", TYPE_I4, mesh->cell_count, &mesh->regions,
+                                  mesh->cell_region, error));
+    }
+    if (mesh->facet_count > 0) {
+        RETURN_IF_ERROR(
+            stream_put(stream, "facets", TYPE_I4, mesh->facet_count, dim, "", mesh->facets, false, error));
+        RETURN_IF_ERROR(put_named(stream, "facets.set", TYPE_I4, mesh->facet_count, &mesh->facet_sets,
+                                  mesh->facet_set, error));
+    }
+    if (sets > 0) {
+        RETURN_IF_ERROR(
+            put_named(stream, "sets.ptr", TYPE_I8, sets + 1, &mesh->node_sets, mesh->set_ptr, error));
+        RETURN_IF_ERROR(
+            stream_put(stream, "sets.idx", TYPE_I4, mesh->set_ptr[sets], 1, "", mesh->set_idx, false, error));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,70 @@
+#include "base/box.h"
+#include "base/lists.h"
+#include "base/memory.h"
+#include "base/sets.h"
+#include "io/mesh/msh_build.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Nodes closer than this part of the mesh's extent are taken for one. */
+#define COINCIDENT 1e-12
+
+static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
+{
+    int64_t tags[2] = {0, 0};
+    for (int64_t n = 0; n < draft->msh->node_count; n++) {
+        if (draft->node_of[n] == a || draft->node_of[n] == b) {
+            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->node_tag[n];
+        }
+    }
+    return fail(draft->error, STATUS_INPUT,
+                "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh)",
+                (long long)tags[0], (long long)tags[1]);
+}
+
+/* Nodes at one place fall together in any projection: sort them along a direction that no lattice is aligned
+ * with, and compare those that are near in it. */
+enum status mesh_check_coincident(struct mesh_draft *draft)
+{
+    static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
+    const struct mesh *mesh = draft->mesh;
+    struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
+    double tolerance = COINCIDENT * box_side(&box);
+    SCRATCH struct placed *order = NULL;
+    SCRATCH int32_t *body = NULL;
+    int64_t touching = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&body, mesh->node_count, draft->error));
+    set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
+    RETURN_IF_ERROR(NEW_ARRAY(&order, mesh->node_count, draft->error));
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        order[n].item = n;
+        for (int k = 0; k < mesh->dim; k++) {
+            order[n].place += direction[k] * (mesh->x[n * mesh->dim + k] - box.low[k]);
+        }
+    }
+    qsort(order, (size_t)mesh->node_count, sizeof *order, compare_placed);
+    for (int64_t i = 0; i < mesh->node_count; i++) {
+        for (int64_t j = i + 1; j < mesh->node_count && order[j].place - order[i].place <= 2 * tolerance;
+             j++) {
+            int32_t a = (int32_t)order[i].item, b = (int32_t)order[j].item;
+            double farthest = 0;
+            for (int k = 0; k < mesh->dim; k++) {
+                farthest = fmax(farthest, fabs(mesh->x[a * mesh->dim + k] - mesh->x[b * mesh->dim + k]));
+            }
+            if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
+                touching++;
+            } else if (farthest <= tolerance) {
+                RETURN_IF_ERROR(fail_coincident(draft, a, b));
+            }
+        }
+    }
+    if (touching > 0) {
+        RETURN_IF_ERROR(mesh_add_note(
+            draft,
+            "nodes at the same place, of different bodies: %lld pairs: the bodies are not joined "
+            "there (Coherence Mesh in gmsh joins them)",
+            (long long)touching));
+    }
+    return STATUS_OK;
+}

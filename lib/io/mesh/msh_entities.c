@@ -1,0 +1,192 @@
+/* Reading $PhysicalNames, $Entities and $PartitionedEntities: names of physical groups, and the groups that
+ * each entity belongs to. */
+#include "base/lists.h"
+#include "io/mesh/msh_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define LONGEST_NAME 127
+
+/* Of an entity. */
+#define MOST_GROUPS 64
+
+/* ---- $PhysicalNames ---- */
+
+static void read_name(struct msh_reader *r, struct msh_name *name)
+{
+    int64_t dim = msh_int(r, "dimension", 0, 3);
+    int64_t tag = msh_int(r, "physical tag", 1, MSH_LARGEST_TAG);
+    msh_skip_space(r);
+    if (r->at == r->end || *r->at != '"') {
+        msh_fail(r, "no name in quotation marks");
+        return;
+    }
+    const char *text = r->at + 1;
+    int length = 0; /* a NUL ends it, too */
+    while (text + length < r->end && strchr("\"\n", text[length]) == NULL && length <= LONGEST_NAME) {
+        length++;
+    }
+    if (text + length == r->end || text[length] != '"' || length == 0) {
+        msh_fail(r, "the name is empty, unfinished or longer than %d bytes", LONGEST_NAME);
+        return;
+    }
+    *name = (struct msh_name){msh_key(dim, tag), text, length};
+    r->at = text + length + 1;
+    msh_skip_line(r);
+}
+
+/* The section is text in binary files, too. */
+void msh_read_names(struct msh_reader *r)
+{
+    bool binary = r->binary;
+    r->binary = false;
+    r->kind = "name";
+    r->name_count = msh_count(r, "number of names", 6, 6);
+    MSH_NEW(r, &r->names, r->name_count);
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
+        r->record = i + 1;
+        read_name(r, &r->names[i]);
+    }
+    r->binary = binary;
+}
+
+/* ---- $Entities, $PartitionedEntities ---- */
+
+const char *msh_entity_kind(int dim)
+{
+    static const char *const kinds[] = {"point", "curve", "surface", "volume"};
+    return kinds[dim];
+}
+
+int64_t msh_read_entity_tag(struct msh_reader *r, int64_t *dim)
+{
+    int64_t tag = 0;
+    if (r->version == 40) {
+        tag = msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+    *dim = msh_int(r, "dimension", 0, 3);
+    if (r->version == 41) {
+        tag = msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+    return tag;
+}
+
+/* Skip the tags of the entities that bound an entity, which follow its box. */
+static void skip_tags(struct msh_reader *r, const char *what)
+{
+    int64_t count = msh_count(r, what, 2, 4);
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        (void)msh_int(r, what, -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+}
+
+/* Read the partitions of an entity. Those of entities of the mesh's highest dimension are kept. */
+static void read_partitions_of(struct msh_reader *r, int dim, bool is_part)
+{
+    int64_t count = msh_count(r, "partitions", 2, 4);
+    if (is_part && dim > r->partition_dim) {
+        r->partition_dim = dim;
+        r->partition_count = 0;
+    }
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        int64_t tag = msh_int(r, "partitions", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        if (!is_part) {
+            continue;
+        }
+        MSH_GROW(r, &r->partitions, r->partition_count + 1, &r->partition_room);
+        if (r->status == STATUS_OK) {
+            r->partitions[r->partition_count++] = tag;
+        }
+    }
+}
+
+/* Read the physical groups of an entity. A tag is negative where the group reverses the orientation. */
+static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *entity)
+{
+    int64_t count = msh_count(r, "physical groups", 2, 4);
+    if (count > MOST_GROUPS) {
+        msh_fail(r, "%lld physical groups are more than %d", (long long)count, MOST_GROUPS);
+    }
+    entity->first = r->physical_count;
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        int64_t tag = msh_int(r, "physical groups", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        MSH_GROW(r, &r->physicals, r->physical_count + 1, &r->physical_room);
+        if (r->status == STATUS_OK) {
+            r->physicals[r->physical_count++] = msh_key(dim, tag < 0 ? -tag : tag);
+        }
+    }
+    entity->count = r->physical_count - entity->first;
+}
+
+/* Read an entity. In a partitioned mesh the surfaces between the partitions of a volume are entities that
+ * name the volume and its physical group. They belong to no group here. */
+static void read_entity(struct msh_reader *r, int dim, bool partitioned, struct msh_entity *entity)
+{
+    bool is_part = true;
+    *entity = (struct msh_entity){.key = msh_key(dim, msh_int(r, "tag", -MSH_LARGEST_TAG, MSH_LARGEST_TAG))};
+    if (partitioned) {
+        is_part = msh_int(r, "dimension of the whole", -1, 3) == dim;
+        (void)msh_int(r, "tag of the whole", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        read_partitions_of(r, dim, is_part);
+    }
+    for (int k = 0; k < (dim == 0 && r->version == 41 ? 3 : 6); k++) {
+        (void)msh_real(r, "box");
+    }
+    read_physicals(r, dim, entity);
+    if (!is_part) {
+        r->physical_count = entity->first;
+        entity->count = 0;
+    }
+    if (dim > 0) {
+        skip_tags(r, "boundary");
+    }
+}
+
+static void read_entities(struct msh_reader *r, bool partitioned)
+{
+    int64_t counts[4];
+    int64_t total = 0;
+    for (int dim = 0; dim < 4; dim++) {
+        counts[dim] = msh_count(r, "number of entities", 10, 36);
+        total += counts[dim];
+    }
+    if (total > (r->end - r->at) / 10) {
+        msh_fail(r, "%lld entities cannot be in what is left of the file", (long long)total);
+    }
+    MSH_GROW(r, &r->entities, r->entity_count + total, &r->entity_room);
+    for (int dim = 0; dim < 4; dim++) {
+        r->kind = msh_entity_kind(dim);
+        for (int64_t i = 0; r->status == STATUS_OK && i < counts[dim]; i++) {
+            r->record = i + 1;
+            read_entity(r, dim, partitioned, &r->entities[r->entity_count++]);
+        }
+    }
+}
+
+void msh_read_entities(struct msh_reader *r)
+{
+    if (r->version < 40) {
+        msh_fail(r, "has no place in MSH 2");
+    }
+    read_entities(r, false);
+}
+
+void msh_read_partitions(struct msh_reader *r)
+{
+    if (r->version < 40 || !r->has[MSH_ENTITIES]) {
+        msh_fail(r, "stands in MSH 4 only, behind $Entities");
+    }
+    r->msh->partitions = msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
+    int64_t ghosts = msh_count(r, "number of ghosts", 4, 8);
+    for (int64_t i = 0; r->status == STATUS_OK && i < 2 * ghosts; i++) {
+        (void)msh_int(r, "ghost", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    }
+    read_entities(r, true);
+    if (r->status == STATUS_OK && r->partition_count > 0) {
+        qsort(r->partitions, (size_t)r->partition_count, sizeof *r->partitions, compare_int64);
+        for (int64_t i = 0; i < r->partition_count; i++) {
+            r->msh->partitions_here += i == 0 || r->partitions[i] != r->partitions[i - 1];
+        }
+    }
+}

@@ -1,0 +1,161 @@
+#include "base/lists.h"
+#include "base/memory.h"
+#include "io/mesh/msh_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- finding nodes and elements by their tags ---- */
+
+/* Tags that are spread over at most this multiple of their number get a table. */
+enum { LARGEST_SPREAD = 4 };
+
+static void fail_repeated(struct msh_reader *r, int64_t tag)
+{
+    r->record = 0;
+    msh_fail(r, "%s tag %lld stands twice", r->kind, (long long)tag);
+}
+
+void msh_index_make(struct msh_reader *r, struct msh_index *index, int64_t count, const int64_t tags[])
+{
+    int64_t last = 0;
+    *index = (struct msh_index){.count = count};
+    for (int64_t i = 0; i < count; i++) {
+        index->first = i == 0 || tags[i] < index->first ? tags[i] : index->first;
+        last = i == 0 || tags[i] > last ? tags[i] : last;
+    }
+    index->span = count > 0 ? last - index->first + 1 : 0;
+    if (index->span <= LARGEST_SPREAD * count) {
+        MSH_NEW(r, &index->place, index->span);
+        for (int64_t i = 0; r->status == STATUS_OK && i < index->span; i++) {
+            index->place[i] = -1;
+        }
+        for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+            if (index->place[tags[i] - index->first] >= 0) {
+                fail_repeated(r, tags[i]);
+            }
+            index->place[tags[i] - index->first] = (int32_t)i;
+        }
+        return;
+    }
+    MSH_NEW(r, &index->sorted, count);
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    for (int64_t i = 0; i < count; i++) {
+        index->sorted[i] = (struct msh_place){tags[i], i};
+    }
+    qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
+    for (int64_t i = 1; i < count; i++) {
+        if (index->sorted[i].tag == index->sorted[i - 1].tag) {
+            fail_repeated(r, index->sorted[i].tag);
+        }
+    }
+}
+
+int64_t msh_index_find(const struct msh_index *index, int64_t tag)
+{
+    if (tag < index->first || tag > index->first + (index->span - 1)) {
+        return -1;
+    }
+    if (index->place != NULL) {
+        return index->place[tag - index->first];
+    }
+    struct msh_place key = {.tag = tag};
+    const struct msh_place *found =
+        bsearch(&key, index->sorted, (size_t)index->count, sizeof key, compare_int64);
+    return found != NULL ? found->place : -1;
+}
+
+void msh_index_free(struct msh_index *index)
+{
+    FREE_ALL(index->place, index->sorted);
+    *index = (struct msh_index){0};
+}
+
+/* ---- $Nodes ---- */
+
+static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
+{
+    r->record = node + 1;
+    for (int k = 0; k < 3; k++) {
+        double x = msh_real(r, "coordinate");
+        if (!isfinite(x)) {
+            msh_fail(r, "coordinate %d is not finite", k + 1);
+        }
+        r->msh->x[3 * node + k] = x;
+    }
+    for (int64_t k = 0; k < parameters; k++) {
+        (void)msh_real(r, "parameter");
+    }
+}
+
+/* A row of nodes: all of a file of MSH 1 or 2, those on one entity in MSH 4. */
+struct block {
+    int64_t first, count;
+    int64_t parameters;  /* of each node, its place on the entity: not used */
+    int64_t least, most; /* bounds of the tags */
+};
+
+/* In MSH 4.1 all tags stand before all points, else each before its point. */
+static void read_block(struct msh_reader *r, const struct block *block)
+{
+    bool apart = r->version == 41;
+    int64_t end = block->first + block->count;
+    for (int64_t n = block->first; r->status == STATUS_OK && n < end; n++) {
+        r->record = n + 1;
+        r->msh->node_tag[n] = apart ? msh_size(r, "tag", block->least, block->most)
+                                    : msh_int(r, "tag", block->least, block->most);
+        if (!apart) {
+            read_point(r, n, block->parameters);
+        }
+    }
+    for (int64_t n = block->first; apart && r->status == STATUS_OK && n < end; n++) {
+        read_point(r, n, block->parameters);
+    }
+}
+
+static void read_block_head(struct msh_reader *r, struct block *block)
+{
+    int64_t dim;
+    (void)msh_read_entity_tag(r, &dim);
+    block->parameters = msh_int(r, "parametric", 0, 1) == 1 ? dim : 0;
+    block->count = msh_count(r, "number of nodes", 8, 28);
+    if (block->count > r->msh->node_count - block->first) {
+        msh_fail(r, "more nodes than the %lld that the section's head says", (long long)r->msh->node_count);
+    }
+}
+
+void msh_read_nodes(struct msh_reader *r)
+{
+    struct msh *msh = r->msh;
+    bool blocked = r->version >= 40;
+    struct block block = {.least = 1, .most = MSH_LARGEST_TAG};
+    r->kind = "node";
+    int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : 1;
+    int64_t count =
+        blocked ? msh_count(r, "number of nodes", 8, 28) : msh_count_line(r, "number of nodes", 8);
+    if (r->version == 41) {
+        block.least = msh_size(r, "smallest tag", count > 0, MSH_LARGEST_TAG);
+        block.most = msh_size(r, "largest tag", count > 0, MSH_LARGEST_TAG);
+    }
+    msh->node_count = count;
+    MSH_NEW(r, &msh->x, 3 * count);
+    MSH_NEW(r, &msh->node_tag, count);
+    for (int64_t b = 0; r->status == STATUS_OK && b < blocks; b++) {
+        block.count = count;
+        if (blocked) {
+            read_block_head(r, &block);
+        }
+        read_block(r, &block);
+        block.first += block.count;
+    }
+    if (block.first != count) {
+        r->record = 0;
+        msh_fail(r, "%lld nodes, not the %lld that the section's head says", (long long)block.first,
+                 (long long)count);
+    }
+    if (r->status == STATUS_OK) {
+        msh_index_make(r, &r->nodes, count, msh->node_tag);
+    }
+}

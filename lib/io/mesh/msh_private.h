@@ -1,0 +1,158 @@
+/* Reading mesh files, private to lib/io: what msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c,
+ * msh_entities.c and msh_groups.c share.
+ *
+ *   bytes --> sections --> $PhysicalNames, $Entities  --> groups    \
+ *                          $Nodes                     --> nodes      } struct msh
+ *                          $Elements                  --> elements  /
+ *
+ * The reader goes through the file once. Its first failure stays: from then on every function of this header
+ * returns without effect, numbers are the least that was allowed, and loops stop at `reader->status`. No
+ * count is believed before as many records can be in the rest of the file. (Format: Geuzaine and Remacle,
+ * Gmsh reference manual, "File formats".) */
+#pragma once
+
+#include "base/memory.h"
+#include "base/status.h"
+#include "io/mesh/msh.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Tags are of type int in all versions of the format but MSH 4.1, and there gmsh keeps most of them as int.
+ */
+#define MSH_LARGEST_TAG INT32_MAX
+
+/* Where each tag is in the file: a table for tags that lie close together, else a sorted list. */
+struct msh_index {
+    int64_t count;
+    int64_t first, span; /* tags are within [first, first + span) */
+    int32_t *place;      /* span, or NULL: the place of tag first + i, or -1 */
+    struct msh_place {
+        int64_t tag, place;
+    } * sorted; /* count, ascending, where there is no table */
+};
+
+/* A physical group's name in the file. */
+struct msh_name {
+    int64_t key; /* see msh_key */
+    const char *text;
+    int length;
+};
+
+/* A list of physical groups that elements refer to: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
+struct msh_entity {
+    int64_t key;
+    int64_t first, count; /* its groups: of reader->physicals */
+};
+
+/* The sections that are read; others are stepped over. */
+enum msh_section {
+    MSH_FORMAT,
+    MSH_NAMES,
+    MSH_ENTITIES,
+    MSH_PARTITIONS,
+    MSH_NODES,
+    MSH_ELEMENTS,
+    MSH_SECTIONS
+};
+
+struct msh_reader {
+    const char *at, *end; /* what is left of the file */
+    int version;          /* ten times that of the file: 10, 20, 21, 22, 40, 41 */
+    bool binary;          /* numbers are little-endian values of 4 bytes (int), 8 (size) and 8 (real) */
+    const char *section;  /* for messages: "$Nodes", and "node" or whatever the records are */
+    const char *kind;
+    int64_t record; /* number of the record, from 1; 0: the head of the section */
+    enum status status;
+    struct error *error;
+
+    struct msh *msh;
+    struct msh_index nodes;
+    bool has[MSH_SECTIONS]; /* read to its end */
+    int64_t node_idx_room;
+    int64_t *element_key; /* msh->element_count: key of the entity, in MSH 1 and 2 of the group; 0: none */
+    int64_t name_count;
+    struct msh_name *names;
+    int64_t entity_count, entity_room;
+    struct msh_entity *entities;
+    int64_t physical_count, physical_room;
+    int64_t *physicals; /* keys of groups */
+    /* The partitions of the parts of the highest dimension so far. */
+    int partition_dim;
+    int64_t partition_count, partition_room;
+    int64_t *partitions;
+};
+
+/* ---- msh_number.c: numbers, text or binary alike ---- */
+
+/* Fail with "$Nodes: node 12: message", unless the reader has failed before. */
+void msh_fail(struct msh_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The next whole number, within [least, most]: an int, or a size in binary files. */
+int64_t msh_int(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
+int64_t msh_size(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
+
+/* A number of records, each of which takes `text` or `binary` bytes at the least: they must be able to be in
+ * what is left of the file. */
+int64_t msh_count(struct msh_reader *reader, const char *what, int64_t text, int64_t binary);
+
+/* The same for the count at the head of a section of MSH 1 and 2, text on a line of its own in all files. */
+int64_t msh_count_line(struct msh_reader *reader, const char *what, int64_t least);
+
+/* The next real number, finite or not. */
+double msh_real(struct msh_reader *reader, const char *what);
+
+/* Step over white space; over the rest of the line, which must be blank. */
+void msh_skip_space(struct msh_reader *reader);
+void msh_skip_line(struct msh_reader *reader);
+
+/* Allocate *pointer, an array of `count` zeros; a statement. */
+#define MSH_NEW(reader, pointer, count)                                                                      \
+    do {                                                                                                     \
+        if ((reader)->status == STATUS_OK) {                                                                 \
+            (reader)->status = NEW_ARRAY(pointer, count, (reader)->error);                                   \
+        }                                                                                                    \
+    } while (0)
+
+/* Let *pointer, an array of *room elements, have room for `needed`; a statement. */
+#define MSH_GROW(reader, pointer, needed, room)                                                              \
+    do {                                                                                                     \
+        if ((reader)->status == STATUS_OK) {                                                                 \
+            (reader)->status = GROW_ARRAY(pointer, needed, room, (reader)->error);                           \
+        }                                                                                                    \
+    } while (0)
+
+/* ---- the sections, from the line behind "$Name" to where "$EndName" should be ---- */
+
+void msh_read_names(struct msh_reader *reader); /* msh_entities.c */
+void msh_read_entities(struct msh_reader *reader);
+void msh_read_partitions(struct msh_reader *reader);
+void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */
+void msh_read_elements(struct msh_reader *reader); /* msh_elements.c */
+
+/* ---- msh_entities.c, msh_groups.c: entities and groups ---- */
+
+/* "point", "curve", "surface" or "volume". */
+const char *msh_entity_kind(int dim);
+
+/* Dimension and tag of the entity at the head of a block of nodes or elements in MSH 4. */
+int64_t msh_read_entity_tag(struct msh_reader *reader, int64_t *dim);
+
+/* Dimension and tag as one number, ascending in (dimension, tag); never 0. */
+static inline int64_t msh_key(int64_t dim, int64_t tag)
+{
+    return ((dim + 1) << 32) + tag;
+}
+
+/* The groups of the file, and those of each element: the last step. */
+void msh_join_groups(struct msh_reader *reader);
+
+/* ---- msh_nodes.c: finding nodes by their tags ---- */
+
+/* Index the tags; one that stands twice is a failure. */
+void msh_index_make(struct msh_reader *reader, struct msh_index *index, int64_t count, const int64_t tags[]);
+void msh_index_free(struct msh_index *index);
+
+/* Place of `tag`, or -1. */
+int64_t msh_index_find(const struct msh_index *index, int64_t tag);

@@ -1,0 +1,237 @@
+#include "base/lists.h"
+#include "base/memory.h"
+#include "io/mesh/msh_build.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Points of a plane mesh may leave the plane by this part of its extent. */
+#define FLATNESS 1e-9
+
+int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
+{
+    return msh_type(draft->msh->element_type[element]).dim;
+}
+
+int mesh_used_nodes(const struct mesh_draft *draft, int64_t element)
+{
+    struct msh_type type = msh_type(draft->msh->element_type[element]);
+    return draft->options->midside ? type.node_count : msh_type(type.linear).node_count;
+}
+
+static enum status check_plane(const struct mesh_draft *draft)
+{
+    const struct msh *msh = draft->msh;
+    double least[3] = {INFINITY, INFINITY, INFINITY};
+    double most[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        int count = mesh_element_dim(draft, e) == 2 ? mesh_used_nodes(draft, e) : 0;
+        for (int k = 0; k < count; k++) {
+            for (int i = 0; i < 3; i++) {
+                double x = msh->x[3 * msh->node_idx[msh->node_ptr[e] + k] + i];
+                least[i] = fmin(least[i], x);
+                most[i] = fmax(most[i], x);
+            }
+        }
+    }
+    double extent = fmax(most[0] - least[0], most[1] - least[1]);
+    if (!(most[2] - least[2] <= FLATNESS * extent)) {
+        return fail(
+            draft->error, STATUS_INPUT,
+            "a surface in space, without volume cells: mesh the volume (gmsh -3), or a plane z = const");
+    }
+    return STATUS_OK;
+}
+
+enum status mesh_find_dim(struct mesh_draft *draft)
+{
+    int dim = -1;
+    for (int64_t e = 0; e < draft->msh->element_count; e++) {
+        dim = mesh_element_dim(draft, e) > dim ? mesh_element_dim(draft, e) : dim;
+    }
+    if (dim < 2) {
+        return fail(draft->error, STATUS_INPUT,
+                    "no cells (triangles, tetrahedra, ...): mesh it with gmsh -2 or -3");
+    }
+    draft->mesh->dim = dim;
+    return dim == 2 ? check_plane(draft) : STATUS_OK;
+}
+
+/* The group of a cell, of several the first; group_count for none. */
+static int32_t cell_group(const struct msh *msh, int64_t element)
+{
+    int64_t first = msh->member_ptr[element];
+    return msh->member_ptr[element + 1] > first ? msh->member_idx[first] : msh->group_count;
+}
+
+/* ---- cells that stand twice: in MSH 2 that is how they are in two groups ---- */
+
+#define MOST_CORNERS 8
+
+struct keyed_cell {
+    int64_t element;
+    int32_t node[MOST_CORNERS]; /* its corners, ascending; -1 fills up */
+};
+
+static int compare_cells(const void *left, const void *right)
+{
+    const struct keyed_cell *a = left;
+    const struct keyed_cell *b = right;
+    int nodes = compare_numbers(MOST_CORNERS, a->node, b->node);
+    return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
+}
+
+static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)
+{
+    const int32_t *node = &msh->node_idx[msh->node_ptr[element]];
+    int corners = msh_type(msh_type(msh->element_type[element]).linear).node_count;
+    key->element = element;
+    memset(key->node, 0xff, sizeof key->node);
+    for (int k = 0; k < corners; k++) {
+        int at = k;
+        for (; at > 0 && key->node[at - 1] > node[k]; at--) {
+            key->node[at] = key->node[at - 1];
+        }
+        key->node[at] = node[k];
+    }
+}
+
+/* is_cell[element]: it is of the mesh's dimension, and the first element with its nodes. Repeated elements
+ * and cells in two groups are reported. */
+static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
+{
+    const struct msh *msh = draft->msh;
+    SCRATCH struct keyed_cell *keys = NULL;
+    int64_t count = 0;
+    int64_t again = 0;
+    int64_t twice = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&keys, msh->element_count, draft->error));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
+        if (is_cell[e]) {
+            key_cell(msh, e, &keys[count++]);
+            twice += msh->member_ptr[e + 1] - msh->member_ptr[e] > 1;
+        }
+    }
+    qsort(keys, (size_t)count, sizeof *keys, compare_cells);
+    for (int64_t i = 1; i < count; i++) {
+        if (memcmp(keys[i].node, keys[i - 1].node, sizeof keys[i].node) == 0) {
+            again += is_cell[keys[i].element];
+            is_cell[keys[i].element] = false;
+        }
+    }
+    if (twice > 0) {
+        RETURN_IF_ERROR(
+            mesh_add_note(draft, "cells in two physical groups, taken for the one of the lower tag: %lld",
+                          (long long)twice));
+    }
+    if (again > 0) {
+        RETURN_IF_ERROR(
+            mesh_add_note(draft,
+                          "cells that stand twice, as for a second physical group, taken once, as the first: "
+                          "%lld",
+                          (long long)again));
+    }
+    return STATUS_OK;
+}
+
+/* A note on each name that is not as in the file. */
+static enum status note_names(struct mesh_draft *draft)
+{
+    for (int32_t g = 0; g < draft->msh->group_count; g++) {
+        const struct msh_group *group = &draft->msh->groups[g];
+        if (group->written != NULL) {
+            RETURN_IF_ERROR(
+                mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Is `name` an item of the list? */
+static bool is_listed(const char *list, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *at = list; at != NULL; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Every region that is wanted must be one of those present. */
+static enum status check_wanted(const struct mesh_draft *draft, const struct mesh_names *present)
+{
+    char list[256] = "";
+    for (int32_t i = 0; i < present->count; i++) {
+        text_append(list, sizeof list, "%s%s", i > 0 ? ", " : "", present->name[i]);
+    }
+    for (const char *at = draft->options->regions; at != NULL; at = strchr(at, ',')) {
+        at += *at == ',';
+        size_t length = strcspn(at, ",");
+        if (mesh_find_name(present, at, length) < 0) {
+            return fail(draft->error, STATUS_INPUT, "no cells in a region '%.*s': there are %s",
+                        length < 100 ? (int)length : 100, at, list);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Name the regions that are wanted; region_of_group[group_count + 1], the last for cells without a group,
+ * receives the index of each, or -1. cells_of[] counts the cells of each. */
+static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of[], int32_t region_of_group[])
+{
+    const struct msh *msh = draft->msh;
+    struct mesh_names *regions = &draft->mesh->regions;
+    FREED_BY(mesh_names_free) struct mesh_names present = {0};
+    const char *unnamed = "body"; /* "unnamed" beside others */
+    for (int32_t g = 0; g <= msh->group_count; g++) {
+        region_of_group[g] = -1;
+        if (cells_of[g] == 0) {
+            continue;
+        }
+        bool named = g < msh->group_count;
+        unnamed = named ? "unnamed" : unnamed;
+        const char *name = named ? msh->groups[g].name : unnamed;
+        RETURN_IF_ERROR(mesh_add_name(&present, name, draft->error));
+        if (draft->options->regions != NULL && !is_listed(draft->options->regions, name)) {
+            continue;
+        }
+        int32_t same = named ? -1 : mesh_find_name(regions, name, strlen(name));
+        region_of_group[g] = same >= 0 ? same : regions->count;
+        if (same < 0) {
+            RETURN_IF_ERROR(mesh_add_name(regions, name, draft->error));
+        }
+    }
+    RETURN_IF_ERROR(check_wanted(draft, &present));
+    if (cells_of[msh->group_count] > 0 && regions->count > 1) {
+        RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %lld", unnamed,
+                                      (long long)cells_of[msh->group_count]));
+    }
+    return STATUS_OK;
+}
+
+enum status mesh_pick_regions(struct mesh_draft *draft)
+{
+    const struct msh *msh = draft->msh;
+    SCRATCH int32_t *region_of_group = NULL; /* the last is for cells without a group */
+    SCRATCH int64_t *cells_of = NULL;
+    SCRATCH bool *is_cell = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&region_of_group, msh->group_count + 1, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cells_of, msh->group_count + 1, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&is_cell, msh->element_count, draft->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&draft->region_of, msh->element_count, draft->error));
+    RETURN_IF_ERROR(note_names(draft));
+    RETURN_IF_ERROR(find_cells(draft, is_cell));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        cells_of[cell_group(msh, e)] += is_cell[e];
+    }
+    RETURN_IF_ERROR(name_regions(draft, cells_of, region_of_group));
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        draft->region_of[e] = is_cell[e] ? region_of_group[cell_group(msh, e)] : -1;
+    }
+    return STATUS_OK;
+}

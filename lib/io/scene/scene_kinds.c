@@ -1,0 +1,343 @@
+#include "io/scene/scene_kinds.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+
+#define KEYS (const char *const[])
+
+/* ---- what the keys of a section have to be together; each of them has been read ---- */
+
+static enum status check_scene(const struct place *place, struct scene *scene)
+{
+    (void)place;
+    if (scene->analysis == SCENE_DYNAMIC) { /* steps are to be accurate, not stable only */
+        scene->solver.time_step_margin = 0.75;
+    }
+    return STATUS_OK;
+}
+
+static enum status check_elasticity(const struct place *place, double nu)
+{
+    RETURN_IF_ERROR(place_require(place, "E", "give Young's modulus in Pa, or a table"));
+    RETURN_IF_ERROR(place_require(place, "nu", "give Poisson's ratio, or a table"));
+    if (nu >= .5) {
+        return place_fail(place, "nu",
+                          "%.15g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu);
+    }
+    if (nu <= -1) {
+        return place_fail(place, "nu", "%.15g is not above -1", nu);
+    }
+    return STATUS_OK;
+}
+
+/* The key that only one model has, and that this one needs. */
+static enum status check_model_key(const struct place *place, bool is_model, const char *key,
+                                   const char *missing, const char *why)
+{
+    return is_model ? place_require(place, key, missing) : place_forbid(place, key, why);
+}
+
+/* Without motion and weight the density has no effect. */
+static const double no_matter = 1000.0; /* kg/m3, where it is not given */
+
+static bool is_density_felt(const struct scene *scene)
+{
+    return scene->analysis == SCENE_DYNAMIC || fabs(scene->gravity[0]) > 0.0 ||
+           fabs(scene->gravity[1]) > 0.0 || fabs(scene->gravity[2]) > 0.0;
+}
+
+static enum status check_material(const struct place *place, struct scene *scene)
+{
+    struct scene_material *material = &scene->materials[scene->material_count - 1];
+    RETURN_IF_ERROR(check_model_key(place, material->model == SCENE_MOONEY_RIVLIN, "ratio",
+                                    "model mooney-rivlin needs C01/C10",
+                                    "it belongs to model mooney-rivlin"));
+    RETURN_IF_ERROR(check_model_key(place, material->model == SCENE_OGDEN, "alpha",
+                                    "model ogden needs its exponent", "it belongs to model ogden"));
+    if (material->model == SCENE_OGDEN && fpclassify(material->ogden_alpha) == FP_ZERO) {
+        return place_fail(place, "alpha", "must not be 0");
+    }
+    if (is_density_felt(scene)) {
+        RETURN_IF_ERROR(place_require(place, "rho", "give the density in kg/m3"));
+    }
+    if (!place_has(place, "rho")) {
+        material->density = no_matter;
+    }
+    return material->table != NULL
+               ? place_forbid_all(place, KEYS{"E", "nu", NULL}, "the table gives E and nu")
+               : check_elasticity(place, material->poisson_ratio);
+}
+
+static enum status check_displacement(const struct place *place, struct scene *scene)
+{
+    struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
+    const bool *is_free = displacement->is_free;
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
+    if (place_has(place, "points")) {
+        displacement->kind = SCENE_POINTS;
+        return place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL});
+    }
+    RETURN_IF_ERROR(place_forbid_all(place, KEYS{"reach", "model_error", NULL}, "it goes with points"));
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
+    if (place_has(place, "normal")) {
+        RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
+        displacement->kind = SCENE_NORMAL;
+    } else if (place_has(place, "components")) {
+        displacement->kind = SCENE_COMPONENTS;
+    }
+    if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
+        return place_fail(place, "components", "all are free: nothing is prescribed");
+    }
+    return STATUS_OK;
+}
+
+/* The motion of a rigid surface, if it has one. */
+static enum status check_motion(const struct place *place, int dim, struct scene_contact *contact)
+{
+    bool turns = place_has(place, "angle");
+    double *axis = contact->axis;
+    contact->moves = turns || place_has(place, "translation");
+    if (!turns) {
+        RETURN_IF_ERROR(
+            place_forbid_all(place, KEYS{"axis_point", "axis", "angle_curve", NULL}, "no angle is given"));
+    }
+    if (!contact->moves) {
+        return place_forbid(place, "curve", "the surface has neither translation nor angle");
+    }
+    RETURN_IF_ERROR(place_require(place, "curve",
+                                  "a surface that moves needs smooth, linear, or a file of time and factor"));
+    if (turns) {
+        RETURN_IF_ERROR(place_require(place, "axis_point", "give a point of the axis of rotation in m"));
+    }
+    if (dim == 2) {
+        RETURN_IF_ERROR(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
+        axis[2] = 1.0;
+    } else if (turns) {
+        RETURN_IF_ERROR(place_require(place, "axis", "give the direction of the axis of rotation"));
+    }
+    if (turns && !(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] > 0.0)) {
+        return place_fail(place, "axis", "has no length: give a direction, as 0, 0, 1");
+    }
+    if (!place_has(place, "angle_curve")) {
+        contact->angle_curve = contact->curve;
+    }
+    for (int i = 0; i < 2; i++) {
+        if ((i == 0 ? contact->curve : contact->angle_curve).kind == SCENE_CURVE_STEP) {
+            return place_fail(place, i == 0 ? "curve" : "angle_curve",
+                              "step jumps: a rigid surface moves by smooth, linear, or a file");
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status check_contact(const struct place *place, struct scene *scene)
+{
+    static const char *const of_rigid[] = {"rigid",      "unit", "side",  "translation", "angle",
+                                           "axis_point", "axis", "curve", "angle_curve", NULL};
+    struct scene_contact *contact = &scene->contacts[scene->contact_count - 1];
+    const char *where = scene->dim == 2 ? "left or right of the rigid curve, where the body lies"
+                                        : "front or back of the rigid triangles, where the body lies";
+    if (place_has(place, "against")) {
+        return place_forbid_all(place, of_rigid, "against names facets of the body, not a rigid surface");
+    }
+    RETURN_IF_ERROR(place_require(
+        place, "rigid",
+        "name the file of the rigid surface, or, of the body itself, facet groups by 'against'"));
+    RETURN_IF_ERROR(place_require(place, "side", where));
+    if ((contact->side == SCENE_FRONT || contact->side == SCENE_BACK) != (scene->dim == 3)) {
+        return place_fail(place, "side", "is none of %s", scene->dim == 2 ? "left, right" : "front, back");
+    }
+    return check_motion(place, scene->dim, contact);
+}
+
+/* A pressure, or one that grows with the depth below the level of a fluid. */
+static enum status check_pressure(const struct place *place, struct scene *scene)
+{
+    (void)scene;
+    RETURN_IF_ERROR(place_require_one(place, KEYS{"value", "density", NULL}));
+    return place_has(place, "density")
+               ? place_require(place, "level", "give a place at the level of the fluid, m")
+               : place_forbid_all(place, KEYS{"level", "side", "gravity", NULL}, "it goes with density");
+}
+
+static enum status check_initial(const struct place *place, struct scene *scene)
+{
+    return scene->analysis == SCENE_DYNAMIC
+               ? STATUS_OK
+               : place_fail(place, NULL,
+                            "a quasi-static scene has no time: only dynamic scenes begin somewhere");
+}
+
+static enum status check_output(const struct place *place, struct scene *scene)
+{
+    if (place_has(place, "frames")) {
+        RETURN_IF_ERROR(place_forbid(place, "interval", "frames is given"));
+    }
+    if (scene->analysis == SCENE_QUASI_STATIC) {
+        RETURN_IF_ERROR(place_forbid(place, "interval", "a quasi-static scene has no time: use frames"));
+    }
+    return scene->output.moments ? STATUS_OK
+                                 : place_forbid(place, "moments_about", "it goes with moments = yes");
+}
+
+static enum status check_solver(const struct place *place, struct scene *scene)
+{
+    if (scene->analysis == SCENE_DYNAMIC) {
+        RETURN_IF_ERROR(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
+        return place_forbid(place, "tolerance", "a dynamic scene ends at end_time");
+    }
+    RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has no time"));
+    return place_forbid(place, "damping", "a quasi-static scene chooses its own");
+}
+
+/* ---- every section and key, once: others are refused by these lists, and a test looks for each in the
+ * manual
+ * ---- */
+
+#define WORDS(...)                                                                                           \
+    .words = (const char *const[])                                                                           \
+    {                                                                                                        \
+        __VA_ARGS__, NULL                                                                                    \
+    }
+#define AT(owner, member) .at = offsetof(struct owner, member)
+#define MOST_STEPS ((int64_t)1 << 53)
+
+static const struct scene_key scene_keys[] = {{"dim", VALUE_DIM, AT(scene, dim), .missing = "give 2 or 3"},
+                                              {"analysis", VALUE_CHOICE, AT(scene, analysis),
+                                               .missing = "give quasi-static or dynamic",
+                                               WORDS("quasi-static", "dynamic")},
+                                              {"title", VALUE_TEXT, AT(scene, title)},
+                                              {"gravity", VALUE_VECTOR, AT(scene, gravity)},
+                                              {NULL}};
+
+static const struct scene_key material_keys[] = {
+    {"region", VALUE_NAMES, AT(scene_material, regions), .missing = "name the regions made of it"},
+    {"model", VALUE_CHOICE, AT(scene_material, model),
+     WORDS("neo-hookean", "neo-hookean-log", "mooney-rivlin", "ogden", "st-venant-kirchhoff")},
+    {"E", VALUE_POSITIVE, AT(scene_material, youngs_modulus)},
+    {"nu", VALUE_NUMBER, AT(scene_material, poisson_ratio)},
+    {"rho", VALUE_POSITIVE, AT(scene_material, density)},
+    {"ratio", VALUE_NOT_NEGATIVE, AT(scene_material, mooney_ratio)},
+    {"alpha", VALUE_NUMBER, AT(scene_material, ogden_alpha)},
+    {"table", VALUE_TABLE, AT(scene_material, table)},
+    {"unit", VALUE_UNIT, AT(scene_material, table_unit)},
+    {NULL}};
+
+static const struct scene_key displacement_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_displacement, facets)},
+    {"nodes", VALUE_NAMES, AT(scene_displacement, nodes)},
+    {"points", VALUE_TABLE, AT(scene_displacement, table)},
+    {"table", VALUE_TABLE, AT(scene_displacement, table)},
+    {"unit", VALUE_UNIT, AT(scene_displacement, table_unit)},
+    {"components", VALUE_VECTOR, AT(scene_displacement, components),
+     .free = offsetof(struct scene_displacement, is_free)},
+    {"normal", VALUE_NUMBER, AT(scene_displacement, normal)},
+    {"reach", VALUE_POSITIVE, AT(scene_displacement, reach)},
+    {"model_error", VALUE_POSITIVE, AT(scene_displacement, model_error)},
+    {"curve", VALUE_CURVE, AT(scene_displacement, curve)},
+    {NULL}};
+
+static const struct scene_key contact_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_contact, facets), .missing = "name the facet groups that may touch"},
+    {"against", VALUE_NAMES, AT(scene_contact, against)},
+    {"rigid", VALUE_TABLE, AT(scene_contact, rigid)},
+    {"unit", VALUE_UNIT, AT(scene_contact, rigid_unit)},
+    {"side", VALUE_CHOICE, AT(scene_contact, side), WORDS("left", "right", "front", "back")},
+    {"stiffness", VALUE_POSITIVE, AT(scene_contact, stiffness)},
+    {"translation", VALUE_VECTOR, AT(scene_contact, translation)},
+    {"angle", VALUE_NUMBER, AT(scene_contact, angle)},
+    {"axis_point", VALUE_VECTOR, AT(scene_contact, axis_point)},
+    {"axis", VALUE_VECTOR, AT(scene_contact, axis)},
+    {"curve", VALUE_CURVE, AT(scene_contact, curve)},
+    {"angle_curve", VALUE_CURVE, AT(scene_contact, angle_curve)},
+    {NULL}};
+
+static const struct scene_key pressure_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_load, facets), .missing = "name the facet groups pressed"},
+    {"value", VALUE_NUMBER, AT(scene_load, pressure)},
+    {"density", VALUE_POSITIVE, AT(scene_load, density)},
+    {"level", VALUE_VECTOR, AT(scene_load, level)},
+    {"side", VALUE_CHOICE, AT(scene_load, level_side), WORDS("below", "above", "both")},
+    {"gravity", VALUE_VECTOR, AT(scene_load, gravity)},
+    {"curve", VALUE_CURVE, AT(scene_load, curve)},
+    {NULL}};
+
+static const struct scene_key traction_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_load, facets), .missing = "name the groups loaded"},
+    {"components", VALUE_VECTOR, AT(scene_load, components), .missing = "give the traction in Pa"},
+    {"curve", VALUE_CURVE, AT(scene_load, curve)},
+    {NULL}};
+
+static const struct scene_key force_keys[] = {
+    {"nodes", VALUE_NAMES, AT(scene_load, nodes), .missing = "name the groups loaded"},
+    {"components", VALUE_VECTOR, AT(scene_load, components), .missing = "give the force on each node in N"},
+    {"curve", VALUE_CURVE, AT(scene_load, curve)},
+    {NULL}};
+
+static const struct scene_key initial_keys[] = {
+    {"table", VALUE_TABLE, AT(scene, initial.table),
+     .missing = "name the file of displacements and velocities at the nodes"},
+    {"unit", VALUE_UNIT, AT(scene, initial.table_unit)},
+    {NULL}};
+
+static const struct scene_key output_keys[] = {
+    {"frames", VALUE_COUNT, AT(scene, output.frames), .most = 1000000},
+    {"interval", VALUE_POSITIVE, AT(scene, output.interval)},
+    {"stress", VALUE_YES, AT(scene, output.stress)},
+    {"strain", VALUE_YES, AT(scene, output.strain)},
+    {"pressure", VALUE_YES, AT(scene, output.pressure)},
+    {"volume_ratio", VALUE_YES, AT(scene, output.volume_ratio)},
+    {"energy", VALUE_YES, AT(scene, output.energy)},
+    {"reactions", VALUE_YES, AT(scene, output.reactions)},
+    {"moments", VALUE_YES, AT(scene, output.moments)},
+    {"moments_about", VALUE_VECTOR, AT(scene, output.about)},
+    {"gaps", VALUE_YES, AT(scene, output.gaps)},
+    {"folds", VALUE_YES, AT(scene, output.folds_allowed), WORDS("refused", "allowed")},
+    {NULL}};
+
+static const struct scene_key solver_keys[] = {
+    {"constraints", VALUE_CHOICE, AT(scene, solver.constraints), WORDS("ebciem", "direct")},
+    {"constraint_points", VALUE_CHOICE, AT(scene, solver.constraint_points), WORDS("hat", "node")},
+    {"volume", VALUE_CHOICE, AT(scene, solver.volume), WORDS("nodal", "pointwise")},
+    {"tolerance", VALUE_SHARE, AT(scene, solver.tolerance)},
+    {"max_steps", VALUE_COUNT, AT(scene, solver.max_steps), .most = MOST_STEPS},
+    {"ramp_steps", VALUE_COUNT, AT(scene, solver.ramp_steps), .most = MOST_STEPS},
+    {"end_time", VALUE_POSITIVE, AT(scene, solver.end_time)},
+    {"time_step_margin", VALUE_SHARE, AT(scene, solver.time_step_margin)},
+    {"damping", VALUE_NOT_NEGATIVE, AT(scene, solver.damping)},
+    {NULL}};
+
+#define ITEMS(items, count)                                                                                  \
+    true, offsetof(struct scene, items), offsetof(struct scene, count), sizeof *((struct scene *)0)->items
+
+static const struct scene_kind kinds[] = {
+    {"scene", scene_keys, check_scene, false, 0, 0, 0},
+    {"material", material_keys, check_material, ITEMS(materials, material_count)},
+    {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
+    {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
+    {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
+    {"traction", traction_keys, NULL, ITEMS(tractions, traction_count)},
+    {"force", force_keys, NULL, ITEMS(forces, force_count)},
+    {"initial", initial_keys, check_initial, false, 0, 0, 0},
+    {"output", output_keys, check_output, false, 0, 0, 0},
+    {"solver", solver_keys, check_solver, false, 0, 0, 0},
+};
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0], MOST_KEYS = 16 };
+
+enum status scene_kind_find(const struct place *place, const struct scene_kind **kind)
+{
+    const char *names[KIND_COUNT + 1] = {NULL}, *keys[MOST_KEYS] = {NULL};
+    for (int k = 0; k < KIND_COUNT; k++) {
+        names[k] = kinds[k].name;
+        if (strcmp(kinds[k].name, place->section->kind) == 0) {
+            *kind = &kinds[k];
+            for (int i = 0; kinds[k].keys[i].name != NULL; i++) {
+                keys[i] = kinds[k].keys[i].name;
+            }
+            return place_only_keys(place, keys);
+        }
+    }
+    return place_unknown(place, NULL, "section", names);
+}

@@ -1,0 +1,334 @@
+#include "io/scene/scene_value.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+
+#include <ctype.h>
+#include <float.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status place_fail(const struct place *place, const char *key, const char *format, ...)
+{
+    char message[sizeof place->error->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+
+    const struct ini_section *section = place->section;
+    const struct ini_entry *entry = key != NULL ? ini_find(section, key) : NULL;
+    int64_t line = entry != NULL ? entry->line : section->line;
+    return fail(place->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s%s%s", place->file->path, (long long)line,
+                section->kind, section->name[0] != '\0' ? " " : "", section->name, key != NULL ? key : "",
+                key != NULL ? ": " : "", message);
+}
+
+bool place_has(const struct place *place, const char *key)
+{
+    return ini_find(place->section, key) != NULL;
+}
+
+static char *text_of(const struct place *place, const char *key)
+{
+    const struct ini_entry *entry = ini_find(place->section, key);
+    return entry != NULL ? entry->value : NULL;
+}
+
+enum status place_require(const struct place *place, const char *key, const char *what)
+{
+    return place_has(place, key) ? STATUS_OK : place_fail(place, key, "missing: %s", what);
+}
+
+enum status place_forbid(const struct place *place, const char *key, const char *why)
+{
+    return !place_has(place, key) ? STATUS_OK : place_fail(place, key, "not allowed: %s", why);
+}
+
+enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why)
+{
+    for (int i = 0; keys[i] != NULL; i++) {
+        RETURN_IF_ERROR(place_forbid(place, keys[i], why));
+    }
+    return STATUS_OK;
+}
+
+/* "a, b, c" of a NULL-terminated list. */
+static void join(const char *const words[], char *text, size_t size)
+{
+    text[0] = '\0';
+    for (int i = 0; words[i] != NULL; i++) {
+        text_append(text, size, "%s%s", i > 0 ? ", " : "", words[i]);
+    }
+}
+
+enum status place_require_one(const struct place *place, const char *const keys[])
+{
+    int count = 0;
+    for (int i = 0; keys[i] != NULL; i++) {
+        count += place_has(place, keys[i]);
+    }
+    char list[256];
+    join(keys, list, sizeof list);
+    return count == 1
+               ? STATUS_OK
+               : place_fail(place, NULL, "%s of %s: give exactly one", count == 0 ? "none" : "several", list);
+}
+
+enum status place_unknown(const struct place *place, const char *key, const char *what,
+                          const char *const allowed[])
+{
+    char list[320];
+    join(allowed, list, sizeof list);
+    return place_fail(place, key, "unknown %s: allowed are %s", what, list);
+}
+
+enum status place_only_keys(const struct place *place, const char *const keys[])
+{
+    for (int64_t e = 0; e < place->section->entry_count; e++) {
+        int i = 0;
+        const char *key = place->section->entries[e].key;
+        while (keys[i] != NULL && strcmp(keys[i], key) != 0) {
+            i++;
+        }
+        if (keys[i] == NULL) {
+            return place_unknown(place, key, "key", keys);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A number without leading blanks; the message explains decimal commas. */
+static enum status number(const struct place *place, const char *key, const char *text, double *value)
+{
+    struct error ignored;
+    if (parse_double(text, key, -DBL_MAX, DBL_MAX, value, &ignored) == STATUS_OK) {
+        return STATUS_OK;
+    }
+    char *rest;
+    (void)strtod(text, &rest);
+    bool has_unit = rest != text && isalpha((unsigned char)rest[strspn(rest, " \t")]);
+    return place_fail(place, key, "'%s' is not a finite number%s", text,
+                      has_unit                    ? ": write it in SI units, without the name of one"
+                      : strchr(text, ',') != NULL ? ": write one number, with a decimal point"
+                      : strchr(text, ' ') != NULL ? ": separate components by commas"
+                                                  : "");
+}
+
+/* Bounds of a number; an open bound is excluded. */
+struct range {
+    double least, most;
+    bool open_least, open_most;
+};
+
+static enum status read_number(const struct place *place, const char *key, const char *text,
+                               enum value_type type, double *value)
+{
+    static const struct range ranges[] = {[VALUE_NUMBER] = {-DBL_MAX, DBL_MAX, false, false},
+                                          [VALUE_POSITIVE] = {0, DBL_MAX, true, false},
+                                          [VALUE_NOT_NEGATIVE] = {0, DBL_MAX, false, false},
+                                          [VALUE_SHARE] = {0, 1, true, true}};
+    struct range range = ranges[type];
+    RETURN_IF_ERROR(number(place, key, text, value));
+    bool above = range.open_least ? *value > range.least : *value >= range.least;
+    bool below = range.open_most ? *value < range.most : *value <= range.most;
+    if (above && below) {
+        return STATUS_OK;
+    }
+    if (range.most < DBL_MAX) {
+        return place_fail(place, key, "%s is not within %c%g, %g%c", text, range.open_least ? '(' : '[',
+                          range.least, range.most, range.open_most ? ')' : ']');
+    }
+    return place_fail(place, key, "%s is not %s %g", text, range.open_least ? "above" : "at least",
+                      range.least);
+}
+
+static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
+{
+    double value;
+    RETURN_IF_ERROR(number(place, key, text, &value));
+    if (value != 2 && value != 3) {
+        return place_fail(place, key, "%g is neither 2 nor 3", value);
+    }
+    *dim = (int)value;
+    return STATUS_OK;
+}
+
+static enum status read_count(const struct place *place, const char *key, const char *text, int64_t most,
+                              int64_t *value)
+{
+    struct error why;
+    return parse_integer(text, key, 1, most, value, &why) == STATUS_OK
+               ? STATUS_OK
+               : place_fail(place, key, "'%s' is not a whole number within [1, %lld]", text, (long long)most);
+}
+
+static enum status read_choice(const struct place *place, const char *key, const char *text,
+                               const char *const words[], int *index)
+{
+    char list[256];
+    for (*index = 0; words[*index] != NULL; ++*index) {
+        if (strcmp(text, words[*index]) == 0) {
+            return STATUS_OK;
+        }
+    }
+    join(words, list, sizeof list);
+    return place_fail(place, key, "'%s' is none of %s", text, list);
+}
+
+static enum status read_yes(const struct place *place, const char *key, const char *text,
+                            const char *const words[], bool *value)
+{
+    static const char *const no_yes[] = {"no", "yes", NULL};
+    int index;
+    RETURN_IF_ERROR(read_choice(place, key, text, words != NULL ? words : no_yes, &index));
+    *value = index == 1;
+    return STATUS_OK;
+}
+
+/* The next item of a comma list, without blanks at its ends, cut off; NULL behind the last. */
+static char *next_item(char **list)
+{
+    char *item = strsep(list, ",");
+    if (item != NULL) {
+        item += strspn(item, " \t");
+        item[ini_trimmed(item, strlen(item))] = '\0';
+    }
+    return item;
+}
+
+/* dim numbers; where is_free is not NULL, `free` stands for an absent component. */
+static enum status read_vector(const struct place *place, const char *key, char *list, int dim,
+                               double values[3], bool is_free[3])
+{
+    char *item;
+    int count = 0;
+    for (; (item = next_item(&list)) != NULL; count++) {
+        if (count < dim && is_free != NULL && strcmp(item, "free") == 0) {
+            is_free[count] = true;
+        } else if (count < dim) {
+            RETURN_IF_ERROR(number(place, key, item, &values[count]));
+        }
+    }
+    return count == dim ? STATUS_OK
+                        : place_fail(place, key, "has %d components: dim = %d needs %d%s", count, dim, dim,
+                                     count > dim ? ", with decimal points" : "");
+}
+
+static enum status read_names(const struct place *place, const char *key, char *rest, struct name_list *list)
+{
+    char *item;
+    list->names = array_new((int64_t)strlen(rest) + 1, sizeof *list->names); /* more than enough */
+    RETURN_IF_ERROR(owned_add(&place->scene->owned, list->names, place->file->path, place->error));
+    while ((item = next_item(&rest)) != NULL) {
+        if (item[0] == '\0') {
+            return place_fail(place, key, "has an empty name: write names with single commas between");
+        }
+        for (int64_t i = 0; i < list->count; i++) {
+            if (strcmp(list->names[i], item) == 0) {
+                return place_fail(place, key, "names '%s' twice", item);
+            }
+        }
+        list->names[list->count++] = item;
+    }
+    return STATUS_OK;
+}
+
+enum status place_print(const struct place *place, char **text, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    *text = vasprintf(text, format, arguments) < 0 ? NULL : *text;
+    va_end(arguments);
+    return owned_add(&place->scene->owned, *text, place->file->path, place->error);
+}
+
+/* A file that the scene names. */
+static enum status read_file(const struct place *place, const char *text, const char **path)
+{
+    struct name_list *files = &place->scene->files;
+    const char *scene = place->file->path, *slash = strrchr(scene, '/');
+    int folder = text[0] != '/' && slash != NULL ? (int)(slash - scene) + 1 : 0;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&files->names, files->count + 1, place->error));
+    char **name = &files->names[files->count];
+    RETURN_IF_ERROR(place_print(place, name, "%.*s%s", folder, scene, text));
+    files->count++;
+    *path = *name;
+    return STATUS_OK;
+}
+
+enum status place_check_units(const struct place *place, const struct scene_key *keys)
+{
+    for (const struct scene_key *key = keys; key->name != NULL; key++) {
+        if (key->type == VALUE_TABLE && place_has(place, key->name) && !place_has(place, "unit")) {
+            return place_fail(place, key->name, "needs unit = m, cm, mm or um of its lengths");
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The unit of a file, which the section has to name by one of these keys. */
+static enum status read_unit(const struct place *place, const char *key, const char *text, double *metres)
+{
+    struct error why;
+    if (!place_has(place, "table") && !place_has(place, "points") && !place_has(place, "rigid")) {
+        return place_forbid(place, key, "it is the unit of a file, and none is named");
+    }
+    return parse_length_unit(text, key, metres, &why) == STATUS_OK
+               ? STATUS_OK
+               : place_fail(place, key, "'%s' is none of m, cm, mm, um", text);
+}
+
+static enum status read_curve(const struct place *place, const char *text, struct scene_curve *curve)
+{
+    static const char *const words[] = {"smooth", "linear", "step"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            curve->kind = (enum scene_curve_kind)i;
+            return STATUS_OK;
+        }
+    }
+    curve->kind = SCENE_CURVE_FILE;
+    return read_file(place, text, &curve->file);
+}
+
+enum status place_read(const struct place *place, const struct scene_key *key, int dim, void *item)
+{
+    char *text = text_of(place, key->name);
+    void *value = (char *)item + key->at;
+    bool *is_free = key->free > 0 ? (void *)((char *)item + key->free) : NULL;
+    if (text == NULL) {
+        return key->missing != NULL ? place_require(place, key->name, key->missing) : STATUS_OK;
+    }
+    switch (key->type) {
+    case VALUE_NUMBER:
+    case VALUE_POSITIVE:
+    case VALUE_NOT_NEGATIVE:
+    case VALUE_SHARE:
+        return read_number(place, key->name, text, key->type, value);
+    case VALUE_DIM:
+        return read_dim(place, key->name, text, value);
+    case VALUE_COUNT:
+        return read_count(place, key->name, text, key->most, value);
+    case VALUE_CHOICE:
+        return read_choice(place, key->name, text, key->words, value);
+    case VALUE_YES:
+        return read_yes(place, key->name, text, key->words, value);
+    case VALUE_VECTOR:
+        return read_vector(place, key->name, text, dim, value, is_free);
+    case VALUE_NAMES:
+        return read_names(place, key->name, text, value);
+    case VALUE_TABLE:
+        return read_file(place, text, value);
+    case VALUE_UNIT:
+        return read_unit(place, key->name, text, value);
+    case VALUE_CURVE:
+        return read_curve(place, text, value);
+    case VALUE_TEXT:
+    default:
+        *(const char **)value = text;
+        return STATUS_OK;
+    }
+}

@@ -1,0 +1,82 @@
+/* One section of a scene: its values, read as its keys are declared, and what has to be said of them.
+ * Inside of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
+#pragma once
+
+#include "base/status.h"
+#include "io/scene/scene.h"
+#include "io/scene/scene_ini.h"
+
+#include <stdbool.h>
+
+/* The section under interpretation. */
+struct place {
+    const struct ini_file *file;
+    const struct ini_section *section;
+    struct scene *scene; /* owns texts and lists */
+    struct error *error;
+};
+
+/* Types of values of keys, and the types they are stored as. */
+enum value_type {
+    VALUE_NUMBER, /* double; those that follow are bounded: */
+    VALUE_POSITIVE,
+    VALUE_NOT_NEGATIVE,
+    VALUE_SHARE,  /* within (0, 1) */
+    VALUE_DIM,    /* int: 2 or 3 */
+    VALUE_COUNT,  /* int64_t: within [1, most] */
+    VALUE_CHOICE, /* an enum: the index of one of the words */
+    VALUE_YES,    /* bool: no or yes, or the two words */
+    VALUE_VECTOR, /* double[3], of which dim are given */
+    VALUE_NAMES,  /* struct name_list: a comma list of different names */
+    VALUE_TABLE,  /* const char *: a file of lengths, relative to the scene's folder unless absolute */
+    VALUE_UNIT,   /* double: the unit of such a file in m; one is an error without the other */
+    VALUE_CURVE,  /* struct scene_curve */
+    VALUE_TEXT    /* const char * */
+};
+
+struct scene_key {
+    const char *name;
+    enum value_type type;
+    size_t at;           /* offset of the value in the item or, of a section without items, in the scene */
+    const char *missing; /* the remedy where it is missing; NULL: it need not be there */
+    const char *const *words; /* NULL-terminated */
+    int64_t most;
+    size_t free; /* VALUE_VECTOR: offset of bool[3], set where a component is `free`; 0: none may be */
+};
+
+/* Read the value of a key into *item, which stays as it is where the key is absent. */
+MUST_CHECK enum status place_read(const struct place *place, const struct scene_key *key, int dim,
+                                  void *item);
+
+/* An error if a file of lengths is named without their unit. */
+MUST_CHECK enum status place_check_units(const struct place *place, const struct scene_key *keys);
+
+/* fail() with STATUS_INPUT at a key's line, or with key NULL at the section's. */
+enum status place_fail(const struct place *place, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Is the key there? */
+bool place_has(const struct place *place, const char *key);
+
+/* An error unless the key is there; `what` is the remedy. */
+MUST_CHECK enum status place_require(const struct place *place, const char *key, const char *what);
+
+/* An error if the key is there; `why` follows the message "not allowed: ". */
+MUST_CHECK enum status place_forbid(const struct place *place, const char *key, const char *why);
+
+/* The same of all keys of a NULL-terminated list. */
+MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
+
+/* An error unless exactly one of the keys (a NULL-terminated list) is there. */
+MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
+
+/* The error that a key, or with key NULL the section itself, is none of those (a NULL-terminated list). */
+enum status place_unknown(const struct place *place, const char *key, const char *what,
+                          const char *const allowed[]);
+
+/* An error unless all keys of the section are among `keys` (a NULL-terminated list). */
+MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
+
+/* A text as of printf, which the scene owns. */
+MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));

@@ -1,0 +1,300 @@
+#include "io/stream/stream.h"
+#include "io/stream/stream_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+static const struct {
+    const char *name;
+    size_t size;
+} types[] = {[TYPE_I4] = {"i4", 4}, [TYPE_I8] = {"i8", 8}, [TYPE_F4] = {"f4", 4}, [TYPE_F8] = {"f8", 8}};
+
+size_t element_size(enum element_type type)
+{
+    return types[type].size;
+}
+
+const char *element_type_name(enum element_type type)
+{
+    return types[type].name;
+}
+
+void stream_init(struct stream *stream)
+{
+    memset(stream, 0, sizeof *stream);
+}
+
+static void section_free(struct section *section)
+{
+    FREE_ALL(section->name, section->attributes);
+    if (section->owned) {
+        free(section->data);
+    }
+}
+
+void stream_free(struct stream *stream)
+{
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        section_free(&stream->sections[i]);
+    }
+    free(stream->sections);
+    for (int64_t i = 0; i < stream->provenance_count; i++) {
+        free(stream->provenance[i]);
+    }
+    free(stream->provenance);
+    if (stream->mapping != NULL) {
+        munmap(stream->mapping, stream->mapping_size);
+    }
+    stream_init(stream);
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/* Length of the word at `text` that is made as names and keys are: a letter, then letters, digits, '.', '_',
+ * '-'. */
+static size_t word_length(const char *text)
+{
+    size_t length = 0;
+    while (is_letter(text[length]) ||
+           (length > 0 && text[length] != '\0' && strchr("0123456789._-", text[length]) != NULL)) {
+        length++;
+    }
+    return length;
+}
+
+static enum status name_validate(const char *name, struct error *error)
+{
+    static const char *const reserved[] = {"mts", "end", "crc32", "stopped"};
+    size_t length = word_length(name);
+    if (length == 0 || name[length] != '\0' || length > NAME_LIMIT) {
+        return fail(error, STATUS_INPUT,
+                    "'%.40s' is no section name: a letter, then letters, digits, '.', '_' or '-', at most %d",
+                    name, NAME_LIMIT);
+    }
+    for (size_t i = 0; i < sizeof reserved / sizeof *reserved; i++) {
+        if (strcmp(name, reserved[i]) == 0) {
+            return fail(error, STATUS_INPUT, "'%s' is reserved and names no section", name);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Step to the next "key=value"; false at the end of the list. */
+static bool next_attribute(const char **at, size_t *length)
+{
+    *at += strspn(*at, " ");
+    *length = strcspn(*at, " ");
+    return *length > 0;
+}
+
+/* The value of `key` in a list of attributes and its length, or NULL. */
+static const char *find_attribute(const char *attributes, const char *key, size_t key_length,
+                                  size_t *value_length)
+{
+    size_t length;
+    for (const char *at = attributes; next_attribute(&at, &length); at += length) {
+        if (length > key_length && at[key_length] == '=' && strncmp(at, key, key_length) == 0) {
+            *value_length = length - key_length - 1;
+            return at + key_length + 1;
+        }
+    }
+    return NULL;
+}
+
+static enum status attributes_validate(const char *name, const char *attributes, struct error *error)
+{
+    if (strlen(attributes) > LINE_LIMIT / 2) {
+        return fail(error, STATUS_INPUT, "%s: attributes longer than %d bytes", name, LINE_LIMIT / 2);
+    }
+    for (const char *c = attributes; *c != '\0'; c++) {
+        if ((unsigned char)*c < 0x20 || *c == 0x7f) {
+            return fail(error, STATUS_INPUT, "%s: control character in the header", name);
+        }
+    }
+    size_t length;
+    int64_t count = 0;
+    for (const char *at = attributes; next_attribute(&at, &length); at += length) {
+        size_t key = word_length(at);
+        size_t ignored;
+        if (key == 0 || key > KEY_LIMIT || key >= length || at[key] != '=') {
+            return fail(error, STATUS_INPUT, "%s: '%.*s' in the header is not key=value", name,
+                        (int)(length < 60 ? length : 60), at);
+        }
+        if (key == 3 && strncmp(at, "enc", 3) == 0) {
+            return fail(error, STATUS_INPUT, "%s: attribute enc= is set by the stream itself", name);
+        }
+        if (find_attribute(attributes, at, key, &ignored) != at + key + 1) {
+            return fail(error, STATUS_INPUT, "%s: attribute %.*s given twice", name, (int)key, at);
+        }
+        if (++count > 64) {
+            return fail(error, STATUS_INPUT, "%s: more than 64 attributes", name);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status section_validate(const char *name, enum element_type type, int64_t rows, int64_t cols,
+                             const char *attributes, struct error *error)
+{
+    int64_t bytes;
+    RETURN_IF_ERROR(name_validate(name, error));
+    RETURN_IF_ERROR(attributes_validate(name, attributes, error));
+    if (rows < 0 || cols < 1 || cols > COLUMN_LIMIT || __builtin_mul_overflow(rows, cols, &bytes) ||
+        __builtin_mul_overflow(bytes, (int64_t)element_size(type), &bytes)) {
+        return fail(error, STATUS_INPUT, "%s: %lld rows of %lld columns are out of bounds", name,
+                    (long long)rows, (long long)cols);
+    }
+    return STATUS_OK;
+}
+
+static struct section *find(const struct stream *stream, const char *name)
+{
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        if (strcmp(stream->sections[i].name, name) == 0) {
+            return &stream->sections[i];
+        }
+    }
+    return NULL;
+}
+
+const struct section *stream_find(const struct stream *stream, const char *name)
+{
+    return find(stream, name);
+}
+
+enum status stream_need(const struct stream *stream, const char *name, enum element_type type, int64_t cols,
+                        const char *producer, const struct section **section, struct error *error)
+{
+    *section = stream_find(stream, name);
+    if (*section == NULL) {
+        return fail(error, STATUS_INPUT, "no section %s: run %s", name, producer);
+    }
+    if ((*section)->type != type) {
+        return fail(error, STATUS_INPUT, "%s: type %s, need %s as %s makes it", name,
+                    element_type_name((*section)->type), element_type_name(type), producer);
+    }
+    if (cols > 0 && (*section)->cols != cols) {
+        return fail(error, STATUS_INPUT, "%s: %lld columns, need %lld", name, (long long)(*section)->cols,
+                    (long long)cols);
+    }
+    return STATUS_OK;
+}
+
+enum status stream_append(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                          int64_t cols, const char *attributes, struct section **section, struct error *error)
+{
+    /* All slots at once, as untouched zero pages: sections never move when others are added. */
+    if (stream->sections == NULL) {
+        stream->sections = calloc(SECTION_LIMIT, sizeof *stream->sections);
+        if (stream->sections == NULL) {
+            return fail_memory(error, "sections");
+        }
+    }
+    if (stream->section_count == SECTION_LIMIT) {
+        return fail(error, STATUS_INPUT, "%s: more than %d sections", name, SECTION_LIMIT);
+    }
+    struct section slot = {
+        .name = strdup(name), .type = type, .rows = rows, .cols = cols, .attributes = strdup(attributes)};
+    if (slot.name == NULL || slot.attributes == NULL) {
+        section_free(&slot);
+        return fail_memory(error, name);
+    }
+    *section = &stream->sections[stream->section_count++];
+    **section = slot;
+    return STATUS_OK;
+}
+
+/* Put new contents into a section that exists; the arguments may be its own old contents. */
+static enum status section_replace(struct section *section, enum element_type type, int64_t rows,
+                                   int64_t cols, const char *attributes, void *data, bool owned,
+                                   struct error *error)
+{
+    char *copy = strdup(attributes);
+    if (copy == NULL) {
+        return fail_memory(error, section->name);
+    }
+    if (section->owned && section->data != data) {
+        free(section->data);
+    }
+    free(section->attributes);
+    section->type = type;
+    section->rows = rows;
+    section->cols = cols;
+    section->attributes = copy;
+    section->data = data;
+    section->owned = owned;
+    return STATUS_OK;
+}
+
+enum status stream_put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                       int64_t cols, const char *attributes, void *data, bool owned, struct error *error)
+{
+    const char *listed = attributes != NULL ? attributes : "";
+    struct section *section = find(stream, name);
+    bool data_is_here = section != NULL && section->owned && section->data == data;
+    enum status status = section_validate(name, type, rows, cols, listed, error);
+    if (status == STATUS_OK && section != NULL) {
+        status = section_replace(section, type, rows, cols, listed, data, owned, error);
+    } else if (status == STATUS_OK) {
+        status = stream_append(stream, name, type, rows, cols, listed, &section, error);
+        if (status == STATUS_OK) {
+            section->data = data;
+            section->owned = owned;
+        }
+    }
+    if (status != STATUS_OK && owned && !data_is_here) {
+        free(data);
+    }
+    return status;
+}
+
+void section_give_back(const struct stream *stream, const struct section *section)
+{
+    uintptr_t from = (uintptr_t)section->data, mapped = (uintptr_t)stream->mapping;
+    size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
+    if (!section->owned && from >= mapped && from + bytes <= mapped + stream->mapping_size) {
+        memory_give_back(section->data, bytes);
+    }
+}
+
+void stream_give_back(const struct stream *stream)
+{
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        section_give_back(stream, &stream->sections[i]);
+    }
+}
+
+static void remove_at(struct stream *stream, int64_t at)
+{
+    section_give_back(stream, &stream->sections[at]);
+    section_free(&stream->sections[at]);
+    stream->section_count--;
+    memmove(&stream->sections[at], &stream->sections[at + 1],
+            (size_t)(stream->section_count - at) * sizeof *stream->sections);
+}
+
+void stream_remove(struct stream *stream, const char *name)
+{
+    const struct section *section = find(stream, name);
+    if (section != NULL) {
+        remove_at(stream, section - stream->sections);
+    }
+}
+
+bool section_attribute(const struct section *section, const char *key, char *value, size_t size)
+{
+    size_t length;
+    const char *found = find_attribute(section->attributes, key, strlen(key), &length);
+    if (found == NULL || length >= size) {
+        return false;
+    }
+    memcpy(value, found, length);
+    value[length] = '\0';
+    return true;
+}

@@ -1,0 +1,112 @@
+/* Declarations shared by the files of the stream: limits, buffered input, header lines, numbers as text. */
+#pragma once
+
+#include "io/stream/stream.h"
+
+#include <string.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+               "binary payloads are little-endian and used in place");
+
+enum {
+    NAME_LIMIT = 127,        /* bytes of a section's name */
+    KEY_LIMIT = 63,          /* bytes of an attribute's key */
+    LINE_LIMIT = 1 << 20,    /* bytes of a header or provenance line with its newline */
+    COLUMN_LIMIT = 1 << 20,  /* columns of a section */
+    SECTION_LIMIT = 1 << 14, /* sections of a stream */
+    NUMBER_LIMIT = 2048,     /* bytes of a number in text */
+    PAYLOAD_ALIGNMENT = 64,  /* of a binary payload, from the start of the stream */
+    BLOCK_SIZE = 1 << 20     /* bytes read or written at once */
+};
+
+/* stream.c: bounds that hold for every section, whether read or put. */
+MUST_CHECK enum status section_validate(const char *name, enum element_type type, int64_t rows, int64_t cols,
+                                        const char *attributes, struct error *error);
+
+/* stream.c: append an empty slot, or fail at the limit; `name` and `attributes` are copied. */
+MUST_CHECK enum status stream_append(struct stream *stream, const char *name, enum element_type type,
+                                     int64_t rows, int64_t cols, const char *attributes,
+                                     struct section **section, struct error *error);
+
+/* stream.c: where the section lies in the mapped input, its whole pages are read again when they are needed.
+ */
+void section_give_back(const struct stream *stream, const struct section *section);
+
+/* stream.c: append a copy of a provenance line. */
+MUST_CHECK enum status stream_append_provenance(struct stream *stream, const char *line, size_t length,
+                                                struct error *error);
+
+/* stream_input.c: bytes of the stream in order, from a mapping or through a block buffer. */
+struct input {
+    int descriptor;
+    const char *at;    /* the next byte */
+    const char *end;   /* behind the last byte at hand */
+    const char *start; /* a byte at hand or already passed, whose offset in the stream is start_offset */
+    int64_t start_offset;
+    char *buffer; /* block buffer of `capacity` bytes, or NULL when the whole input is mapped */
+    size_t capacity;
+    bool ended; /* there is nothing behind `end` */
+};
+
+/* Map a regular file standing at its beginning (the mapping then belongs to `stream`) or prepare to read. */
+MUST_CHECK enum status input_open(struct input *input, struct stream *stream, int descriptor,
+                                  struct error *error);
+void input_close(struct input *input);
+
+/* Make `wanted` bytes available at input->at, or all that is left. Earlier pointers into the input expire. */
+MUST_CHECK enum status input_fill(struct input *input, size_t wanted, struct error *error);
+
+/* The next line, without its newline, which must be there. `line` lies in the input until the next call. */
+MUST_CHECK enum status input_line(struct input *input, const char **line, size_t *length,
+                                  struct error *error);
+
+/* Copy up to `size` bytes; *got < size only at the end of the input. */
+MUST_CHECK enum status input_copy(struct input *input, void *destination, size_t size, size_t *got,
+                                  struct error *error);
+
+/* Offset of input->at from the start of the stream. */
+int64_t input_offset(const struct input *input);
+
+/* Does the line of `length` bytes, which need not end with a zero, start so? */
+static inline bool starts_with(const char *line, size_t length, const char *prefix)
+{
+    size_t size = strlen(prefix);
+    return length >= size && memcmp(line, prefix, size) == 0;
+}
+
+/* stream_header.c: a header line taken apart; the words lie in `copy`. */
+struct header {
+    char *copy;
+    const char *name;
+    enum element_type type;
+    int64_t rows, cols;
+    char *attributes; /* without enc= */
+    bool binary;
+};
+
+/* Take apart a line without its newline and check it; header_free() it, also on failure. */
+MUST_CHECK enum status header_parse(const char *line, size_t length, struct header *header,
+                                    struct error *error);
+void header_free(struct header *header);
+
+/* stream_payload.c: read rows of text and the two blank lines behind, or binary values that are not mapped.
+ * The section owns what was read, also on failure. */
+MUST_CHECK enum status payload_read_text(struct input *input, struct section *section, struct error *error);
+MUST_CHECK enum status payload_read_binary(struct input *input, struct section *section, struct error *error);
+
+/* stream_payload.c: the error of an input that ends in that row. */
+enum status fail_short(const struct section *section, int64_t row, struct error *error);
+
+/* stream_number.c: parse one number that ends at a blank, a line end or `end`. They return the byte behind
+ * it, or NULL when this is no number of that type (out of range included). Both work in the C locale only. */
+const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
+                                 int64_t *value);
+const char *number_parse_double(const char *at, const char *end, double *value);
+const char *number_parse_float(const char *at, const char *end, float *value);
+
+/* The converse: write a number without a terminating zero; returns its length, at most NUMBER_TEXT_LIMIT.
+ */
+enum { NUMBER_TEXT_LIMIT = 32 };
+size_t number_format_integer(char *text, int64_t value);
+size_t number_format_double(char *text, double value);
+size_t number_format_float(char *text, float value);

@@ -1,0 +1,287 @@
+/* Reading a stream: one pass, every line and payload checked, nothing allocated on the word of a header. */
+#include "io/stream/stream_private.h"
+
+#include "base/memory.h"
+
+#include <locale.h>
+#include <string.h>
+#include <zlib.h>
+
+struct reader {
+    struct input input;
+    struct stream *stream;
+    uLong crc;     /* of the bytes outside the payloads, so far */
+    bool binary;   /* some section is binary: the end line must carry the crc */
+    int64_t whole; /* sections read to their end */
+};
+
+/* A line of the frame (everything but payloads): it counts for the crc of the end line. */
+static enum status frame_line(struct reader *reader, const char **line, size_t *length, struct error *error)
+{
+    enum status status = input_line(&reader->input, line, length, error);
+    if (status == STATUS_OK && memchr(*line, '\0', *length) != NULL) {
+        return fail(error, STATUS_INPUT, "zero byte in a header line: damaged");
+    }
+    return status;
+}
+
+static void frame_count(struct reader *reader, const char *line, size_t length)
+{
+    reader->crc = crc32_z(reader->crc, (const Bytef *)line, length);
+}
+
+/* Why the first line is not "# mts 1"; the remedy where it is known. */
+static enum status fail_first_line(const char *line, size_t length, struct error *error)
+{
+    int shown = (int)(length < 40 ? length : 40);
+    if (starts_with(line, length, "# mts 1") && line[length - 1] == '\r') {
+        return fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'");
+    }
+    if (starts_with(line, length, "\xef\xbb\xbf") || starts_with(line, length, "\xff\xfe") ||
+        starts_with(line, length, "\xfe\xff")) {
+        return fail(error, STATUS_INPUT, "begins with a byte order mark: save it as plain ASCII or UTF-8");
+    }
+    if (starts_with(line, length, "# mts ")) {
+        return fail(error, STATUS_INPUT, "stream version '%.*s', this program reads version 1", shown - 6,
+                    line + 6);
+    }
+    if (starts_with(line, length, "$MeshFormat")) {
+        return fail(error, STATUS_INPUT, "a gmsh mesh, not an mts stream: run nodes");
+    }
+    return fail(error, STATUS_INPUT, "not an mts stream: begins with '%.*s', not '# mts 1'", shown, line);
+}
+
+static enum status read_first_line(struct reader *reader, struct error *error)
+{
+    struct input *input = &reader->input;
+    static const char expected[] = "# mts 1\n";
+    RETURN_IF_ERROR(input_fill(input, 64, error));
+    size_t held = (size_t)(input->end - input->at);
+    if (held == 0) {
+        return fail(error, STATUS_INPUT, "empty: no stream arrived (did an earlier stage fail?)");
+    }
+    if (!starts_with(input->at, held, expected)) {
+        if (input->ended && held < strlen(expected) && memcmp(input->at, expected, held) == 0) {
+            return fail(error, STATUS_INPUT, "cut short in its first line (did an earlier stage fail?)");
+        }
+        size_t shown = held < 64 ? held : 64;
+        const char *newline = memchr(input->at, '\n', shown);
+        return fail_first_line(input->at, newline != NULL ? (size_t)(newline - input->at) : shown, error);
+    }
+    frame_count(reader, input->at, strlen(expected));
+    input->at += strlen(expected);
+    return STATUS_OK;
+}
+
+/* Is the text exactly eight lower-case hexadecimal digits? (Upper case would let one flipped bit pass.) */
+static bool parse_crc(const char *text, size_t length, uLong *crc)
+{
+    static const char digits[] = "0123456789abcdef";
+    *crc = 0;
+    for (size_t i = 0; i < length; i++) {
+        const char *digit = memchr(digits, text[i], 16);
+        if (digit == NULL) {
+            return false;
+        }
+        *crc = *crc << 4 | (uLong)(digit - digits);
+    }
+    return length == 8;
+}
+
+/* The newline behind a binary payload and its line "# crc32 XXXXXXXX". */
+static enum status read_crc_line(struct reader *reader, const struct section *section, uLong crc,
+                                 struct error *error)
+{
+    static const char prefix[] = "\n# crc32 ";
+    enum { PREFIX = sizeof prefix - 1, SIZE = PREFIX + 8 + 1 };
+    struct input *input = &reader->input;
+    uLong stated;
+    RETURN_IF_ERROR(input_fill(input, SIZE, error));
+    if (input->end - input->at < SIZE) {
+        return fail_short(section, section->rows, error);
+    }
+    const char *at = input->at;
+    if (memcmp(at, prefix, PREFIX) != 0 || !parse_crc(at + PREFIX, 8, &stated) || at[SIZE - 1] != '\n') {
+        return fail(error, STATUS_INPUT, "%s: no '# crc32' line behind the payload: damaged", section->name);
+    }
+    if (stated != crc) {
+        return fail(error, STATUS_INPUT, "%s: wrong crc32: damaged on its way or on disk", section->name);
+    }
+    frame_count(reader, at + 1, SIZE - 1);
+    input->at += SIZE;
+    return STATUS_OK;
+}
+
+static enum status read_binary(struct reader *reader, struct section *section, uLong header_crc,
+                               struct error *error)
+{
+    struct input *input = &reader->input;
+    int64_t count = section->rows * section->cols;
+    size_t bytes = (size_t)count * element_size(section->type);
+    reader->binary = true;
+    if (input_offset(input) % PAYLOAD_ALIGNMENT != 0) {
+        return fail(error, STATUS_INPUT, "%s: binary payload at offset %lld, not a multiple of %d: damaged",
+                    section->name, (long long)input_offset(input), PAYLOAD_ALIGNMENT);
+    }
+    if (input->buffer != NULL) {
+        RETURN_IF_ERROR(payload_read_binary(input, section, error));
+    } else {
+        size_t held = (size_t)(input->end - input->at);
+        if (held < bytes) {
+            return fail_short(section, (int64_t)(held / element_size(section->type)) / section->cols, error);
+        }
+        section->data = (char *)reader->stream->mapping + (input->at - (char *)reader->stream->mapping);
+        section->owned = false;
+        input->at += bytes;
+    }
+    uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
+    section_give_back(reader->stream, section);
+    return read_crc_line(reader, section, crc, error);
+}
+
+static enum status read_section(struct reader *reader, const char *line, size_t length, struct error *error)
+{
+    FREED_BY(header_free) struct header header = {0};
+    struct section *section;
+    /* The line with its newline; it expires with the next access to the input. */
+    uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
+    frame_count(reader, line, length + 1);
+    RETURN_IF_ERROR(header_parse(line, length, &header, error));
+    if (stream_find(reader->stream, header.name) != NULL) {
+        return fail(error, STATUS_INPUT, "%s: this section stands twice in the stream", header.name);
+    }
+    RETURN_IF_ERROR(stream_append(reader->stream, header.name, header.type, header.rows, header.cols,
+                                  header.attributes, &section, error));
+    return header.binary ? read_binary(reader, section, crc, error)
+                         : payload_read_text(&reader->input, section, error);
+}
+
+/* "# end COUNT" or "# end COUNT crc32=XXXXXXXX", and nothing behind it. */
+static enum status read_end(struct reader *reader, const char *line, size_t length, struct error *error)
+{
+    static const char prefix[] = "# end ";
+    static const char key[] = " crc32=";
+    const char *end = line + length;
+    const char *at = line + strlen(prefix);
+    const char *behind = at;
+    int64_t count = 0;
+    uLong stated;
+    while (behind < end && *behind >= '0' && *behind <= '9') {
+        behind++;
+    }
+    bool has_crc = starts_with(behind, (size_t)(end - behind), key);
+    if (number_parse_integer(at, behind, 0, INT64_MAX, &count) != behind || !(has_crc || behind == end)) {
+        return fail(error, STATUS_INPUT, "'%.*s' is not '# end COUNT%s'", (int)(length < 60 ? length : 60),
+                    line, reader->binary ? " crc32=XXXXXXXX" : "");
+    }
+    if (reader->binary && !has_crc) {
+        return fail(error, STATUS_INPUT, "the end line lacks the crc32= of a stream with binary sections");
+    }
+    if (count != reader->stream->section_count) {
+        return fail(error, STATUS_INPUT, "%lld sections, the end line says %lld",
+                    (long long)reader->stream->section_count, (long long)count);
+    }
+    if (has_crc) {
+        frame_count(reader, line, (size_t)(behind - line));
+        const char *digits = behind + strlen(key);
+        if (!parse_crc(digits, (size_t)(end - digits), &stated) || stated != reader->crc) {
+            return fail(error, STATUS_INPUT, "wrong crc32 of the header lines: damaged or edited");
+        }
+    }
+    enum status status = input_fill(&reader->input, 1, error);
+    if (status == STATUS_OK && reader->input.at != reader->input.end) {
+        status = fail(error, STATUS_INPUT, "goes on behind its end line: two streams in one?");
+    }
+    return status;
+}
+
+/* Provenance is shown on terminals: no control characters but tabs. */
+static enum status provenance_check(const char *line, size_t length, struct error *error)
+{
+    for (size_t i = 0; i < length; i++) {
+        if (((unsigned char)line[i] < 0x20 && line[i] != '\t') || line[i] == 0x7f) {
+            return line[i] == '\r' && i == length - 1
+                       ? fail(error, STATUS_INPUT, "lines end in CR LF: remove them with tr -d '\\r'")
+                       : fail(error, STATUS_INPUT, "control character in a provenance line: damaged");
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status read_lines(struct reader *reader, struct error *error)
+{
+    const char *line;
+    size_t length;
+    RETURN_IF_ERROR(read_first_line(reader, error));
+    for (;;) {
+        RETURN_IF_ERROR(frame_line(reader, &line, &length, error));
+        if (starts_with(line, length, "# end ")) {
+            return read_end(reader, line, length, error);
+        }
+        if (starts_with(line, length, "# stopped ")) {
+            return fail(error, STATUS_INPUT, "not whole, stopped: %.*s; mts recover takes what there is",
+                        (int)(length < 300 ? length - 10 : 290), line + 10);
+        }
+        if (!starts_with(line, length, "# @ ")) {
+            RETURN_IF_ERROR(read_section(reader, line, length, error));
+            reader->whole = reader->stream->section_count;
+        } else if (reader->stream->section_count > 0) {
+            return fail(error, STATUS_INPUT, "a provenance line behind a section");
+        } else {
+            frame_count(reader, line, length + 1);
+            RETURN_IF_ERROR(provenance_check(line, length, error));
+            RETURN_IF_ERROR(stream_append_provenance(reader->stream, line + 4, length - 4, error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Sections that are not whole leave the stream. */
+static void drop_torn(const struct reader *reader)
+{
+    while (reader->stream->section_count > reader->whole) {
+        stream_remove(reader->stream, reader->stream->sections[reader->stream->section_count - 1].name);
+    }
+}
+
+/* Unless `why` is NULL, what is wrong behind some whole sections goes there and is no error. */
+static enum status read_stream(struct stream *stream, int descriptor, const char *name, struct error *why,
+                               struct error *error)
+{
+    struct reader reader = {.stream = stream, .crc = 0};
+    enum status status = STATUS_OK;
+    stream_init(stream);
+    /* Numbers are read in the C locale, whatever the program that calls us has set. */
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c_locale == (locale_t)0) {
+        return fail_memory(error, name);
+    }
+    locale_t previous = uselocale(c_locale);
+    TRY(input_open(&reader.input, stream, descriptor, error));
+    TRY(read_lines(&reader, error));
+done:
+    if (status == STATUS_INPUT && why != NULL && reader.whole > 0) {
+        *why = *error;
+        drop_torn(&reader);
+        status = STATUS_OK;
+    }
+    input_close(&reader.input);
+    uselocale(previous);
+    freelocale(c_locale);
+    if (status != STATUS_OK) {
+        stream_free(stream);
+    }
+    return fail_in(error, status, "%s", name);
+}
+
+enum status stream_read(struct stream *stream, int descriptor, const char *name, struct error *error)
+{
+    return read_stream(stream, descriptor, name, NULL, error);
+}
+
+enum status stream_recover(struct stream *stream, int descriptor, const char *name, struct error *why,
+                           struct error *error)
+{
+    why->text[0] = '\0';
+    return read_stream(stream, descriptor, name, why, error);
+}

@@ -1,0 +1,227 @@
+/* Writing a stream, as text or binary, in large blocks. */
+#include "io/stream/stream_private.h"
+
+#include "base/memory.h"
+#include "io/files/descriptor.h"
+
+#include <inttypes.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+struct writer {
+    int descriptor;
+    char *block;    /* BLOCK_SIZE bytes */
+    size_t held;    /* bytes in the block, not yet written */
+    int64_t offset; /* of the next byte, from the start of the stream */
+    uLong crc;      /* of the bytes outside the payloads */
+    locale_t c_locale, previous;
+};
+
+static enum status write_all(const struct writer *writer, const char *bytes, size_t size, struct error *error)
+{
+    return fail_in(error, descriptor_write(writer->descriptor, bytes, size, error), "cannot write");
+}
+
+static enum status flush(struct writer *writer, struct error *error)
+{
+    size_t held = writer->held;
+    writer->held = 0;
+    return write_all(writer, writer->block, held, error);
+}
+
+static enum status put_bytes(struct writer *writer, const void *bytes, size_t size, struct error *error)
+{
+    writer->offset += (int64_t)size;
+    if (size > BLOCK_SIZE - writer->held) {
+        RETURN_IF_ERROR(flush(writer, error));
+    }
+    if (size >= BLOCK_SIZE) {
+        return write_all(writer, bytes, size, error);
+    }
+    if (size > 0) {
+        memcpy(writer->block + writer->held, bytes, size);
+        writer->held += size;
+    }
+    return STATUS_OK;
+}
+
+/* Bytes outside the payloads. */
+static enum status put_frame(struct writer *writer, const void *bytes, size_t size, struct error *error)
+{
+    writer->crc = crc32_z(writer->crc, bytes, size);
+    return put_bytes(writer, bytes, size, error);
+}
+
+static enum status put_text(struct writer *writer, const char *text, struct error *error)
+{
+    return put_frame(writer, text, strlen(text), error);
+}
+
+/* The header line; before a binary payload it is padded with blanks up to the alignment. */
+static enum status put_header(struct writer *writer, const struct section *section, bool text, uLong *crc,
+                              struct error *error)
+{
+    SCRATCH char *line = NULL;
+    size_t room = strlen(section->name) + strlen(section->attributes) + 128 + PAYLOAD_ALIGNMENT;
+    RETURN_IF_ERROR(section_validate(section->name, section->type, section->rows, section->cols,
+                                     section->attributes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&line, (int64_t)room, error));
+    int printed =
+        snprintf(line, room, "# %s %s %" PRId64 " %" PRId64 " enc=%s%s%s", section->name,
+                 element_type_name(section->type), section->rows, section->cols, text ? "text" : "bin",
+                 section->attributes[0] != '\0' ? " " : "", section->attributes);
+    size_t length = (size_t)printed;
+    if (!text) {
+        while ((writer->offset + (int64_t)length + 1) % PAYLOAD_ALIGNMENT != 0) {
+            line[length++] = ' ';
+        }
+    }
+    line[length++] = '\n';
+    *crc = crc32_z(0, (const Bytef *)line, length);
+    return put_frame(writer, line, length, error);
+}
+
+static size_t format_element(char *text, const struct section *section, int64_t index)
+{
+    switch (section->type) {
+    case TYPE_I4:
+        return number_format_integer(text, ((const int32_t *)section->data)[index]);
+    case TYPE_I8:
+        return number_format_integer(text, ((const int64_t *)section->data)[index]);
+    case TYPE_F4:
+        return number_format_float(text, ((const float *)section->data)[index]);
+    case TYPE_F8:
+        return number_format_double(text, ((const double *)section->data)[index]);
+    }
+    return 0;
+}
+
+static enum status put_rows(struct writer *writer, const struct section *section, struct error *error)
+{
+    int64_t index = 0;
+    for (int64_t row = 0; row < section->rows; row++) {
+        for (int64_t column = 0; column < section->cols; column++, index++) {
+            if (BLOCK_SIZE - writer->held < NUMBER_TEXT_LIMIT + 1) {
+                RETURN_IF_ERROR(flush(writer, error));
+            }
+            char *at = writer->block + writer->held;
+            size_t length = format_element(at, section, index);
+            at[length++] = column + 1 < section->cols ? ' ' : '\n';
+            writer->held += length;
+            writer->offset += (int64_t)length;
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status put_payload_text(struct writer *writer, const struct section *section, struct error *error)
+{
+    RETURN_IF_ERROR(put_rows(writer, section, error));
+    return put_bytes(writer, "\n\n", 2, error);
+}
+
+static enum status put_payload_binary(struct writer *writer, const struct section *section, uLong header_crc,
+                                      struct error *error)
+{
+    char line[32];
+    size_t bytes = (size_t)(section->rows * section->cols) * element_size(section->type);
+    uLong crc = bytes > 0 ? crc32_z(header_crc, section->data, bytes) : header_crc;
+    snprintf(line, sizeof line, "# crc32 %08lx\n", crc);
+    RETURN_IF_ERROR(put_bytes(writer, section->data, bytes, error));
+    RETURN_IF_ERROR(put_bytes(writer, "\n", 1, error));
+    return put_text(writer, line, error);
+}
+
+/* A line of one kind of words and others. */
+static enum status put_line(struct writer *writer, const char *kind, const char *text, struct error *error)
+{
+    RETURN_IF_ERROR(put_text(writer, kind, error));
+    RETURN_IF_ERROR(put_text(writer, text, error));
+    return put_text(writer, "\n", error);
+}
+
+static enum status put_end(struct writer *writer, const struct stream *stream, bool text, struct error *error)
+{
+    char line[64];
+    snprintf(line, sizeof line, "# end %" PRId64, stream->section_count);
+    RETURN_IF_ERROR(put_text(writer, line, error));
+    if (!text && stream->section_count > 0) {
+        snprintf(line, sizeof line, " crc32=%08lx", writer->crc);
+        RETURN_IF_ERROR(put_bytes(writer, line, strlen(line), error));
+    }
+    return put_bytes(writer, "\n", 1, error);
+}
+
+/* stopped: why the stream is not whole, or NULL. */
+static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
+                              const char *stopped, struct error *error)
+{
+    RETURN_IF_ERROR(put_text(writer, "# mts 1\n", error));
+    for (int64_t i = 0; i < stream->provenance_count; i++) {
+        RETURN_IF_ERROR(put_line(writer, "# @ ", stream->provenance[i], error));
+    }
+    for (int64_t i = 0; i < stream->section_count; i++) {
+        const struct section *section = &stream->sections[i];
+        uLong crc;
+        RETURN_IF_ERROR(put_header(writer, section, text, &crc, error));
+        RETURN_IF_ERROR(text ? put_payload_text(writer, section, error)
+                             : put_payload_binary(writer, section, crc, error));
+        section_give_back(stream, section);
+    }
+    RETURN_IF_ERROR(stopped != NULL ? put_line(writer, "# stopped ", stopped, error)
+                                    : put_end(writer, stream, text, error));
+    return flush(writer, error);
+}
+
+/* A block to gather output in, and the C locale for numbers, whatever the program that calls us has set. */
+static enum status writer_open(struct writer *writer, int descriptor, struct error *error)
+{
+    *writer = (struct writer){.descriptor = descriptor, .block = malloc(BLOCK_SIZE)};
+    writer->c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (writer->block == NULL || writer->c_locale == (locale_t)0) {
+        return fail_memory(error, "output");
+    }
+    writer->previous = uselocale(writer->c_locale);
+    return STATUS_OK;
+}
+
+static void writer_close(struct writer *writer)
+{
+    if (writer->previous != (locale_t)0) {
+        uselocale(writer->previous);
+    }
+    if (writer->c_locale != (locale_t)0) {
+        freelocale(writer->c_locale);
+    }
+    free(writer->block);
+}
+
+static enum status write_stream(const struct stream *stream, const char *stopped, int descriptor, bool text,
+                                struct error *error)
+{
+    FREED_BY(writer_close) struct writer writer = {0};
+    RETURN_IF_ERROR(writer_open(&writer, descriptor, error));
+    return put_stream(&writer, stream, text, stopped, error);
+}
+
+enum status stream_write(const struct stream *stream, int descriptor, bool text, struct error *error)
+{
+    return write_stream(stream, NULL, descriptor, text, error);
+}
+
+enum status stream_write_stopped(const struct stream *stream, const char *reason, int descriptor, bool text,
+                                 struct error *error)
+{
+    return write_stream(stream, reason, descriptor, text, error);
+}
+
+enum status stream_write_rows(const struct section *section, int descriptor, struct error *error)
+{
+    FREED_BY(writer_close) struct writer writer = {0};
+    RETURN_IF_ERROR(writer_open(&writer, descriptor, error));
+    RETURN_IF_ERROR(put_rows(&writer, section, error));
+    return flush(&writer, error);
+}

@@ -1,0 +1,361 @@
+/* VTK XML files: the format is described in "VTK File Formats" (Kitware), section XML. */
+#include "io/vtk/vtk.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as they lie in memory");
+
+/* ---- sections ---- */
+
+/* Copy item `index` of a comma list into text[size]; false when there is none. */
+static bool list_item(const char *list, int64_t index, char *text, size_t size)
+{
+    for (; index > 0; index--) {
+        list = strchr(list, ',');
+        if (list == NULL) {
+            return false;
+        }
+        list++;
+    }
+    size_t length = strcspn(list, ",");
+    if (length == 0 || length >= size) {
+        return false;
+    }
+    memcpy(text, list, length);
+    text[length] = '\0';
+    return true;
+}
+
+/* Copy the name of a column, from attribute cols=, into text[size]; false when it has none. */
+static bool column_name(const struct section *section, int64_t column, char *text, size_t size)
+{
+    char names[1024];
+    return section_attribute(section, "cols", names, sizeof names) && list_item(names, column, text, size);
+}
+
+/* The column of that name, or -1. */
+static int64_t find_column(const struct section *section, const char *wanted)
+{
+    char name[64];
+    for (int64_t column = 0; column < section->cols; column++) {
+        if (column_name(section, column, name, sizeof name) && strcmp(name, wanted) == 0) {
+            return column;
+        }
+    }
+    return -1;
+}
+
+static bool is_floating(const struct section *section)
+{
+    return section->type == TYPE_F4 || section->type == TYPE_F8;
+}
+
+bool vtk_tensor(const struct section *section, int64_t from[6])
+{
+    static const char *const names[6] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+    int64_t found = 0;
+    if (!is_floating(section) || (section->cols != 4 && section->cols != 6)) {
+        return false;
+    }
+    for (int k = 0; k < 6; k++) {
+        from[k] = find_column(section, names[k]);
+        found += from[k] >= 0;
+    }
+    return found == section->cols && (section->cols == 6 || (from[4] < 0 && from[5] < 0));
+}
+
+/* Print an element of a section so that it reads back exactly. */
+static void print_element(FILE *file, const struct section *section, int64_t index)
+{
+    switch (section->type) {
+    case TYPE_I4:
+        fprintf(file, "%" PRId32, ((const int32_t *)section->data)[index]);
+        break;
+    case TYPE_I8:
+        fprintf(file, "%" PRId64, ((const int64_t *)section->data)[index]);
+        break;
+    case TYPE_F4:
+        fprintf(file, "%.9g", (double)((const float *)section->data)[index]);
+        break;
+    case TYPE_F8:
+        fprintf(file, "%.17g", ((const double *)section->data)[index]);
+        break;
+    }
+}
+
+/* Flush; the status of all that was written to the file. */
+static enum status check_written(FILE *file, struct error *error)
+{
+    errno = 0;
+    if (fflush(file) == 0 && ferror(file) == 0) {
+        return STATUS_OK;
+    }
+    return fail(error, STATUS_SYSTEM, "cannot write: %s", errno != 0 ? strerror(errno) : "write error");
+}
+
+/* ---- files ---- */
+
+enum { VTK_VERTEX = 1, VTK_TRIANGLE = 5, VTK_TETRA = 10 };
+
+/* An array under way: text, or base64 of its bytes. */
+struct writer {
+    FILE *file;
+    bool text;
+    unsigned char held[3]; /* bytes not yet encoded */
+    int held_count;
+};
+
+static void print_escaped(FILE *file, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (strchr("<>&\"'", c) != NULL) {
+            fprintf(file, "&#%d;", c);
+        } else {
+            fputc(c < 0x20 ? '?' : c, file);
+        }
+    }
+}
+
+static void put_group(struct writer *writer)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *b = writer->held;
+    char group[4] = {digits[b[0] >> 2], digits[(b[0] & 3) << 4 | b[1] >> 4],
+                     digits[(b[1] & 15) << 2 | b[2] >> 6], digits[b[2] & 63]};
+    for (int i = writer->held_count + 1; i < 4; i++) {
+        group[i] = '=';
+    }
+    fwrite(group, 1, 4, writer->file);
+    memset(writer->held, 0, 3);
+    writer->held_count = 0;
+}
+
+static void put_bytes(struct writer *writer, const void *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        writer->held[writer->held_count++] = ((const unsigned char *)bytes)[i];
+        if (writer->held_count == 3) {
+            put_group(writer);
+        }
+    }
+}
+
+/* The start tag of an array of `count` values of `size` bytes, up to its attributes' end. */
+static void begin_array(struct writer *writer, const char *type, const char *name, int64_t columns)
+{
+    fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
+    print_escaped(writer->file, name);
+    fprintf(writer->file, "\" NumberOfComponents=\"%" PRId64 "\"", columns);
+}
+
+static void begin_data(struct writer *writer, int64_t count, size_t size)
+{
+    fprintf(writer->file, " format=\"%s\">\n", writer->text ? "ascii" : "binary");
+    if (!writer->text) {
+        uint64_t bytes = (uint64_t)count * size;
+        put_bytes(writer, &bytes, sizeof bytes);
+    }
+}
+
+static void end_array(struct writer *writer)
+{
+    if (writer->held_count > 0) {
+        put_group(writer);
+    }
+    fputs(writer->text ? "</DataArray>\n" : "\n</DataArray>\n", writer->file);
+}
+
+static void put_integer(struct writer *writer, int64_t value, size_t size)
+{
+    if (writer->text) {
+        fprintf(writer->file, "%" PRId64 "\n", value);
+    } else {
+        put_bytes(writer, &value, size);
+    }
+}
+
+/* What is written of a section: `count` columns, each one of its own or, -1, of zeros. */
+struct layout {
+    int64_t count;
+    bool is_tensor;
+    int64_t tensor[6]; /* columns of a symmetric tensor in VTK's order */
+};
+
+static struct layout layout_of(const struct vtk_mesh *mesh, const struct section *section)
+{
+    struct layout layout = {.count = section->cols};
+    layout.is_tensor = vtk_tensor(section, layout.tensor);
+    if (layout.is_tensor) {
+        layout.count = 6;
+    } else if (is_floating(section) && mesh->dim == 2 && section->cols == 2) {
+        layout.count = 3;
+    }
+    return layout;
+}
+
+static int64_t layout_column(const struct layout *layout, const struct section *section, int64_t column)
+{
+    return layout->is_tensor ? layout->tensor[column] : column < section->cols ? column : -1;
+}
+
+static void put_rows(struct writer *writer, const struct section *section, const struct layout *layout)
+{
+    static const char zeros[8];
+    size_t size = element_size(section->type);
+    begin_data(writer, section->rows * layout->count, size);
+    for (int64_t row = 0; row < section->rows; row++) {
+        for (int64_t k = 0; k < layout->count; k++) {
+            int64_t column = layout_column(layout, section, k);
+            int64_t index = row * section->cols + column;
+            if (!writer->text) {
+                put_bytes(writer, column < 0 ? zeros : (const char *)section->data + (size_t)index * size,
+                          size);
+                continue;
+            }
+            fputs(k > 0 ? " " : "", writer->file);
+            if (column < 0) {
+                fputc('0', writer->file);
+            } else {
+                print_element(writer->file, section, index);
+            }
+        }
+        fputs(writer->text ? "\n" : "", writer->file);
+    }
+    end_array(writer);
+}
+
+static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *field)
+{
+    static const char *const types[] = {"Int32", "Int64", "Float32", "Float64"};
+    static const char *const added[] = {"", "", "z", "", "yz", "xz"}; /* names of columns of zeros */
+    struct layout layout = layout_of(mesh, field->section);
+    char name[64];
+    begin_array(writer, types[field->section->type], field->name, layout.count);
+    bool is_named = layout.count > 1 && column_name(field->section, 0, name, sizeof name);
+    for (int64_t k = 0; is_named && k < layout.count; k++) {
+        int64_t column = layout_column(&layout, field->section, k);
+        if (column < 0) {
+            fprintf(writer->file, " ComponentName%" PRId64 "=\"%s\"", k, added[k]);
+        } else if (column_name(field->section, column, name, sizeof name)) {
+            fprintf(writer->file, " ComponentName%" PRId64 "=\"", k);
+            print_escaped(writer->file, name);
+            fputc('"', writer->file);
+        }
+    }
+    put_rows(writer, field->section, &layout);
+}
+
+static void begin_number(struct writer *writer, const char *type, const char *name)
+{
+    fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
+    print_escaped(writer->file, name);
+    fputs("\" NumberOfTuples=\"1\"", writer->file);
+}
+
+/* The regions by name, each with its index in cells.region: readers other than VTK know no arrays of strings.
+ * And numbers. */
+static void put_field_data(struct writer *writer, const char *regions, int64_t count,
+                           const struct vtk_number *numbers)
+{
+    char name[256], label[300];
+    bool is_empty = count == 0 && !list_item(regions, 0, name, sizeof name);
+    fputs(is_empty ? "" : "<FieldData>\n", writer->file);
+    for (int64_t i = 0; list_item(regions, i, name, sizeof name); i++) {
+        snprintf(label, sizeof label, "region.%s", name);
+        begin_number(writer, "Int64", label);
+        begin_data(writer, 1, 8);
+        put_integer(writer, i, 8);
+        end_array(writer);
+    }
+    for (int64_t i = 0; i < count; i++) {
+        double value = numbers[i].value;
+        struct section section = {.type = TYPE_F8, .rows = 1, .cols = 1, .data = &value};
+        begin_number(writer, "Float64", numbers[i].name);
+        put_rows(writer, &section, &(struct layout){.count = 1});
+    }
+    fputs(is_empty ? "" : "</FieldData>\n", writer->file);
+}
+
+static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
+{
+    int corners = mesh->node != NULL ? mesh->dim + 1 : 1;
+    int64_t count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
+    int type = mesh->node == NULL ? VTK_VERTEX : mesh->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
+    fputs("<Cells>\n", writer->file);
+    begin_array(writer, "Int64", "connectivity", 1);
+    begin_data(writer, count * corners, 8);
+    for (int64_t i = 0; i < count * corners; i++) {
+        put_integer(writer, mesh->node != NULL ? mesh->node[i] : i, 8);
+    }
+    end_array(writer);
+    begin_array(writer, "Int64", "offsets", 1);
+    begin_data(writer, count, 8);
+    for (int64_t c = 1; c <= count; c++) {
+        put_integer(writer, c * corners, 8);
+    }
+    end_array(writer);
+    begin_array(writer, "UInt8", "types", 1);
+    begin_data(writer, count, 1);
+    for (int64_t c = 0; c < count; c++) {
+        put_integer(writer, type, 1);
+    }
+    end_array(writer);
+    fputs("</Cells>\n", writer->file);
+}
+
+static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const struct vtk_field *fields,
+                       int64_t field_count, bool of_cells)
+{
+    const char *tag = of_cells ? "CellData" : "PointData";
+    fprintf(writer->file, "<%s>\n", tag);
+    for (int64_t f = 0; f < field_count; f++) {
+        if (fields[f].of_cells == of_cells) {
+            put_field(writer, mesh, &fields[f]);
+        }
+    }
+    fprintf(writer->file, "</%s>\n", tag);
+}
+
+enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
+                      const struct vtk_field *fields, int64_t number_count, const struct vtk_number *numbers,
+                      bool text, struct error *error)
+{
+    struct writer writer = {.file = file, .text = text};
+    union {
+        const double *in;
+        void *out; /* a section's data, though never written here */
+    } x = {.in = mesh->x};
+    struct section points = {.type = TYPE_F8, .rows = mesh->node_count, .cols = mesh->dim, .data = x.out};
+    int64_t cell_count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+          "byte_order=\"LittleEndian\" "
+          "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
+          file);
+    put_field_data(&writer, mesh->region_names, number_count, numbers);
+    fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
+            mesh->node_count, cell_count);
+    begin_array(&writer, "Float64", "Points", 3);
+    put_rows(&writer, &points, &(struct layout){.count = 3});
+    fputs("</Points>\n", file);
+    put_cells(&writer, mesh);
+    put_fields(&writer, mesh, fields, field_count, false);
+    put_fields(&writer, mesh, fields, field_count, true);
+    fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", file);
+    return check_written(file, error);
+}
+
+enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,
+                      struct error *error)
+{
+    fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n", file);
+    for (int64_t i = 0; i < count; i++) {
+        fprintf(file, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"", times[i]);
+        print_escaped(file, names[i]);
+        fputs("\"/>\n", file);
+    }
+    fputs("</Collection>\n</VTKFile>\n", file);
+    return check_written(file, error);
+}

@@ -1,0 +1,221 @@
+#include "solid/assembly/assembly.h"
+
+#include "solid/assembly/prescription.h"
+
+#include "approx/field/field.h"
+#include "approx/cells/quadrature.h"
+#include "base/box.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the point's
+ * barycentric coordinates. */
+static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
+                                 struct error *error)
+{
+    const struct cells *cells = &input->cells;
+    const int32_t *cell = input->point_cell;
+    int corners = cells->dim + 1;
+    RETURN_IF_ERROR(NEW_ARRAY(vertex, input->point_count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(coordinate, input->point_count * corners, error));
+    for (int64_t q = 0; q < input->point_count; q++) {
+        memcpy(*vertex + q * corners, cells->node + (int64_t)cell[q] * corners,
+               (size_t)corners * sizeof **vertex);
+        cell_barycentric(cells, cell[q], input->x + q * cells->dim, *coordinate + q * corners);
+    }
+    return STATUS_OK;
+}
+
+static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
+{
+    struct material_list *materials = &input->materials;
+    SCRATCH int32_t *vertex = NULL;
+    SCRATCH double *coordinate = NULL;
+    SCRATCH bool *at_edge = NULL;
+    if (input->smoothed && assembly_holds_averages(input)) {
+        RETURN_IF_ERROR(assembly_soften_junctions(input, materials, error));
+        RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
+    }
+    if (!input->pointwise_volume) {
+        RETURN_IF_ERROR(list_vertices(input, &vertex, &coordinate, error));
+    }
+    struct smoothed_cells_input smoothed = {.x = input->cells.x,
+                                            .cell_node = input->cells.node,
+                                            .faces = &input->faces,
+                                            .face_ptr = input->lists.ptr,
+                                            .face_idx = input->lists.idx,
+                                            .face_phi = input->phi,
+                                            .face_reader = input->face_reader,
+                                            .node_ptr = input->node_lists.ptr,
+                                            .node_idx = input->node_lists.idx,
+                                            .node_phi = input->node_phi,
+                                            .copied = input->copied,
+                                            .context = input->context};
+    struct body_input body = {.dim = input->cells.dim,
+                              .node_x = input->cells.x,
+                              .node_count = input->cells.node_count,
+                              .point_count = input->point_count,
+                              .x = input->x,
+                              .weight = input->weight,
+                              .ptr = input->smoothed ? NULL : input->lists.ptr,
+                              .idx = input->smoothed ? NULL : input->lists.idx,
+                              .dphi = input->dphi,
+                              .materials = materials->items,
+                              .material = materials->of_point,
+                              .material_count = materials->count,
+                              .group = materials->section,
+                              .vertex = vertex,
+                              .barycentric = coordinate,
+                              .at_edge = at_edge,
+                              .smoothed = input->smoothed ? &smoothed : NULL,
+                              .ranks = input->ranks};
+    return body_build(&body, &system->body, error);
+}
+
+/* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
+static enum status lump_mass(const struct assembly *input, struct solid_system *system, struct error *error)
+{
+    int corners = input->cells.dim + 1;
+    RETURN_IF_ERROR(NEW_ARRAY(&system->lumped_mass, input->cells.node_count, error));
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        double density = input->materials.items[input->materials.of_cell[c]].density;
+        for (int k = 0; k < corners; k++) {
+            system->lumped_mass[input->cells.node[c * corners + k]] +=
+                density * cell_volume(&input->cells, c) / corners;
+        }
+    }
+    for (int64_t n = 0; n < input->cells.node_count; n++) {
+        if (!(system->lumped_mass[n] > 0.0)) {
+            return fail(error, STATUS_INPUT, "nodes.x: row %lld: the node is in no cell: it has no mass",
+                        (long long)n);
+        }
+    }
+    return STATUS_OK;
+}
+
+void assembly_complete(struct assembly *input)
+{
+    int dim = input->cells.dim;
+    struct box box = box_of(dim, input->cells.node_count, input->cells.x);
+    input->extent = box_diagonal(&box);
+    input->boundary = input->faces;
+    input->boundary.count = input->faces.boundary_count;
+    input->face_table = (struct face_table){.dim = dim,
+                                            .node_count = input->cells.node_count,
+                                            .x = input->cells.x,
+                                            .faces = &input->boundary,
+                                            .per_face = quadrature_face_rule(dim).points,
+                                            .lists = &input->boundary_lists,
+                                            .phi = input->boundary_phi,
+                                            .cell_side = input->cell_side};
+}
+
+enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
+                           struct error *error)
+{
+    *system = (struct solid_system){.dim = input->cells.dim,
+                                    .node_count = input->cells.node_count,
+                                    .X = input->cells.x,
+                                    .node_lists = &input->node_lists,
+                                    .node_phi = input->node_phi,
+                                    .curves = input->curves,
+                                    .curve_count = input->curve_count,
+                                    .conditions = input->conditions};
+    input->curves = NULL;
+    input->curve_count = 0;
+    constraint_rows_init(&system->rows, system->dim);
+    constraint_rows_init(&system->penalties, system->dim);
+    RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
+    RETURN_IF_ERROR(lump_mass(input, system, error));
+    RETURN_IF_ERROR(assembly_add_loads(input, system, error));
+    RETURN_IF_ERROR(build_body(input, system, error));
+    RETURN_IF_ERROR(assembly_complete_gravity(input, system, error));
+    RETURN_IF_ERROR(
+        field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
+    RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_points(input, system, note, error));
+    RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
+    return system_share_penalties(system, error);
+}
+
+void material_list_free(struct material_list *list)
+{
+    FREE_ALL(list->items, list->of_point, list->of_cell, list->section);
+    *list = (struct material_list){0};
+}
+
+bool assembly_has_gravity(const struct assembly *input)
+{
+    return input->gravity[0] != 0.0 || input->gravity[1] != 0.0 || input->gravity[2] != 0.0;
+}
+
+bool assembly_holds_averages(const struct assembly *input)
+{
+    return !input->node_values && !input->direct;
+}
+
+/* Mark the faces of the boundary whose nodes are all those of a set of facets; stamp[node]: at most `number`
+ * - 1. */
+static void mark_faces(const struct assembly *input, const struct facet_set *set, int64_t number,
+                       int64_t *stamp, bool *marked)
+{
+    const struct faces *faces = &input->boundary;
+    int dim = input->cells.dim;
+    for (int64_t k = 0; k < set->count * dim; k++) {
+        stamp[set->facet[k]] = number;
+    }
+    for (int64_t f = 0; f < faces->count && set->count > 0; f++) {
+        bool is_of_set = true;
+        for (int k = 0; k < dim; k++) {
+            is_of_set = is_of_set && stamp[faces->node[f * dim + k]] == number;
+        }
+        marked[f] = marked[f] || is_of_set;
+    }
+}
+
+/* Faces of conditions that prescribe at least so many directions; with `sliding` of those along normals
+ * alone. */
+static enum status find_faces(const struct assembly *input, int least, bool sliding, bool **held,
+                              struct error *error)
+{
+    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
+    RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct condition *condition = &input->conditions[i];
+        if (prescription_directions(condition, input->cells.dim) >= least &&
+            (!sliding || condition->kind == CONDITION_NORMAL)) {
+            mark_faces(input, &condition->facets, i + 1, stamp, *held);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
+{
+    return find_faces(input, least, false, held, error);
+}
+
+enum status assembly_sliding_faces(const struct assembly *input, bool **slides, struct error *error)
+{
+    return find_faces(input, 1, true, slides, error);
+}
+
+double assembly_penalty_modulus(const struct solid_system *system, double factor)
+{
+    double modulus = 0.0;
+    for (int64_t m = 0; m < system->body.material_count; m++) {
+        const struct material *material = &system->body.materials[m];
+        modulus = fmax(modulus, fmin(factor * material->shear_modulus, material_wave_modulus(material)));
+    }
+    return modulus;
+}
+
+void assembly_nodal_field(const struct assembly *input, const double *u, double *field)
+{
+    field_evaluate(input->cells.node_count, input->node_lists.ptr, input->node_lists.idx, input->node_phi,
+                   input->cells.dim, u, field);
+}

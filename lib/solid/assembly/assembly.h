@@ -1,0 +1,150 @@
+/* Assembly: a system ready for time stepping from a cloud of nodes with its tables of shape functions,
+ * materials, and conditions. All arrays are the caller's, who keeps them as long as the system. */
+#pragma once
+
+#include "solid/system/condition.h"
+#include "solid/system/system.h"
+
+enum load_kind { LOAD_PRESSURE, LOAD_TRACTION, LOAD_FORCE };
+
+struct load {
+    enum load_kind kind;
+    struct facet_set facets; /* of a pressure or a traction */
+    const int32_t *nodes;    /* node_count: of forces */
+    int64_t node_count;
+    double pressure; /* Pa, positive pushes inward; and with is_fluid: */
+    bool is_fluid;
+    enum fluid_part part;
+    double weight[3], level[3]; /* N/m3, and a place at its level, m */
+    double components[3];       /* traction: Pa; force: N on each node (2D: N/m) */
+    int32_t curve;
+};
+
+/* Contact of facets with a rigid surface, or with others of the body. */
+struct contact_condition {
+    const char *where; /* as of a condition */
+    struct facet_set facets;
+    struct facet_set opposite; /* unless empty: the facets may come into contact with these, or with
+                                  themselves where both are the same */
+    bool whole; /* the facets are the whole boundary: it is no error that none faces another one at rest */
+    int sign;   /* as of the contact, with opposite facets */
+    const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
+    int64_t rigid_count;
+    bool flip;
+    double stiffness; /* Pa/m; 0: that of a layer of cells */
+    struct rigid_motion motion;
+};
+
+/* Materials: one for each section, or one for each integration point of a section with a table. */
+struct material_list {
+    struct material *items; /* count */
+    int64_t count;
+    int32_t *of_point; /* of each integration point */
+    int32_t *of_cell;  /* of each cell: that of its section */
+    int32_t *section;  /* count: of each */
+};
+void material_list_free(struct material_list *list);
+
+struct assembly {
+    /* The cloud, its cells, and all their faces; without smoothed cells only those on the boundary. */
+    struct cells cells;
+    struct faces faces;
+    /* Integration points: each in a cell; smoothed cells are one point each, in their order. */
+    bool smoothed;
+    int64_t point_count;
+    const double *x, *weight; /* point_count * dim, m; point_count, m2 or m3 */
+    const int32_t *point_cell;
+    /* Shape functions: at the points, with gradients; or, of smoothed cells, averages over the faces; at the
+     * quadrature points of the boundary (quadrature_face_rule); at the nodes. */
+    struct neighbours lists, boundary_lists, node_lists;
+    const double *phi, *dphi; /* dphi NULL: averages over faces */
+    const double *boundary_phi, *node_phi;
+    const int32_t *face_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
+                                   empty in others; NULL: all have all */
+    /* Called, unless NULL, when `lists`, phi and dphi, which take most of the memory, are no longer needed.
+     */
+    void (*copied)(void *context);
+    void *context;
+
+    const int32_t *cell_side; /* the side of each cell of the interfaces at which supports stop; NULL: none */
+    const struct ranks *ranks; /* processes that compute the body together; NULL: one. Of several that have
+                                  all `copied` is not called */
+
+    struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
+    bool pointwise_volume;          /* no nodal volumes */
+
+    struct load_curve *curves; /* curve_count; taken over by the system */
+    int64_t curve_count;
+    const struct condition *conditions;
+    int64_t condition_count;
+    bool node_values; /* conditions on facets hold values at nodes, not averages; */
+    bool direct;      /* or the parameters there instead of values */
+    const struct load *loads;
+    int64_t load_count;
+    double gravity[3]; /* m/s2; 0: none */
+    int32_t gravity_curve;
+    const struct contact_condition *contacts;
+    int64_t contact_count;
+    bool in_time; /* for dynamics: gravity by the lumped mass */
+
+    /* Set by assembly_complete. */
+    struct faces boundary; /* the faces on the boundary */
+    struct face_table face_table;
+    double extent; /* diagonal of the box of the nodes, m */
+};
+
+/* Fill in what follows from the cells, their faces and the tables; the assembly must stay where it is. */
+void assembly_complete(struct assembly *input);
+
+/* Build the system. `note` receives a remark that is no error, or an empty text. Errors: those of the parts;
+ * STATUS_INPUT also for a node of no cell, and for conditions that disagree. */
+MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
+                                      struct error *error);
+
+/* Replace the contacts of the system by those of `input`, which may have changed, in their initial state.
+ * Errors: as assembly_build. */
+MUST_CHECK enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
+                                               struct error *error);
+
+/* The parts of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
+ * reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
+MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
+                                               struct error *note, struct error *error);
+MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
+                                           struct error *note, struct error *error);
+MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
+                                          struct error *error);
+/* Add the weight of the body where face_reader is given. It needs rows that only the built body has fetched.
+ */
+MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
+                                                 struct error *error);
+MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
+                                             struct error *error);
+MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
+                                                 struct error *error);
+
+/* (*at_edge)[node_count]: nodes at edges between clamped and free sides, in 3D; NULL: there are none. The
+ * caller's to free. */
+MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
+
+bool assembly_has_gravity(const struct assembly *input);
+
+/* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
+bool assembly_holds_averages(const struct assembly *input);
+
+/* held[boundary.count]: whether all nodes of each face belong to facets of one condition that prescribes at
+ * least `least` directions. The caller's to free. */
+MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
+                                           struct error *error);
+
+/* slides[boundary.count]: whether such a condition prescribes only the displacement along the normal, so that
+ * the face stays in its plane. The caller's to free. */
+MUST_CHECK enum status assembly_sliding_faces(const struct assembly *input, bool **slides,
+                                              struct error *error);
+
+/* The modulus of penalties, Pa: the P-wave modulus, but at most `factor` times the shear modulus, so that it
+ * does not grow with the bulk modulus; the largest value of the body's materials. */
+double assembly_penalty_modulus(const struct solid_system *system, double factor);
+
+/* field[node_count * dim] = u_h at the nodes. */
+void assembly_nodal_field(const struct assembly *input, const double *u, double *field);

@@ -1,0 +1,290 @@
+#include "solid/assembly/prescription.h"
+
+#include "approx/field/field.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Penalty of the constraints between their averages, by the shear modulus and per size of a cell, as in
+ * Nitsche's method. From .0001 to 100 the forces on clamped blocks change by .2 %. */
+static const double constraint_penalty_factor = 10.0;
+
+/* A constraint penalty of about the stiffness of a layer of cells, times the area of its point of the facets.
+ */
+static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
+                               int64_t a, const double *direction, double target, struct error *error)
+{
+    struct average average = average_of_boundary(points, a);
+    return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
+                                 points->node[a], p->modulus * points->area[a] / p->layer, error);
+}
+
+static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
+                           const double *direction, double target, struct error *error)
+{
+    int64_t at = averages->ptr[a];
+    static const double one = 1.0;
+    struct constraint_rows *rows = &p->system->rows;
+    if (p->penalties) {
+        return add_penalty(p, averages, a, direction, target, error);
+    }
+    if (p->input->direct) {
+        /* With a weight function that almost interpolates, the parameter is the value. */
+        return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->condition->curve,
+                                   p->number, averages->node[a], error);
+    }
+    return constraint_rows_add(rows, averages->ptr[a + 1] - at, averages->idx + at, averages->phi + at,
+                               direction, target, p->condition->curve, p->number, averages->node[a], error);
+}
+
+/* All rows of one average, whatever is held already. */
+static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
+                               int64_t a, struct error *error)
+{
+    struct demand demand;
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        status = add_row(p, averages, a, demand.direction + k * p->input->cells.dim, demand.value[k], error);
+    }
+    return status;
+}
+
+/* Note, for the group of an average, which components are held at its node. */
+static void note_shared(const struct prescription *p, int32_t node, bool *shared)
+{
+    int dim = p->held->dim;
+    const double *axis = p->held->axis + (int64_t)node * dim * dim;
+    for (int k = 0; k < p->held->count[node]; k++) {
+        for (int i = 0; i < dim; i++) {
+            shared[i] = shared[i] || fabs(axis[k * dim + i]) > HELD_LEAST;
+        }
+    }
+}
+
+/* The rows of one average along directions that no condition before holds at its node. Where the whole
+ * displacement is prescribed, the directions are turned to be across what is held. */
+static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
+                            bool *shared, struct error *error)
+{
+    int dim = p->input->cells.dim, count = 0;
+    int32_t node = averages->node[a];
+    struct demand demand;
+    double mine[9];
+    bool full = prescription_is_full(p);
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        double rest[3], target = demand.value[k], *direction = demand.direction + k * dim;
+        double length = held_rest(p->held, node, full ? count : 0, mine, direction, rest);
+        if (!(length > HELD_LEAST)) {
+            if (shared != NULL) {
+                note_shared(p, node, shared);
+            }
+            continue;
+        }
+        if (full) {
+            target = 0.0;
+            for (int i = 0; i < dim; i++) {
+                direction[i] = mine[count * dim + i] = rest[i] / length;
+                target += direction[i] * demand.value[i];
+            }
+            count++;
+        }
+        status = add_row(p, averages, a, direction, target, error);
+    }
+    return status;
+}
+
+/* The rows of the first `count` averages, and what the condition prescribes at their nodes. With sides, what
+ * conditions before hold there is noted for each group. */
+static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
+                           const struct boundary_sides *sides, int64_t count, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    int64_t first = p->system->rows.count;
+    for (int64_t a = 0; a < count; a++) {
+        struct nodal_constraint nodal = {.node = averages->node[a], .condition = p->number};
+        struct demand demand;
+        RETURN_IF_ERROR(
+            add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
+        RETURN_IF_ERROR(prescription_demand(p, averages, a, true, &demand, error));
+        for (int k = 0; k < demand.count; k++) {
+            memcpy(nodal.direction, demand.direction + k * dim, (size_t)dim * sizeof *nodal.direction);
+            nodal.value = demand.value[k];
+            RETURN_IF_ERROR(nodal_constraints_add(p->nodal_constraints, &nodal, error));
+        }
+    }
+    held_note(p->held, &p->system->rows, first, p->system->rows.count);
+    return STATUS_OK;
+}
+
+/* Hold what the boundary averages of a set leave free. */
+static enum status add_penalties(struct prescription *p, struct error *error)
+{
+    const struct facet_set *set = &p->condition->facets;
+    enum status status;
+    struct boundary_averages points = {0};
+    double area = 0.0;
+    TRY(boundary_points_build(&p->input->face_table, set, &points, error));
+    for (int64_t a = 0; a < points.count; a++) {
+        area += points.area[a];
+    }
+    area /= (double)set->count;
+    p->penalties = true;
+    p->layer = p->input->cells.dim == 2 ? area : sqrt(2.0 * area);
+    p->modulus = assembly_penalty_modulus(p->system, constraint_penalty_factor);
+    for (int64_t a = 0; a < points.count; a++) {
+        TRY(add_average(p, &points, a, error));
+    }
+done:
+    p->penalties = false;
+    boundary_averages_free(&points);
+    return status;
+}
+
+/* The mean over side a, along the axes along which boundary averages of its group are left to other
+ * conditions; along its normal, if that is what is held. */
+static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
+                            const struct boundary_sides *sides, int64_t a, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    const bool *shared = p->shared + sides->group[a] * dim;
+    struct demand demand;
+    enum status status = prescription_demand(p, averages, a, false, &demand, error);
+    if (p->condition->kind == CONDITION_NORMAL) {
+        bool any = shared[0] || shared[1] || shared[dim - 1];
+        return status == STATUS_OK && any ? add_row(p, averages, a, demand.direction, demand.value[0], error)
+                                          : status;
+    }
+    for (int k = 0; status == STATUS_OK && k < demand.count; k++) {
+        const double *axis = demand.direction + k * dim;
+        int i = axis[0] != 0.0 ? 0 : axis[1] != 0.0 ? 1 : 2;
+        if (shared[i]) {
+            status = add_row(p, averages, a, axis, demand.value[k], error);
+        }
+    }
+    return status;
+}
+
+/* Boundary averages for a condition. With a split, a node on an edge has one average for each side, and the
+ * traction may jump there. Without a split the field near the edge is less constrained. No split is needed
+ * for a constant displacement, which admits no linear field but rest, without tractions. On curved sides no
+ * linear field is exact, with a split or without. */
+static enum status build_averages(const struct prescription *p, struct boundary_averages *averages,
+                                  struct boundary_sides *sides, struct error *error)
+{
+    const struct facet_set *set = &p->condition->facets;
+    bool split = p->condition->kind == CONDITION_NORMAL;
+    enum status status = boundary_sides_build(&p->input->face_table, set, split, averages, sides, error);
+    if (split || status != STATUS_OK ||
+        (p->condition->kind == CONDITION_COMPONENTS && prescription_is_full(p))) {
+        return status;
+    }
+    for (int64_t a = sides->node_average_count; a < averages->count; a++) {
+        if (!sides->flat[a]) {
+            return STATUS_OK;
+        }
+    }
+    boundary_averages_free(averages);
+    boundary_sides_free(sides);
+    return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
+}
+
+/* Constraint rows on boundary averages, then on means over flat sides. */
+static enum status add_averages(struct prescription *p, struct error *error)
+{
+    enum status status;
+    struct boundary_averages averages = {0};
+    struct boundary_sides sides = {0};
+    TRY(build_averages(p, &averages, &sides, error));
+    TRY(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
+    TRY(add_all(p, &averages, &sides, sides.node_average_count, error));
+    for (int64_t a = sides.node_average_count; a < averages.count; a++) {
+        if (sides.flat[a]) {
+            TRY(add_side(p, &averages, &sides, a, error));
+        }
+    }
+done:
+    free(p->shared);
+    p->shared = NULL;
+    boundary_averages_free(&averages);
+    boundary_sides_free(&sides);
+    return status;
+}
+
+/* Rows on values at the nodes of facets or of sets. */
+static enum status add_nodes(struct prescription *p, struct error *error)
+{
+    const struct assembly *input = p->input;
+    const struct condition *condition = p->condition;
+    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
+    if (condition->facets.count > 0) {
+        RETURN_IF_ERROR(boundary_nodes_build(&input->face_table, &condition->facets, &input->node_lists,
+                                             input->node_phi, &averages, error));
+    } else {
+        RETURN_IF_ERROR(boundary_list_build(input->cells.dim, input->cells.x, condition->nodes,
+                                            condition->node_count, &input->node_lists, input->node_phi,
+                                            &averages, error));
+    }
+    return add_all(p, &averages, NULL, averages.count, error);
+}
+
+static enum status add_condition(struct prescription *p, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = p->input->cells.dim;
+    const struct condition *condition = p->condition;
+    struct edge_paths paths = {0};
+    if (condition->kind == CONDITION_TABLE) {
+        TRY(edge_paths_build(&p->input->cells, condition->row_count, 2 * dim, condition->rows,
+                             condition->unit, &paths, error));
+        p->fit = (struct scattered_fit){.dim = dim,
+                                        .value_count = dim,
+                                        .count = condition->row_count,
+                                        .row_size = 2 * dim,
+                                        .row = condition->rows,
+                                        .unit = condition->unit,
+                                        .paths = &paths};
+        TRY(scattered_fit_build(&p->fit, error));
+        TRY(prescription_check_table(p, error));
+        TRY(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
+        TRY(field_spacing(&p->input->cells, p->spacing, error));
+    }
+    if (condition->facets.count > 0 && assembly_holds_averages(p->input)) {
+        TRY(add_averages(p, error));
+        TRY(add_penalties(p, error));
+    } else {
+        TRY(add_nodes(p, error));
+    }
+done:
+    edge_paths_free(&paths);
+    scattered_fit_free(&p->fit);
+    free(p->spacing);
+    return status;
+}
+
+enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
+                                    struct error *note, struct error *error)
+{
+    FREED_BY(nodal_constraints_free) struct nodal_constraints nodal_constraints = {0};
+    FREED_BY(held_free) struct held_directions held = {0};
+    RETURN_IF_ERROR(held_build(input->cells.dim, input->cells.node_count, &held, error));
+    /* Conditions that prescribe few directions come first, so that what slides along a plane stays on it up
+     * to its rim. */
+    for (int directions = 1; directions <= input->cells.dim; directions++) {
+        for (int64_t i = 0; i < input->condition_count; i++) {
+            struct prescription p = {.input = input,
+                                     .condition = &input->conditions[i],
+                                     .system = system,
+                                     .nodal_constraints = &nodal_constraints,
+                                     .held = &held,
+                                     .number = (int32_t)i};
+            if (p.condition->kind != CONDITION_POINTS &&
+                prescription_directions(p.condition, input->cells.dim) == directions) {
+                RETURN_IF_ERROR(add_condition(&p, error));
+            }
+        }
+    }
+    return nodal_constraints_check(input, &nodal_constraints, note, error);
+}

@@ -1,0 +1,156 @@
+#include "solid/assembly/assembly.h"
+
+#include "base/memory.h"
+#include "solid/contact/contact_between.h"
+#include "solid/contact/contact_rest.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
+static const double penalty_factor = 50.0;
+
+/* At quadrature points so many times as much: they are to follow each other's facets, also where meshes do
+ * not match. */
+static const double points_share = 4.0;
+
+/* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
+static const double jump_time = 1e-3;
+
+/* The surface moves from where its file has it, and without jumps. */
+static enum status check_curve(const struct contact_condition *condition, const char *key,
+                               const struct load_curve *curve, struct error *error)
+{
+    double largest = curve_largest(curve), at_begin = curve_value(curve, 0.0);
+    if (fabs(at_begin) > 1e-12 * largest) {
+        return fail(error, STATUS_INPUT,
+                    "%s: %s: begins at %g, with a jump: begin at time 0 with factor 0, where the file has "
+                    "the surface",
+                    condition->where, key, at_begin);
+    }
+    for (int64_t i = 0; i < curve->count; i++) {
+        double s = curve->time[i] / curve->end;
+        if (fabs(curve_value(curve, s + jump_time) - curve_value(curve, s)) > 0.5 * largest) {
+            return fail(error, STATUS_INPUT,
+                        "%s: %s: jumps from %g to %g at time %g: give the surface more time to move there",
+                        condition->where, key, curve_value(curve, s), curve_value(curve, s + jump_time),
+                        curve->time[i]);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status add_motion(const struct contact_condition *condition, const struct solid_system *system,
+                              struct rigid_motion *motion, struct error *error)
+{
+    *motion = condition->motion;
+    if (motion->moves) {
+        RETURN_IF_ERROR(rigid_motion_check(motion, system->dim, error));
+        RETURN_IF_ERROR(check_curve(condition, "curve", &system->curves[motion->translation_curve], error));
+        RETURN_IF_ERROR(
+            check_curve(condition, "angle_curve", &system->curves[motion->rotation_curve], error));
+    }
+    return STATUS_OK;
+}
+
+/* The points that the contact acts on. In a relaxation they are quadrature points with multipliers at the
+ * nodes. Between the nodes of a boundary that its facets do not resolve nobody knows where it is: there
+ * boundary averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each
+ * point costs time in every step. `between` facets of the body the points are always the former. */
+static enum status build_points(const struct assembly *input, const struct facet_set *set, bool between,
+                                struct boundary_averages *points, struct boundary_averages *averages,
+                                struct error *error)
+{
+    const struct face_table *table = &input->face_table;
+    bool at_points = between;
+    RETURN_IF_ERROR(boundary_averages_build(table, set, averages, error));
+    RETURN_IF_ERROR(boundary_points_build(table, set, points, error));
+    for (int64_t p = 0; p < points->count; p++) { /* each point of a facet gets another corner of it */
+        points->node[p] = set->facet[p / table->per_face * table->dim + p % table->dim];
+    }
+    if (!between && !input->in_time) {
+        RETURN_IF_ERROR(contact_rest_resolved(table->dim, points, averages, table->x, &at_points, error));
+    }
+    if (!at_points) {
+        boundary_averages_free(points);
+        *points = *averages;
+        *averages = (struct boundary_averages){0};
+    }
+    return STATUS_OK;
+}
+
+/* Contact between facets of the body. */
+static enum status add_between(const struct assembly *input, const struct contact_condition *condition,
+                               const struct boundary_averages *points,
+                               const struct boundary_averages *averages, struct contact *contact,
+                               struct error *error)
+{
+    FREED_BY(opposite_free) struct opposite opposite = {0};
+    SCRATCH int32_t *part = NULL;
+    bool any;
+    bool itself = condition->facets.facet == condition->opposite.facet;
+    RETURN_IF_ERROR(NEW_ARRAY(&part, input->cells.node_count, error));
+    RETURN_IF_ERROR(opposite_parts(&input->cells, part, error));
+    RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
+    RETURN_IF_ERROR(contact_between_build(
+        points, averages, input->cells.dim, input->cells.node_count, input->face_table.per_face, &opposite,
+        part, itself ? 0 : condition->sign, condition->stiffness, !condition->whole, contact, &any, error));
+    if (!any && !condition->whole) {
+        return fail(error, STATUS_INPUT,
+                    "%s: no facet faces another one at rest: name groups whose outsides look at each other",
+                    condition->where);
+    }
+    return STATUS_OK;
+}
+
+static enum status add_contact(const struct assembly *input, int32_t number, struct solid_system *system,
+                               struct error *error)
+{
+    const struct contact_condition *condition = &input->contacts[number];
+    bool between = condition->opposite.count > 0;
+    FREED_BY(rigid_free) struct rigid_surface surface = {0};
+    struct boundary_averages *points = &system->contact_points[number],
+                             *averages = &system->contact_averages[number];
+    struct contact *contact = &system->contacts[number];
+    system->contact_count++;
+    RETURN_IF_ERROR(build_points(input, &condition->facets, between, points, averages, error));
+    if (between) {
+        RETURN_IF_ERROR(add_between(input, condition, points, averages, contact, error));
+    } else {
+        RETURN_IF_ERROR(rigid_build(system->dim, condition->rigid_count, condition->corners, condition->flip,
+                                    &surface, error));
+        RETURN_IF_ERROR(fail_in(error,
+                                contact_build(points, averages->count > 0 ? averages : NULL, system->X,
+                                              system->dim, &surface, condition->stiffness, contact, error),
+                                "%s", condition->where));
+    }
+    if (condition->stiffness == 0.0) {
+        contact_set_stiffness(contact, (averages->count > 0 ? points_share : 1.0) *
+                                           assembly_penalty_modulus(system, penalty_factor));
+    }
+    contact->section = number;
+    return add_motion(condition, system, &contact->motion, error);
+}
+
+enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
+                                    struct error *error)
+{
+    system_free_contacts(system);
+    return assembly_add_contacts(input, system, error);
+}
+
+enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
+                                  struct error *error)
+{
+    int64_t sections = input->contact_count;
+    if (sections == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contacts, sections, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contact_points, sections, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&system->contact_averages, sections, error));
+    for (int64_t i = 0; i < sections; i++) {
+        RETURN_IF_ERROR(add_contact(input, (int32_t)i, system, error));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,105 @@
+#include "solid/assembly/assembly.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+/* Where the prescribed part of the boundary meets the free part, the stress is singular. Cells of finite size
+ * do not resolve it, and the whole body is too stiff. Softer cells at the junction remove the error elsewhere
+ * (energy correction: Egger, Ruede and Wohlmuth 2014).
+ *
+ * Smooth junctions: the boundary is smooth there, and the displacement grows with the square root of the
+ * distance. Cells at the junction have reduced moduli, except those behind prescribed facets, where only
+ * averages of the field are prescribed.
+ *
+ * The value: with .76 the force on a bonded punch on a strip is that of a mesh with fine cells at the ends of
+ * the punch, in the mean over 20 meshes of 11 to 25 cells under it, at nu = .3 and at .49. But the largest
+ * error, which is at the junctions, then grows. With .85, which leaves a third of the error of the force, it
+ * just begins to grow for the brain section of 707 nodes of the calibration set. */
+static const double junction_stiffness = 0.85;
+
+/* (*junction)[node_count]: nodes where faces with at least `least` prescribed directions meet faces with
+ * none. */
+static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
+                                  bool **junction, struct error *error)
+{
+    SCRATCH bool *held = NULL, *constrained = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, least, &held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &constrained, error));
+    RETURN_IF_ERROR(NEW_ARRAY(junction, input->cells.node_count, error));
+    return boundary_find_junctions(&input->face_table, kind, held, constrained, *junction, error);
+}
+
+/* softer[cells.count]: cells that have a node on a smooth junction, and no prescribed facet. */
+static enum status mark_cells(const struct assembly *input, bool *softer, struct error *error)
+{
+    int corners = input->cells.dim + 1;
+    SCRATCH bool *held = NULL, *junction = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
+    for (int64_t i = 0; i < input->cells.count * corners; i++) {
+        softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];
+    }
+    for (int64_t f = 0; f < input->boundary.count; f++) {
+        if (held[f]) {
+            softer[input->boundary.cell[2 * f]] = false;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Append the material m with the moduli of cells at smooth junctions. */
+static void add_softened(struct material_list *list, int32_t m)
+{
+    struct material *material = &list->items[list->count];
+    *material = list->items[m];
+    material->shear_modulus *= junction_stiffness;
+    material->bulk_modulus *= junction_stiffness;
+    list->section[list->count++] = list->section[m];
+}
+
+enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
+                                      struct error *error)
+{
+    const int32_t *cell = input->point_cell;
+    SCRATCH bool *softer = NULL;
+    SCRATCH int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, 2 * list->count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&list->section, 2 * list->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&softer, input->cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&softened, list->count, error));
+    RETURN_IF_ERROR(mark_cells(input, softer, error));
+    for (int64_t q = 0; q < input->point_count; q++) {
+        int32_t m = list->of_point[q];
+        if (!softer[cell[q]]) {
+            continue;
+        }
+        if (softened[m] == 0) {
+            softened[m] = list->count;
+            add_softened(list, m);
+        }
+        list->of_point[q] = (int32_t)softened[m];
+    }
+    return STATUS_OK;
+}
+
+/* In three dimensions only: in two the error is .2 %. Only an edge between a clamped and a free side is a
+ * junction. A side that slides is not free, as it may be a plane of symmetry. A side that may come into
+ * contact counts as free, in contact or not: the treatment of edges does not change a uniform pressure. */
+enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
+{
+    bool found = false;
+    *at_edge = NULL;
+    if (input->cells.dim < 3) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, at_edge, error));
+    for (int64_t n = 0; n < input->cells.node_count; n++) {
+        found = found || (*at_edge)[n];
+    }
+    if (!found) {
+        free(*at_edge);
+        *at_edge = NULL;
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,153 @@
+#include "solid/assembly/prescription.h"
+
+#include "base/lists.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A place is farther from the rows of a table by at most so many spacings, of the rows or of the nodes. Of
+ * rows on a square grid none is farther than .71 spacings. Of rows at random on a surface one in exp(4 pi),
+ * 3e5 places, is farther than 2. */
+static const double most_spacings = 2.0;
+
+/* Values that differ by less than this share of the table's largest, and places that differ by less than this
+ * share of the body, are the same. */
+static const double round_off = 1e-9;
+
+/* value[dim] = the displacement of the condition's table at x, beside that node, m. */
+static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
+                            struct error *error)
+{
+    const struct condition *condition = p->condition;
+    double distance, spacing;
+    struct error why;
+    char place[96];
+    enum status status = scattered_fit_evaluate(&p->fit, node, x, value, &distance, &spacing, &why);
+    point_text(p->input->cells.dim, x, place);
+    if (status != STATUS_OK) {
+        return fail(error, status, "%s: table %s: at %s: %s", condition->where, condition->table, place,
+                    why.text);
+    }
+    if (!(distance <= fmin(most_spacings * fmax(spacing, p->spacing[node]), p->input->extent))) {
+        return fail(
+            error, STATUS_INPUT,
+            "%s: table %s: its nearest point is %.3g m from the boundary at %s, by node %d, its points "
+            "are %.3g m apart, the nodes %.3g m: wrong unit or wrong place, else give rows there or "
+            "leave these facets out",
+            condition->where, condition->table, distance, place, node, spacing, p->spacing[node]);
+    }
+    return STATUS_OK;
+}
+
+/* The largest difference of two rows in `count` entries. */
+static double apart(const double *row, const double *other, int count)
+{
+    double most = 0.0;
+    for (int c = 0; c < count; c++) {
+        most = fmax(most, fabs(row[c] - other[c]));
+    }
+    return most;
+}
+
+enum status prescription_check_table(const struct prescription *p, struct error *error)
+{
+    const struct condition *condition = p->condition;
+    int dim = p->input->cells.dim;
+    int64_t count = condition->row_count;
+    double largest = 0.0, same = round_off * p->input->extent / condition->unit;
+    SCRATCH struct placed *sorted = NULL; /* rows by their first coordinates */
+    char place[96];
+    RETURN_IF_ERROR(NEW_ARRAY(&sorted, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        const double zeros[3] = {0.0, 0.0, 0.0};
+        sorted[i] = (struct placed){condition->rows[i * 2 * dim], i};
+        largest = fmax(largest, apart(condition->rows + i * 2 * dim + dim, zeros, dim));
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_placed);
+    for (int64_t s = 0; s < count; s++) {
+        for (int64_t t = s + 1; t < count && sorted[t].place - sorted[s].place <= same; t++) {
+            const double *a = condition->rows + sorted[s].item * 2 * dim,
+                         *b = condition->rows + sorted[t].item * 2 * dim;
+            double difference = apart(a + dim, b + dim, dim);
+            if (apart(a, b, dim) <= same && difference > round_off * largest) {
+                double at[3] = {0.0, 0.0, 0.0};
+                for (int c = 0; c < dim; c++) {
+                    at[c] = b[c] * condition->unit;
+                }
+                point_text(dim, at, place);
+                return fail(error, STATUS_INPUT,
+                            "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
+                            condition->where, condition->table, (long long)sorted[s].item + 1,
+                            (long long)sorted[t].item + 1, place, difference * condition->unit);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Mean of the table over the samples of one average. */
+static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
+                                    int64_t a, double *mean, struct error *error)
+{
+    int dim = p->input->cells.dim;
+    memset(mean, 0, (size_t)dim * sizeof *mean);
+    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        double value[3];
+        enum status status = value_at(p, averages->node[a], averages->sample_x + s * dim, value, error);
+        if (status != STATUS_OK) {
+            return status;
+        }
+        add_scaled(dim, averages->sample_share[s], value, mean);
+    }
+    return STATUS_OK;
+}
+
+/* Whether the condition leaves component i open. */
+static bool is_free(const struct condition *condition, int i)
+{
+    return condition->kind == CONDITION_COMPONENTS && condition->is_free[i];
+}
+
+int prescription_directions(const struct condition *condition, int dim)
+{
+    int count = 0;
+    for (int i = 0; i < dim; i++) {
+        count += !is_free(condition, i);
+    }
+    return condition->kind == CONDITION_NORMAL ? 1 : count;
+}
+
+bool prescription_is_full(const struct prescription *p)
+{
+    return prescription_directions(p->condition, p->input->cells.dim) == p->input->cells.dim;
+}
+
+enum status prescription_demand(const struct prescription *p, const struct boundary_averages *averages,
+                                int64_t a, bool at_node, struct demand *demand, struct error *error)
+{
+    enum status status = STATUS_OK;
+    int dim = p->input->cells.dim;
+    int32_t node = averages->node[a];
+    const struct condition *condition = p->condition;
+    double value[3] = {condition->components[0], condition->components[1], condition->components[2]};
+    *demand = (struct demand){.count = 0};
+    if (condition->kind == CONDITION_NORMAL) {
+        memcpy(demand->direction, averages->normal + a * dim, (size_t)dim * sizeof *demand->direction);
+        demand->value[demand->count++] = condition->normal;
+        return STATUS_OK;
+    }
+    if (condition->kind == CONDITION_TABLE) {
+        status = at_node ? value_at(p, node, p->input->cells.x + (int64_t)node * dim, value, error)
+                         : average_of_table(p, averages, a, value, error);
+    }
+    for (int i = 0; status == STATUS_OK && i < dim; i++) {
+        if (!is_free(p->condition, i)) {
+            demand->direction[demand->count * dim + i] = 1.0;
+            demand->value[demand->count++] = value[i];
+        }
+    }
+    return status;
+}

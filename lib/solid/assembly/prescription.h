@@ -1,0 +1,44 @@
+/* The displacements that a condition prescribes, at a place and for an average. */
+#pragma once
+
+#include "solid/assembly/conflicts.h"
+#include "solid/constraint/held_directions.h"
+
+#include "approx/field/scattered_fit.h"
+#include "approx/visibility/edge_paths.h"
+
+/* A condition, and the system that its rows are added to. */
+struct prescription {
+    const struct assembly *input;
+    const struct condition *condition;
+    struct solid_system *system;
+    struct nodal_constraints *nodal_constraints; /* of all conditions */
+    struct held_directions *held;                /* by the conditions before */
+    bool *shared; /* group_count * dim: conditions before hold that component at some of the group's nodes */
+    int32_t number;           /* of the condition */
+    struct scattered_fit fit; /* CONDITION_TABLE: of its points, with their connection to the nodes */
+    double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
+    bool penalties;           /* adding constraint penalties, not exact rows */
+    double modulus, layer;    /* of the constraint penalties: Pa, and the size of the cells there, m */
+};
+
+/* The displacements that a condition prescribes for one average, along some directions: all components, or
+ * that along the normal. */
+struct demand {
+    int count;
+    double direction[9]; /* count * dim, unit */
+    double value[3];     /* count: m */
+};
+
+/* The number of directions that the condition prescribes at a place; whether it is dim. */
+int prescription_directions(const struct condition *condition, int dim);
+bool prescription_is_full(const struct prescription *p);
+
+/* STATUS_INPUT where two rows of a condition's table stand at one place with unlike displacements. */
+MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);
+
+/* The displacements that the condition prescribes for average a; or, along the same directions, at its node.
+ */
+MUST_CHECK enum status prescription_demand(const struct prescription *p,
+                                           const struct boundary_averages *averages, int64_t a, bool at_node,
+                                           struct demand *demand, struct error *error);

@@ -1,0 +1,231 @@
+#include "solid/body/body.h"
+
+#include "approx/cells/renumber.h"
+#include "base/memory.h"
+#include "solid/body/kernel.h"
+#include "solid/body/merged_cells.h"
+#include "solid/body/nodal_volume.h"
+
+#include <omp.h>
+#include <string.h>
+
+/* Points of a block: its part of the operator should fit into a part of the second-level cache. */
+static int64_t points_of_block(int dim)
+{
+    return dim == 2 ? 64 : BLOCK_MOST_POINTS;
+}
+
+static enum material_model model_of(const struct body_input *input, int64_t point)
+{
+    return input->materials[input->material[point]].model;
+}
+
+/* Order the points by material law, so that each block has one law, and within a law along a Morton curve, so
+ * that blocks are compact; order the nodes along the curve, too. */
+static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
+{
+    SCRATCH int32_t *model = NULL;
+    SCRATCH int64_t *root = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&model, input->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->order, input->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->node_place, input->node_count, error));
+    for (int64_t q = 0; q < input->point_count; q++) {
+        model[q] = (int32_t)model_of(input, q);
+    }
+    RETURN_IF_ERROR(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
+    if (body->smoothed) {
+        RETURN_IF_ERROR(NEW_ARRAY(&root, input->point_count, error));
+        RETURN_IF_ERROR(merged_cells_find(input, root, error));
+        RETURN_IF_ERROR(merged_cells_order(root, body, error));
+    }
+    for (int64_t n = 0; n < input->node_count; n++) {
+        body->node_order[n] = n;
+    }
+    if (input->node_x != NULL) {
+        RETURN_IF_ERROR(
+            renumber_morton(input->dim, input->node_count, input->node_x, NULL, body->node_order, error));
+    }
+    for (int64_t n = 0; n < input->node_count; n++) {
+        body->node_place[body->node_order[n]] = (int32_t)n;
+    }
+    return STATUS_OK;
+}
+
+/* Per-point data in the body's order. */
+static enum status copy_points(const struct body_input *input, struct body *body, struct error *error)
+{
+    int dim = input->dim;
+    int64_t points = input->point_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&body->weight, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->material, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->u, body->node_count * VECTOR_STRIDE(dim), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->force, body->node_count * VECTOR_STRIDE(dim), error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->F, points * dim * dim + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->J, points + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&body->materials, input->material_count, error));
+    memcpy(body->materials, input->materials, (size_t)input->material_count * sizeof *body->materials);
+    for (int64_t q = 0; q < points; q++) {
+        int64_t from = body->order[q];
+        bool alone = !body->smoothed && input->ptr[from + 1] <= input->ptr[from];
+        if (alone || !(input->weight[from] > 0.0)) {
+            return fail(error, STATUS_INPUT, "points.weight: row %lld: no weight or no neighbours",
+                        (long long)from);
+        }
+        body->weight[q] = input->weight[from];
+        body->material[q] = input->material[from];
+    }
+    return STATUS_OK;
+}
+
+/* Cut the ordered points into blocks of one law, merged cells together. */
+static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
+{
+    int64_t most = points_of_block(body->dim);
+    RETURN_IF_ERROR(NEW_ARRAY(
+        &body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + MATERIAL_MODEL_COUNT + 1, error));
+    for (int64_t q = 0; q < body->point_count;) {
+        struct block *block = &body->blocks[body->block_count++];
+        enum material_model model = model_of(input, body->order[q]);
+        block->first_point = q;
+        block->neo_hookean = model == MATERIAL_NEO_HOOKEAN;
+        while (q < body->point_count && model_of(input, body->order[q]) == model) {
+            int64_t next = smoothed_cells_group_end(body, q);
+            if (next - block->first_point > most) {
+                break;
+            }
+            block->point_count = next - block->first_point;
+            q = next;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Rows of the table of gradients: those of the points from `begin` to before `end`, with the nodes from
+ * `first` to before `last` in the body's order. */
+static enum status copy_rows(const struct body_input *input, const struct body *body, int64_t begin,
+                             int64_t end, int64_t first, int64_t last, struct sparse *matrix,
+                             struct error *error)
+{
+    int dim = body->dim;
+    int64_t rows = body->point_count * dim, at = 0;
+    for (int64_t q = begin; q < end; q++) {
+        int64_t from = body->order[q];
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1]; i++) {
+            int32_t node = body->node_place[input->idx[i]];
+            at += node >= first && node < last;
+        }
+    }
+    RETURN_IF_ERROR(sparse_new(rows, body->node_count, at * dim, matrix, error));
+    at = 0;
+    for (int64_t r = 0; r < rows; r++) {
+        int64_t from = body->order[r / dim];
+        for (int64_t i = input->ptr[from]; i < input->ptr[from + 1] && r >= begin * dim && r < end * dim;
+             i++) {
+            int32_t node = body->node_place[input->idx[i]];
+            if (node >= first && node < last) {
+                matrix->idx[at] = node;
+                matrix->value[at++] = input->dphi[i * dim + r % dim];
+            }
+        }
+        matrix->ptr[r + 1] = at;
+    }
+    return STATUS_OK;
+}
+
+/* The table of gradients at points. */
+static enum status copy_gradients(const struct body_input *input, struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    int64_t rows = body->point_count * body->dim;
+    SCRATCH bool *wanted = NULL;
+    if (rows > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "points.x: %lld points: too many", (long long)body->point_count);
+    }
+    RETURN_IF_ERROR(copy_rows(input, body, share->begin_point, share->end_point, 0, body->node_count,
+                              &body->rows.matrix, error));
+    if (share->ranks != NULL) {
+        RETURN_IF_ERROR(copy_rows(input, body, 0, body->point_count, share->begin_node, share->end_node,
+                                  &body->rows.columns, error));
+        RETURN_IF_ERROR(sparse_rows_used(&body->rows.columns, &wanted, error));
+    }
+    RETURN_IF_ERROR(body_share_rows(body, wanted, error));
+    RETURN_IF_ERROR(row_ranges_of(share->begin_point * body->dim, share->end_point * body->dim, NULL,
+                                  &share->values, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&body->derivative, rows * VECTOR_STRIDE(body->dim), error));
+    body->pair_count = input->ptr[body->point_count];
+    return STATUS_OK;
+}
+
+/* Synchronising threads costs some microseconds a step; each must have more work than that. An entry is a
+ * gradient, or one value for smoothed cells. */
+static int worthwhile_threads(const struct body *body)
+{
+    int64_t by_work = 1 + body->pair_count / (body->smoothed ? 30000 * body->dim : 30000);
+    int64_t available = omp_get_max_threads();
+    return (int)(by_work < available ? by_work : available);
+}
+
+/* Pairs of face or node and neighbour; where each process has but some rows over the faces, of all of them.
+ */
+static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
+{
+    const struct smoothed_cells_input *cells = input->smoothed;
+    int64_t of_faces = cells->face_ptr[cells->faces->row_count];
+    SCRATCH int64_t *each = NULL;
+    body->pair_count = cells->node_ptr[body->node_count];
+    if (cells->face_reader != NULL) {
+        RETURN_IF_ERROR(ranks_list(input->ranks, of_faces, &each, error));
+        of_faces = 0;
+        for (int r = 0; r < input->ranks->count; r++) {
+            of_faces += each[r];
+        }
+    }
+    body->pair_count += of_faces;
+    return STATUS_OK;
+}
+
+enum status body_build(const struct body_input *input, struct body *body, struct error *error)
+{
+    *body = (struct body){.dim = input->dim,
+                          .node_count = input->node_count,
+                          .point_count = input->point_count,
+                          .material_count = input->material_count,
+                          .smoothed = input->smoothed != NULL,
+                          .kernels = force_kernels_select(NULL, input->dim),
+                          .averaged = input->vertex != NULL};
+    if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
+        return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",
+                    (long long)body->point_count);
+    }
+    RETURN_IF_ERROR(order_all(input, body, error));
+    RETURN_IF_ERROR(cut_blocks(input, body, error));
+    RETURN_IF_ERROR(body_share_cut(input, body, error));
+    RETURN_IF_ERROR(copy_points(input, body, error));
+    if (body->averaged) {
+        RETURN_IF_ERROR(nodal_volumes_build(input, body, error));
+    }
+    if (!body->smoothed) {
+        RETURN_IF_ERROR(copy_gradients(input, body, error));
+    } else {
+        RETURN_IF_ERROR(count_pairs(input, body, error));
+        RETURN_IF_ERROR(smoothed_cells_build(input->smoothed, body, error));
+    }
+    body->threads = worthwhile_threads(body);
+    RETURN_IF_ERROR(
+        row_operator_finish(&body->rows, body->share.begin_node, body->share.end_node, body->threads, error));
+    RETURN_IF_ERROR(body_share_nodes(body, error));
+    return body_make_bounds(body, error);
+}
+
+void body_free(struct body *body)
+{
+    body_free_bounds(body);
+    body_share_free(&body->share);
+    row_operator_free(&body->rows);
+    smoothed_cells_free(&body->cells);
+    nodal_volumes_free(&body->volumes);
+    FREE_ALL(body->order, body->weight, body->materials, body->material, body->blocks, body->node_order,
+             body->node_place, body->u, body->F, body->J, body->force, body->derivative);
+    *body = (struct body){0};
+}

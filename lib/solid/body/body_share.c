@@ -1,0 +1,335 @@
+#include "solid/body/body_share.h"
+
+#include "base/memory.h"
+#include "solid/body/body.h"
+
+#include <stdlib.h>
+
+/* Work of each block: entries of the lists of its points, or of the vertices of its cells. */
+static void measure_blocks(const struct body_input *input, const struct body *body, double *work)
+{
+    const struct smoothed_cells_input *cells = input->smoothed;
+    int corners = body->dim + 1;
+    for (int64_t b = 0; b < body->block_count; b++) {
+        const struct block *block = &body->blocks[b];
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            int64_t from = body->order[q];
+            if (cells == NULL) {
+                work[b] += (double)(input->ptr[from + 1] - input->ptr[from]);
+            }
+            for (int64_t k = from * corners; cells != NULL && k < (from + 1) * corners; k++) {
+                int32_t node = cells->cell_node[k];
+                work[b] += (double)(cells->node_ptr[node + 1] - cells->node_ptr[node]);
+            }
+        }
+    }
+}
+
+/* Work of each node in the body's order: in how many rows it is, or of cells, about in proportion, how many
+ * nodes are in its own. */
+static void measure_nodes(const struct body_input *input, const struct body *body, double *work)
+{
+    if (input->smoothed != NULL) {
+        const int64_t *ptr = input->smoothed->node_ptr;
+        for (int64_t n = 0; n < body->node_count; n++) {
+            work[n] = (double)(ptr[body->node_order[n] + 1] - ptr[body->node_order[n]]);
+        }
+        return;
+    }
+    for (int64_t i = 0; i < input->ptr[body->point_count]; i++) {
+        work[body->node_place[input->idx[i]]] += 1.0;
+    }
+}
+
+/* The points of the blocks. */
+static enum status list_points(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    int count = ranks_count(share->ranks);
+    RETURN_IF_ERROR(NEW_ARRAY(&share->point_first, count + 1, error));
+    for (int r = 0; r <= count; r++) {
+        int64_t b = share->block_first[r];
+        share->point_first[r] = b < body->block_count ? body->blocks[b].first_point : body->point_count;
+    }
+    return STATUS_OK;
+}
+
+enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    SCRATCH double *work = NULL, *node_work = NULL;
+    int rank = ranks_rank(input->ranks);
+    share->ranks = input->ranks;
+    RETURN_IF_ERROR(NEW_ARRAY(&work, body->block_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&node_work, body->node_count, error));
+    if (share->ranks != NULL) {
+        measure_blocks(input, body, work);
+        measure_nodes(input, body, node_work);
+    }
+    RETURN_IF_ERROR(ranks_share(share->ranks, body->block_count, work, &share->block_first, error));
+    RETURN_IF_ERROR(ranks_share(share->ranks, body->node_count, node_work, &share->node_first, error));
+    RETURN_IF_ERROR(list_points(body, error));
+    share->begin_block = share->block_first[rank];
+    share->end_block = share->block_first[rank + 1];
+    share->begin_point = share->point_first[rank];
+    share->end_point = share->point_first[rank + 1];
+    share->begin_node = share->node_first[rank];
+    share->end_node = share->node_first[rank + 1];
+    return STATUS_OK;
+}
+
+static int owner_of_point(const void *body, int64_t point)
+{
+    const struct body_share *share = &((const struct body *)body)->share;
+    return ranks_owner(share->ranks, share->point_first, point);
+}
+
+enum status body_share_volumes(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    const struct nodal_volumes *volumes = &body->volumes;
+    int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
+    SCRATCH bool *wanted = NULL;
+    int64_t slices = (volumes->count + NODAL_PRESSURE_ROWS - 1) / NODAL_PRESSURE_ROWS;
+    RETURN_IF_ERROR(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
+    for (int r = 0; r <= ranks_count(share->ranks); r++) {
+        int64_t row = share->slice_first[r] * NODAL_PRESSURE_ROWS;
+        share->volume_first[r] = row < volumes->count ? row : volumes->count;
+    }
+    if (share->ranks != NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->point_count, error));
+        int64_t begin = volumes->ptr[share->volume_first[rank]];
+        int64_t end = volumes->ptr[share->volume_first[rank + 1]];
+        for (int64_t i = begin; i < end; i++) {
+            wanted[volumes->slot[i] / vertices] = true;
+        }
+        RETURN_IF_ERROR(halo_build(share->ranks, body->point_count, wanted, 1, owner_of_point, body,
+                                   &share->strains, error));
+    }
+    return STATUS_OK;
+}
+
+static int owner_of_volume(const void *body, int64_t volume)
+{
+    const struct body_share *share = &((const struct body *)body)->share;
+    return ranks_owner(share->ranks, share->volume_first, volume);
+}
+
+enum status body_share_pressures(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    const struct nodal_pressures *pressures = &body->volumes.pressures;
+    const int64_t *first = share->slice_first + ranks_rank(share->ranks);
+    int vertices = body->dim + 1;
+    SCRATCH bool *wanted = NULL;
+    if (share->ranks == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->volumes.count, error));
+    for (int64_t i = pressures->ptr[first[0]] * NODAL_PRESSURE_ROWS;
+         i < pressures->ptr[first[1]] * NODAL_PRESSURE_ROWS; i++) {
+        wanted[pressures->idx[i]] = true;
+    }
+    for (int64_t i = share->begin_point * vertices; i < share->end_point * vertices; i++) {
+        wanted[body->volumes.of_point[i]] = true;
+    }
+    return halo_build(share->ranks, body->volumes.count, wanted, 1, owner_of_volume, body, &share->pressures,
+                      error);
+}
+
+static int64_t row_count(const struct body *body)
+{
+    return body->smoothed ? body->cells.averages.row_count : body->point_count * body->dim;
+}
+
+/* Corners, those of the faces and then those of the nodes, are by points. */
+static int64_t point_of_corner(const struct body *body, int64_t corner)
+{
+    return corner % body->cells.averages.corner_count / (body->dim + 1);
+}
+
+int body_share_owner(const void *body, int64_t node)
+{
+    const struct body *of = body;
+    return ranks_owner(of->share.ranks, of->share.node_first, of->node_place[node]);
+}
+
+enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
+{
+    const struct body_share *share = &body->share;
+    const struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(wanted, row_count(body), error));
+    if (!body->smoothed) {
+        for (int64_t i = share->begin_point * dim; i < share->end_point * dim; i++) {
+            (*wanted)[i] = true;
+        }
+        return STATUS_OK;
+    }
+    for (int half = 0; half < 2; half++) {
+        int64_t per_point = (dim + 1) * (half == 0 ? FACE_ROWS(dim) : 1);
+        const int32_t *at = averages->of_corner + half * averages->corner_count * FACE_ROWS(dim);
+        for (int64_t i = share->begin_point * per_point; i < share->end_point * per_point; i++) {
+            (*wanted)[at[i] / VECTOR_STRIDE(dim)] = true;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Without smoothed cells. */
+static int64_t point_of_row(const struct body *body, int64_t row)
+{
+    return row / body->dim;
+}
+
+/* Who has the forces on a row. One without corners has none. */
+static int owner_of_row(const void *context, int64_t row)
+{
+    const struct body *body = context;
+    const struct field_averages *averages = &body->cells.averages;
+    if (!body->smoothed) {
+        return owner_of_point(body, point_of_row(body, row));
+    }
+    int64_t at = averages->corner_ptr[row];
+    return at < averages->corner_ptr[row + 1]
+               ? owner_of_point(body, point_of_corner(body, averages->corner[at]))
+               : 0;
+}
+
+static int64_t point_itself(const struct body *body, int64_t point)
+{
+    (void)body;
+    return point;
+}
+
+/* Mark the points from which the items that are sent are computed. */
+static void mark_sent(const struct body *body, const struct halo *halo,
+                      int64_t (*point_of)(const struct body *body, int64_t item), bool *is_sent)
+{
+    for (int64_t i = 0; halo->ranks != NULL && i < halo->send_first[halo->ranks->count]; i++) {
+        is_sent[point_of(body, halo->send[i])] = true;
+    }
+}
+
+static bool has_sent(const struct block *block, const bool *is_sent)
+{
+    bool some = false;
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        some = some || is_sent[q];
+    }
+    return some;
+}
+
+/* The order of own blocks. */
+static enum status order_blocks(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    SCRATCH bool *is_sent = NULL;
+    int64_t border = 0, inner = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
+    mark_sent(body, &share->strains, point_itself, is_sent);
+    mark_sent(body, &share->corners, point_of_corner, is_sent);
+    if (!body->smoothed) {
+        mark_sent(body, &share->rows, point_of_row, is_sent);
+    }
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        share->border_count += has_sent(&body->blocks[b], is_sent);
+    }
+    for (int64_t b = share->begin_block; b < share->end_block; b++) {
+        bool at_border = has_sent(&body->blocks[b], is_sent);
+        share->block[at_border ? border++ : share->border_count + inner++] = b;
+    }
+    return STATUS_OK;
+}
+
+/* Divide the rows that are summed here into those that other processes need, and the rest. */
+static enum status order_sums(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    int64_t rows = row_count(body);
+    SCRATCH bool *is_sent = NULL, *is_inner = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&is_inner, rows, error));
+    for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
+        is_sent[share->rows.send[i]] = true;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        is_inner[r] = !is_sent[r] && owner_of_row(body, r) == share->ranks->rank;
+    }
+    RETURN_IF_ERROR(row_ranges_of(0, rows, is_sent, &share->sums, error));
+    return row_ranges_of(0, rows, is_inner, &share->inner_sums, error);
+}
+
+static int owner_of_corner(const void *body, int64_t corner)
+{
+    return owner_of_point(body, point_of_corner(body, corner));
+}
+
+/* The corners that the rows that are summed here take. */
+static enum status share_corners(struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t rows = row_count(body);
+    SCRATCH bool *sums = NULL, *corners = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&sums, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&corners, 2 * averages->corner_count, error));
+    for (int64_t r = 0; r < rows; r++) {
+        sums[r] = owner_of_row(body, r) == share->ranks->rank;
+        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && sums[r]; i++) {
+            corners[averages->corner[i]] = true;
+        }
+    }
+    return halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
+                      owner_of_corner, body, &share->corners, error);
+}
+
+enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
+{
+    struct body_share *share = &body->share;
+    if (share->ranks == NULL) {
+        RETURN_IF_ERROR(order_blocks(body, error));
+        return row_ranges_of(0, row_count(body), NULL, &share->inner_sums, error);
+    }
+    if (body->smoothed) {
+        RETURN_IF_ERROR(share_corners(body, error));
+    }
+    RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
+                               body, &share->rows, error));
+    RETURN_IF_ERROR(order_blocks(body, error));
+    return body->smoothed ? order_sums(body, error) : STATUS_OK;
+}
+
+enum status body_share_nodes(struct body *body, struct error *error)
+{
+    const struct sparse *matrix = &body->rows.matrix;
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->node_count, error));
+    for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
+        wanted[matrix->idx[i]] = true;
+    }
+    return row_ranges_of(0, body->node_count, wanted, &body->share.placed, error);
+}
+
+bool body_share_has_node(const struct body *body, int64_t node)
+{
+    int64_t place = body->node_place[node];
+    return place >= body->share.begin_node && place < body->share.end_node;
+}
+
+void body_share_free(struct body_share *share)
+{
+    FREE_ALL(share->block_first, share->point_first, share->node_first, share->slice_first,
+             share->volume_first);
+    row_ranges_free(&share->values);
+    row_ranges_free(&share->placed);
+    row_ranges_free(&share->sums);
+    row_ranges_free(&share->inner_sums);
+    free(share->block);
+    halo_free(&share->strains);
+    halo_free(&share->pressures);
+    halo_free(&share->corners);
+    halo_free(&share->rows);
+}

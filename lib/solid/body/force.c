@@ -1,0 +1,272 @@
+/* The force loop: deformation gradients from parameters (apply the operator), stresses, and forces on
+ * the parameters (apply its transpose); equation (12) of lib/README.md. */
+#include "solid/body/merged_cells.h"
+#include "solid/body/nodal_volume.h"
+#include "solid/body/stress.h"
+
+#include <math.h>
+
+/* A law in ln J is undefined for J <= 0. Where it uses the volume ratio of the cell itself, a cell with J <=
+ * 0 counts as inverted.
+ */
+static void note_volumes(const struct body *body, struct block *block)
+{
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        bool is_log = body->materials[body->material[q]].model == MATERIAL_NEO_HOOKEAN_LOG;
+        if (is_log && !body->averaged && body->J[q] <= 0.0 && block->least_jacobian > 0.0) {
+            block->least_jacobian = body->J[q];
+            block->worst_point = q;
+        }
+    }
+}
+
+/* Stresses of a block of cells, and their forces on the face averages and node values. */
+static void stress_cell_block(struct body *body, int64_t b)
+{
+    block_rows P, T;
+    if (body->blocks[b].neo_hookean) {
+        body->kernels->cell_neo_hookean(body, b, P, T);
+    } else {
+        stress_cells(body, &body->blocks[b], P, T);
+        note_volumes(body, &body->blocks[b]);
+    }
+    if (body->cells.group != NULL) {
+        merged_cells_stresses(body, &body->blocks[b], P, T);
+    }
+    body->kernels->cell_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P,
+                               (const double(*)[BLOCK_MOST_POINTS])T);
+}
+
+/* Stresses of a block of points. */
+static void stress_point_block(struct body *body, int64_t b)
+{
+    block_rows P;
+    if (body->blocks[b].neo_hookean) {
+        body->kernels->neo_hookean(body, b, P);
+    } else {
+        stress_points(body, &body->blocks[b], P);
+    }
+    body->kernels->point_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P);
+}
+
+void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context)
+{
+    for (int64_t b = first; b < last; b++) {
+        const struct block *block = &body->blocks[b];
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            double F[9];
+            stress_matrix(body->dim, body->F + q, body->point_count, F);
+            visit(body, q, F, body->J[q], context);
+        }
+    }
+}
+
+/* What threads share: loops over rows, blocks and nodes. */
+static void apply(const struct body *body, const double *x, double *y)
+{
+    const struct row_ranges *rows = &body->share.values;
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < rows->count; i++) {
+        body->kernels->apply(&body->rows.matrix, rows->items[i].begin, rows->items[i].end, x, y);
+    }
+}
+
+static void apply_transposed(const struct body *body, const double *x, double *y)
+{
+#pragma omp for schedule(static, 1)
+    for (int s = 0; s < body->rows.stripe_count; s++) {
+        body->kernels->apply_transposed(&body->rows, s, x, y);
+    }
+}
+
+static void sum_corners(struct body *body, const struct row_ranges *rows)
+{
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < rows->count; i++) {
+        body->kernels->sum_corners(&body->cells.averages, rows->items[i].begin, rows->items[i].end);
+    }
+}
+
+/* Of own blocks, in the order in which they are worked on. */
+static void for_blocks(struct body *body, int64_t first, int64_t last,
+                       void (*work)(struct body *body, int64_t block))
+{
+#pragma omp for schedule(static)
+    for (int64_t i = first; i < last; i++) {
+        work(body, body->share.block[i]);
+    }
+}
+
+/* Process all own blocks. The halo of their results is exchanged while the blocks are processed that no other
+ * process needs. NULL: no halo. */
+static void for_all_blocks(struct body *body, void (*work)(struct body *body, int64_t block),
+                           struct halo *halo, int width, double *values)
+{
+    const struct body_share *share = &body->share;
+    int64_t border = share->border_count, count = share->end_block - share->begin_block;
+    if (share->ranks == NULL || halo == NULL) {
+        for_blocks(body, 0, count, work);
+        return;
+    }
+    for_blocks(body, 0, border, work);
+    body_share_begin(share, halo, width, values);
+    for_blocks(body, border, count, work);
+    body_share_finish(share, halo, width, values);
+}
+
+static void place_nodes(struct body *body, const double *u)
+{
+    int dim = body->dim, stride = VECTOR_STRIDE(dim);
+    const struct row_ranges *placed = &body->share.placed;
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < placed->count; i++) {
+        for (int64_t n = placed->items[i].begin; n < placed->items[i].end; n++) {
+            for (int a = 0; a < dim; a++) {
+                body->u[n * stride + a] = u[body->node_order[n] * dim + a];
+            }
+        }
+    }
+}
+
+static void return_forces(const struct body *body, double *force)
+{
+    int dim = body->dim, stride = VECTOR_STRIDE(dim);
+#pragma omp for schedule(static)
+    for (int64_t n = body->share.begin_node; n < body->share.end_node; n++) {
+        for (int a = 0; a < dim; a++) {
+            force[body->node_order[n] * dim + a] = body->force[n * stride + a];
+        }
+    }
+}
+
+/* F and J of a block, and its volumetric strains. */
+static void set_block(struct body *body, int64_t b)
+{
+    if (body->smoothed) {
+        body->kernels->cell_gradients(body, b);
+    } else {
+        body->kernels->point_gradients(body, b);
+    }
+    if (body->averaged) {
+        nodal_volumes_strain(body, b);
+    }
+}
+
+/* The displacements, F, J and pressures. */
+static void set_state(struct body *body, const double *u)
+{
+    place_nodes(body, u);
+    apply(body, body->u, body->smoothed ? body->cells.averages.value : body->derivative);
+    for_all_blocks(body, set_block, body->averaged ? &body->share.strains : NULL, 1, body->volumes.strain);
+    if (body->averaged) {
+        nodal_volumes_evaluate(body);
+    }
+}
+
+/* Internal forces on own nodes at u. */
+static void evaluate(struct body *body, const double *u, double *force)
+{
+    struct body_share *share = &body->share;
+    struct field_averages *averages = &body->cells.averages;
+    int stride = VECTOR_STRIDE(body->dim);
+#pragma omp parallel num_threads(body->threads)
+    {
+        set_state(body, u);
+        if (body->smoothed) {
+            for_all_blocks(body, stress_cell_block, &share->corners, stride, averages->corner_force);
+            sum_corners(body, &share->sums);
+            body_share_begin(share, &share->rows, stride, averages->force);
+            sum_corners(body, &share->inner_sums);
+            body_share_finish(share, &share->rows, stride, averages->force);
+            apply_transposed(body, averages->force, body->force);
+        } else {
+            for_all_blocks(body, stress_point_block, &share->rows, stride, body->derivative);
+            apply_transposed(body, body->derivative, body->force);
+        }
+        body_share_gather(share, body->blocks, sizeof *body->blocks, share->block_first);
+        return_forces(body, force);
+    }
+}
+
+struct deformation body_own_force(struct body *body, const double *u, double *force)
+{
+    struct deformation deformation = {.least_jacobian = INFINITY};
+    int64_t worst = 0;
+    evaluate(body, u, force);
+    for (int64_t b = 0; b < body->block_count && !isnan(deformation.least_jacobian); b++) {
+        if (!(body->blocks[b].least_jacobian >=
+              deformation.least_jacobian)) { /* so that NaN counts as the worst */
+            deformation.least_jacobian = body->blocks[b].least_jacobian;
+            worst = body->blocks[b].worst_point;
+        }
+    }
+    deformation.point = body->order[worst];
+    return deformation;
+}
+
+struct deformation body_force(struct body *body, const double *u, double *force)
+{
+    struct deformation deformation = body_own_force(body, u, force);
+    body_gather(body, force);
+    return deformation;
+}
+
+void body_gather(struct body *body, double *vector)
+{
+    const struct body_share *share = &body->share;
+    const int64_t *node = body->node_order;
+    double *by_place = body->force; /* scratch here */
+    int dim = body->dim;
+    if (share->ranks == NULL) {
+        return;
+    }
+    for (int64_t p = share->begin_node; p < share->end_node; p++) {
+        for (int a = 0; a < dim; a++) {
+            by_place[p * dim + a] = vector[node[p] * dim + a];
+        }
+    }
+    ranks_gather(share->ranks, by_place, (size_t)dim * sizeof *vector, share->node_first);
+    for (int64_t p = 0; p < body->node_count; p++) {
+        for (int a = 0; a < dim; a++) {
+            vector[node[p] * dim + a] = by_place[p * dim + a];
+        }
+    }
+}
+
+double body_volume(const struct body *body)
+{
+    double volume = 0.0;
+    for (int64_t q = 0; q < body->point_count; q++) {
+        volume += body->weight[q];
+    }
+    return volume;
+}
+
+/* Energy of a point, added to *energy. */
+static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double sum = material_isochoric_energy(material, F);
+    if (body->smoothed) {
+        sum += stress_smoothing_energy(body, q, F);
+    }
+    sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
+    *(double *)energy += body->weight[q] * sum;
+}
+
+double body_energy(struct body *body, const double *u)
+{
+    double energy = 0.0;
+#pragma omp parallel num_threads(body->threads)
+    set_state(body, u);
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        body->blocks[b].energy = 0.0;
+        body_visit(body, b, b + 1, add_energy, &body->blocks[b].energy);
+    }
+    ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
+    for (int64_t b = 0; b < body->block_count; b++) {
+        energy += body->blocks[b].energy;
+    }
+    return energy;
+}

@@ -1,0 +1,193 @@
+#include "solid/body/merged_cells.h"
+
+#include "approx/cells/quality.h"
+#include "base/memory.h"
+#include "solid/body/stress.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Whether two cells are of a region and a law. */
+static bool are_alike(const struct body_input *input, int64_t a, int64_t b)
+{
+    int32_t first = input->material[a], second = input->material[b];
+    return first == second || (input->group != NULL && input->group[first] == input->group[second] &&
+                               input->materials[first].model == input->materials[second].model);
+}
+
+static bool is_larger(const double *volume, int64_t a, int64_t b)
+{
+    return volume[a] > volume[b] || (!(volume[a] < volume[b]) && a < b);
+}
+
+/* Let b be the partner of a, if it is the largest one so far; a: none yet. */
+static void propose(const struct body_input *input, const double *volume, int64_t a, int64_t b,
+                    int64_t *partner)
+{
+    if (are_alike(input, a, b) && (partner[a] == a || is_larger(volume, b, partner[a]))) {
+        partner[a] = b;
+    }
+}
+
+/* Follow partners from a cell to the end: a cell without partner, or the larger of two that are partners of
+ * each other. There are no other cycles, as a cell is not larger than the partner of its partner. */
+static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell)
+{
+    int64_t next = partner[cell];
+    while (next != cell && (partner[next] != cell || is_larger(volume, next, cell))) {
+        cell = next;
+        next = partner[cell];
+    }
+    return cell;
+}
+
+enum status merged_cells_find(const struct body_input *input, int64_t *root, struct error *error)
+{
+    const struct smoothed_cells_input *smoothed = input->smoothed;
+    const struct faces *faces = smoothed->faces;
+    const struct cells cells = {input->dim, input->node_count, smoothed->x, input->point_count,
+                                smoothed->cell_node};
+    SCRATCH bool *poor = NULL;
+    SCRATCH double *volume = NULL;
+    SCRATCH int64_t *partner = NULL, *size = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&poor, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volume, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&size, cells.count, error));
+    for (int64_t c = 0; c < cells.count; c++) {
+        partner[c] = c;
+        size[c] = 1;
+        volume[c] = fmax(0.0, input->weight[c]); /* nan: 0 */
+        poor[c] = cell_quality(&cells, c) < POOR_QUALITY;
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        int64_t first = faces->cell[2 * f], second = faces->cell[2 * f + 1];
+        if (first >= 0 && second >= 0 && first < cells.count && second < cells.count) {
+            if (poor[first]) {
+                propose(input, volume, first, second, partner);
+            }
+            if (poor[second]) {
+                propose(input, volume, second, first, partner);
+            }
+        }
+    }
+    for (int64_t c = 0; c < cells.count; c++) {
+        int64_t end = end_of(volume, partner, c);
+        root[c] = end == c || size[end] < MERGED_MOST_CELLS ? end : c;
+        size[end] += root[c] != c;
+    }
+    return STATUS_OK;
+}
+
+enum status merged_cells_order(const int64_t *root, struct body *body, struct error *error)
+{
+    struct smoothed_cells *smoothed = &body->cells;
+    int64_t cells = body->point_count, at = 0;
+    SCRATCH int64_t *first = NULL, *next = NULL;
+    for (int64_t c = 0; c < cells; c++) {
+        smoothed->merged_count += root[c] != c;
+    }
+    if (smoothed->merged_count == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells that go to each, 0: none */
+    RETURN_IF_ERROR(NEW_ARRAY(&next, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group_end, cells, error));
+    for (int64_t c = cells - 1; c >= 0; c--) {
+        if (root[c] != c) {
+            next[c] = first[root[c]];
+            first[root[c]] = c + 1;
+        }
+    }
+    int64_t kept = 0;
+    for (int64_t q = 0; q < cells; q++) { /* the roots in their order, */
+        int64_t c = body->order[q];
+        if (root[c] == c) {
+            body->order[kept++] = c;
+        }
+    }
+    memmove(body->order + cells - kept, body->order, (size_t)kept * sizeof *body->order);
+    for (int64_t k = cells - kept; k < cells; k++) { /* each with those that go to it */
+        int64_t c = body->order[k], begin = at;
+        body->order[at++] = c;
+        for (int64_t i = first[c]; i != 0; i = next[i - 1]) {
+            body->order[at++] = i - 1;
+        }
+        for (int64_t q = begin; q < at; q++) {
+            smoothed->group[q] = (int32_t)begin;
+            smoothed->group_end[q] = (int32_t)at;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Replace the rows of a group of cells by their mean, or by the shares w_i / W of their sum. */
+static void average_rows(const struct body *body, const struct block *block, int64_t begin, int64_t end,
+                         bool sum, block_rows rows)
+{
+    const double *weight = body->weight;
+    double whole = 0.0;
+    for (int64_t q = begin; q < end; q++) {
+        whole += weight[q];
+    }
+    for (int k = 0; k < body->dim * body->dim; k++) {
+        double *row = rows[k] - block->first_point, mean = 0.0;
+        for (int64_t q = begin; q < end; q++) {
+            mean += (sum ? 1.0 : weight[q]) * row[q];
+        }
+        mean /= whole;
+        for (int64_t q = begin; q < end; q++) {
+            row[q] = (sum ? weight[q] : 1.0) * mean;
+        }
+    }
+}
+
+/* The next group of several cells of a block, from *begin on; false where there is none. */
+static bool next_group(const struct body *body, const struct block *block, int64_t *begin, int64_t *end)
+{
+    int64_t last = block->first_point + block->point_count;
+    for (; *begin < last; *begin = *end) {
+        *end = smoothed_cells_group_end(body, *begin);
+        if (*end > *begin + 1) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* det F and J of a cell from rows of its block. */
+static void set_ratios(const struct body *body, int64_t i, const block_rows F, const block_rows interpolant,
+                       double *determinants, double *J)
+{
+    double f[9], h[9], C[9];
+    stress_matrix(body->dim, &F[0][i], BLOCK_MOST_POINTS, f);
+    stress_matrix(body->dim, &interpolant[0][i], BLOCK_MOST_POINTS, h);
+    cofactor(h, C);
+    determinants[i] = determinant(f);
+    J[i] = determinant(h);
+    for (int k = 0; k < 9; k++) {
+        J[i] -= C[k] * (h[k] - f[k]);
+    }
+}
+
+void merged_cells_gradients(const struct body *body, const struct block *block, block_rows F,
+                            block_rows interpolant, double *determinants, double *J)
+{
+    for (int64_t begin = block->first_point, end; next_group(body, block, &begin, &end); begin = end) {
+        average_rows(body, block, begin, end, false, F);
+        average_rows(body, block, begin, end, false, interpolant);
+        for (int64_t q = begin; q < end; q++) {
+            set_ratios(body, q - block->first_point, (const double(*)[BLOCK_MOST_POINTS])F,
+                       (const double(*)[BLOCK_MOST_POINTS])interpolant, determinants, J);
+        }
+    }
+}
+
+void merged_cells_stresses(const struct body *body, const struct block *block, block_rows P, block_rows T)
+{
+    for (int64_t begin = block->first_point, end; next_group(body, block, &begin, &end); begin = end) {
+        average_rows(body, block, begin, end, true, P);
+        average_rows(body, block, begin, end, true, T);
+    }
+}

@@ -1,0 +1,281 @@
+/* Nodal pressures A pi = b by Chebyshev's iteration.
+ *
+ * Let S be diagonal with sum_q N_a(q) w_q (1 / k_q + epsilon / ((d + 2) mu_q)). Of each point A is at most S,
+ * and at least rho S, rho = 1 / (1 + max_q epsilon k_q / ((d + 2) mu_q)): these bound the eigenvalues of S^-1
+ * A. So many iterations that the modulus of each mode is right to `accuracy` give a polynomial of A, fixed
+ * once for all, which is symmetric and positive definite as A^-1 is: the pressures derive from an energy,
+ * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
+ * 2003, algorithm 12.1. */
+#include "base/memory.h"
+#include "base/processor.h"
+#include "solid/body/nodal_volume.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
+
+/* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
+ * most this part; and x at most that. */
+static const double effect = 2e-5, most_inaccurate = 0.02;
+/* With augmentations an error of A^-1 is reduced by the ratio of the limited to the whole bulk modulus; the
+ * admitted error is at most this. */
+static const double augmented_accuracy = 0.01;
+
+/* Changes of the pressures from augmentation to augmentation are of one rate where the angle between two has
+ * at least this cosine. */
+static const double aligned = 0.99;
+
+/* The volumes that share points with volume a, itself included, each once: every ROWS-th place of idx; NULL:
+ * count only. seen: scratch, in which no entry is a before. Returns how many. */
+static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen,
+                               int32_t *idx)
+{
+    int64_t count = 0;
+    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+        const int32_t *of = volumes->of_point + volumes->slot[i] / vertices * vertices;
+        for (int k = 0; k < vertices; k++) {
+            if (seen[of[k]] == a) {
+                continue;
+            }
+            seen[of[k]] = a;
+            if (idx != NULL) {
+                idx[count * ROWS] = of[k];
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Add the parts of A and S that volume a has from the points around it; pressures->entry[b]: where row a has
+ * b. */
+static void add_points(const struct body *body, int64_t a, struct nodal_pressures *pressures, double *bound)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+        int64_t slot = volumes->slot[i], q = slot / vertices;
+        const struct material *material = &body->materials[body->material[q]];
+        double rest = nodal_pressure_modulus(material), compliance = nodal_pressure_compliance(material);
+        if (!(rest > 0.0)) {
+            continue;
+        }
+        double share = volumes->share[slot];
+        double limited = fmin(rest, pressures->most * material->shear_modulus);
+        compliance /= body->dim + 2;
+        pressures->weight[a] += share * (1.0 / limited - 1.0 / rest);
+        pressures->value[pressures->entry[a]] += share * (1.0 / limited + compliance);
+        *bound += share * (1.0 / limited + compliance);
+        for (int k = 0; k < vertices; k++) {
+            int64_t other = q * vertices + k;
+            pressures->value[pressures->entry[volumes->of_point[other]]] -=
+                compliance * share * volumes->share[other] / body->weight[q];
+        }
+    }
+}
+
+/* Lay out the slices, each as wide as its longest row. A row is padded with zeros in the column of its
+ * diagonal entry. */
+static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
+                           struct error *error)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    pressures->slices = (volumes->count + ROWS - 1) / ROWS;
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
+    for (int64_t slice = 0; slice < pressures->slices; slice++) {
+        int64_t widest = 0;
+        for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
+            int64_t width = list_neighbours(volumes, vertices, a, seen, NULL);
+            widest = width > widest ? width : widest;
+        }
+        pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
+    return NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error);
+}
+
+/* The iterations for eigenvalues from rho to 1. */
+static void choose_iterations(struct nodal_pressures *pressures, double largest, double accuracy)
+{
+    double rho = 1.0 / (1.0 + largest), rate = acosh((1.0 + rho) / fmax(1.0 - rho, 1e-3));
+    pressures->iterations = 1 + (int)(acosh(1.0 / accuracy) / rate);
+    pressures->centre = 0.5 * (1.0 + rho);
+    pressures->half = 0.5 * fmax(1.0 - rho, 1e-3);
+    pressures->scale = 1.0 / (1.0 - 1.0 / cosh(pressures->iterations * rate));
+}
+
+/* The columns of the rows. */
+static void set_columns(const struct body *body, int64_t *seen, struct nodal_pressures *pressures)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    for (int64_t a = 0; a < volumes->count; a++) {
+        int64_t slice = a / ROWS, width = pressures->ptr[slice + 1] - pressures->ptr[slice];
+        int32_t *idx = pressures->idx + pressures->ptr[slice] * ROWS + a % ROWS;
+        for (int64_t k = list_neighbours(volumes, body->dim + 1, a, seen, idx); k < width; k++) {
+            idx[k * ROWS] = (int32_t)a;
+        }
+    }
+}
+
+enum status nodal_pressures_build(struct body *body, struct error *error)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    int64_t count = body->volumes.count, rows;
+    SCRATCH int64_t *seen = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    RETURN_IF_ERROR(lay_out(body, pressures, seen, error));
+    rows = pressures->slices * ROWS;
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->inverse, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->held, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->change, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->weight, rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->entry, count, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    set_columns(body, seen, pressures);
+    RETURN_IF_ERROR(body_share_pressures(body, error));
+    body_limit_bulk(body, INFINITY);
+    return STATUS_OK;
+}
+
+/* The values of A, with S^-1 and the weights. */
+static void set_values(struct body *body, struct nodal_pressures *pressures)
+{
+    int64_t rows = pressures->slices * ROWS;
+    memset(pressures->value, 0, (size_t)(pressures->ptr[pressures->slices] * ROWS) * sizeof(double));
+    memset(pressures->weight, 0, (size_t)rows * sizeof *pressures->weight);
+    for (int64_t a = 0; a < body->volumes.count; a++) {
+        double bound = 0.0;
+        int64_t first = pressures->ptr[a / ROWS] * ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
+        /* From the end, as the padding of a row has the column of its diagonal entry. */
+        for (int64_t at = end - ROWS + a % ROWS; at >= first; at -= ROWS) {
+            pressures->entry[pressures->idx[at]] = at;
+        }
+        add_points(body, a, pressures, &bound);
+        pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
+    }
+}
+
+void body_limit_bulk(struct body *body, double most)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    double largest = 0.0, bulk = 0.0, limited_bulk = 0.0, least_share = 1.0, least_shear = INFINITY;
+    if (!body->averaged) {
+        return;
+    }
+    pressures->most = most;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        const struct material *material = &body->materials[m];
+        double rest = nodal_pressure_modulus(material), limited = fmin(rest, most * material->shear_modulus);
+        largest = fmax(largest, limited * nodal_pressure_compliance(material) / (body->dim + 2));
+        bulk = fmax(bulk, rest / material->shear_modulus);
+        limited_bulk = fmax(limited_bulk, limited / material->shear_modulus);
+        least_share = rest > 0.0 ? fmin(least_share, limited / rest) : least_share;
+        least_shear = fmin(least_shear, material->shear_modulus);
+    }
+    pressures->least_shear = least_shear;
+    pressures->slowest = 1.0 - least_share;
+    pressures->limited = bulk > limited_bulk;
+    choose_iterations(pressures, largest,
+                      pressures->limited ? augmented_accuracy * limited_bulk / bulk
+                                         : fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
+    set_values(body, pressures);
+    memset(pressures->held, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
+    memset(pressures->change, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->change);
+}
+
+bool body_is_limited(const struct body *body)
+{
+    return body->averaged && body->volumes.pressures.limited;
+}
+
+double body_augment(struct body *body, bool steady, double strain)
+{
+    struct nodal_pressures *pressures = &body->volumes.pressures;
+    const double *value = body->volumes.pressure, *weight = pressures->weight;
+    body_share_collect_pressures(body);
+    double now2 = 0.0, before2 = 0.0, both = 0.0, value2 = 0.0, least = strain * pressures->least_shear;
+    int64_t count = pressures->slices * ROWS;
+    for (int64_t a = 0; a < count; a++) {
+        double change = value[a] - pressures->held[a];
+        now2 += weight[a] * change * change;
+        before2 += weight[a] * pressures->change[a] * pressures->change[a];
+        both += weight[a] * change * pressures->change[a];
+        value2 += weight[a] * fmax(value[a] * value[a], least * least);
+    }
+    double rate = fmin(before2 > 0.0 ? sqrt(now2 / before2) : INFINITY, pressures->slowest);
+    double ahead = rate / (1.0 - rate), lack = now2 > 0.0 ? ahead * sqrt(now2 / value2) : 0.0;
+    bool jumps = steady && lack > NODAL_PRESSURE_LACK && both > aligned * sqrt(now2 * before2);
+    for (int64_t a = 0; a < count; a++) {
+        double change = value[a] - pressures->held[a];
+        pressures->held[a] = value[a] + (jumps ? ahead * change : 0.0);
+        pressures->change[a] = jumps ? 0.0 : change;
+    }
+    return jumps ? INFINITY : lack;
+}
+
+/* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
+ALL_SETS static void iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep,
+                             double add, const double *restrict move, double *restrict residual,
+                             double *restrict next, double *restrict value)
+{
+    for (int64_t slice = first; slice < end; slice++) {
+        const double *entry = pressures->value + pressures->ptr[slice] * ROWS;
+        const int32_t *column = pressures->idx + pressures->ptr[slice] * ROWS;
+        int64_t width = pressures->ptr[slice + 1] - pressures->ptr[slice], row = slice * ROWS;
+        double sum[ROWS] = {0.0};
+        for (int64_t k = 0; k < width * ROWS; k += ROWS) {
+            for (int i = 0; i < ROWS; i++) {
+                sum[i] += entry[k + i] * move[column[k + i]];
+            }
+        }
+        for (int64_t a = row; a < row + ROWS; a++) {
+            residual[a] -= sum[a - row];
+            next[a] = keep * move[a] + add * pressures->inverse[a] * residual[a];
+            value[a] += pressures->scale * next[a];
+        }
+    }
+}
+
+void nodal_pressures_solve(struct body *body)
+{
+    const struct nodal_pressures *pressures = &body->volumes.pressures;
+    const double *content = body->volumes.content;
+    struct body_share *share = &body->share;
+    int64_t count = pressures->slices * ROWS;
+    int64_t begin = share->slice_first[ranks_rank(share->ranks)];
+    int64_t last_slice = share->slice_first[ranks_rank(share->ranks) + 1];
+    double *residual = pressures->scratch, *move = residual + count, *next = move + count;
+    double *value = body->volumes.pressure;
+    double centre = pressures->centre / pressures->half, last = 1.0 / centre;
+#pragma omp for schedule(static)
+    for (int64_t a = begin * ROWS; a < last_slice * ROWS; a++) {
+        residual[a] = content[a] + pressures->weight[a] * pressures->held[a];
+        move[a] = pressures->inverse[a] * residual[a] / pressures->centre;
+        value[a] = pressures->scale * move[a];
+    }
+    for (int k = 1; k < pressures->iterations; k++) {
+        double now = 1.0 / (2.0 * centre - last), *swap = move;
+        body_share_exchange(share, &share->pressures, 1, move);
+#pragma omp for schedule(static)
+        for (int64_t first = begin; first < last_slice; first += SLICES_AT_ONCE) {
+            int64_t end = first + SLICES_AT_ONCE < last_slice ? first + SLICES_AT_ONCE : last_slice;
+            iterate(pressures, first, end, now * last, 2.0 * now / pressures->half, move, residual, next,
+                    value);
+        }
+        move = next;
+        next = swap;
+        last = now;
+    }
+    body_share_exchange(share, &share->pressures, 1, value);
+}
+
+void nodal_pressures_free(struct nodal_pressures *pressures)
+{
+    FREE_ALL(pressures->ptr, pressures->idx, pressures->value, pressures->inverse, pressures->held,
+             pressures->change, pressures->weight, pressures->entry, pressures->scratch);
+    *pressures = (struct nodal_pressures){0};
+}

@@ -1,0 +1,235 @@
+#include "solid/body/nodal_volume.h"
+
+#include "base/lists.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* s by the shear modulus. */
+static const double points_part = 2.0;
+/* epsilon */
+static const double stabilisation = 0.125;
+
+/* Number the nodal volumes, one for each pair of background node and group of materials, and list their
+ * slots, point * (dim + 1) + vertex. keys[slots]: the pair of each slot as one number. */
+static enum status number_volumes(struct nodal_volumes *volumes, struct placed *keys, int64_t slots,
+                                  struct error *error)
+{
+    qsort(keys, (size_t)slots, sizeof *keys, compare_placed);
+    for (int64_t i = 0; i < slots; i++) {
+        volumes->count += i == 0 || keys[i].place > keys[i - 1].place;
+        volumes->of_point[keys[i].item] = (int32_t)(volumes->count - 1);
+        volumes->slot[i] = (int32_t)keys[i].item;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->ptr, volumes->count + 1, error));
+    for (int64_t i = 0; i < slots; i++) {
+        volumes->ptr[volumes->of_point[keys[i].item] + 1] = i + 1;
+    }
+    return STATUS_OK;
+}
+
+/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges leave their shares
+ * to the other nodes of the cell, if there are any; returns whether they do. */
+static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
+{
+    int vertices = body->dim + 1;
+    const int32_t *vertex = input->vertex + body->order[q] * vertices;
+    const double *coordinate = input->barycentric + body->order[q] * vertices;
+    double others = 0.0;
+    bool at_edge = false;
+    for (int k = 0; k < vertices; k++) {
+        bool leaves = input->at_edge != NULL && input->at_edge[vertex[k]];
+        others += leaves ? 0.0 : coordinate[k];
+        at_edge = at_edge || leaves;
+    }
+    at_edge = at_edge && others > 0.0;
+    for (int k = 0; k < vertices; k++) {
+        share[k] = coordinate[k] * body->weight[q];
+        if (at_edge) {
+            share[k] = input->at_edge[vertex[k]] ? 0.0 : share[k] / others;
+        }
+    }
+    return at_edge;
+}
+
+/* S of the nodal volumes that have a point at an edge. */
+static enum status sum_moduli(const bool *at_edge, struct body *body, struct error *error)
+{
+    struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->direct, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->modulus, volumes->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->mean, volumes->count, error));
+    for (int64_t a = 0; a < volumes->count; a++) {
+        double sum = 0.0;
+        bool is_near = false;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t slot = volumes->slot[i], q = slot / vertices;
+            is_near = is_near || at_edge[q];
+            sum += volumes->share[slot] * nodal_volume_modulus(&body->materials[body->material[q]]);
+        }
+        volumes->modulus[a] = is_near ? sum : 0.0;
+    }
+    return STATUS_OK;
+}
+
+enum status nodal_volumes_build(const struct body_input *input, struct body *body, struct error *error)
+{
+    struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    int64_t slots = body->point_count * vertices;
+    SCRATCH struct placed *keys = NULL;
+    SCRATCH bool *at_edge = NULL; /* points of cells with a node at an edge and others */
+    RETURN_IF_ERROR(NEW_ARRAY(&keys, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->of_point, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->share, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->slot, slots, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->strain, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at_edge, body->point_count, error));
+    for (int64_t s = 0; s < slots; s++) {
+        int64_t q = s / vertices, from = body->order[q] * vertices + s % vertices;
+        int32_t material = body->material[q];
+        int32_t group = input->group != NULL ? input->group[material] : material;
+        keys[s] = (struct placed){(double)((int64_t)input->vertex[from] * body->material_count + group), s};
+    }
+    for (int64_t q = 0; q < body->point_count; q++) {
+        if (nodal_pressure_modulus(&body->materials[body->material[q]]) > 0.0) {
+            at_edge[q] = share_out(input, body, q, volumes->share + q * vertices);
+        }
+    }
+    RETURN_IF_ERROR(number_volumes(volumes, keys, slots, error));
+    if (input->at_edge != NULL) {
+        RETURN_IF_ERROR(sum_moduli(at_edge, body, error));
+    }
+    RETURN_IF_ERROR(body_share_volumes(body, error));
+    RETURN_IF_ERROR(nodal_pressures_build(body, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
+    return NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error);
+}
+
+double nodal_volume_modulus(const struct material *material)
+{
+    return fmin(material_bulk(material), points_part * material->shear_modulus);
+}
+
+double nodal_pressure_modulus(const struct material *material)
+{
+    return material_bulk(material) - nodal_volume_modulus(material);
+}
+
+double nodal_pressure_compliance(const struct material *material)
+{
+    return stabilisation / material->shear_modulus;
+}
+
+/* b */
+static inline __attribute__((always_inline)) void sum_content(struct body *body, int vertices)
+{
+    struct nodal_volumes *volumes = &body->volumes;
+    struct body_share *share = &body->share;
+    int rank = ranks_rank(share->ranks);
+#pragma omp for schedule(static)
+    for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
+        double sum = 0.0;
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int32_t slot = volumes->slot[i];
+            sum += volumes->share[slot] * volumes->strain[slot / vertices];
+        }
+        volumes->content[a] = sum;
+    }
+}
+
+void nodal_volumes_strain(struct body *body, int64_t b)
+{
+    const struct block *block = &body->blocks[b];
+    for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+        body->volumes.strain[q] = material_volume_strain(&body->materials[body->material[q]], body->J[q]);
+    }
+}
+
+/* What s acts on, of a body with edges. */
+static void average_strains(struct body *body)
+{
+    struct nodal_volumes *volumes = &body->volumes;
+    struct body_share *share = &body->share;
+    int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
+#pragma omp for schedule(static)
+    for (int64_t a = share->volume_first[rank]; a < share->volume_first[rank + 1]; a++) {
+        double sum = 0.0;
+        if (!(volumes->modulus[a] > 0.0)) {
+            continue;
+        }
+        for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
+            int64_t slot = volumes->slot[i], q = slot / vertices;
+            double modulus = nodal_volume_modulus(&body->materials[body->material[q]]);
+            sum += volumes->share[slot] * modulus * volumes->strain[q];
+        }
+        volumes->mean[a] = sum / volumes->modulus[a];
+    }
+    body_share_exchange(share, &share->pressures, 1, volumes->mean);
+#pragma omp for schedule(static)
+    for (int64_t q = share->begin_point; q < share->end_point; q++) {
+        double change = 0.0;
+        for (int64_t slot = q * vertices; slot < (q + 1) * vertices; slot++) {
+            int32_t a = volumes->of_point[slot];
+            change += volumes->modulus[a] > 0.0
+                          ? volumes->share[slot] * (volumes->mean[a] - volumes->strain[q])
+                          : 0.0;
+        }
+        volumes->direct[q] = volumes->strain[q] + change / body->weight[q];
+    }
+}
+
+void nodal_volumes_evaluate(struct body *body)
+{
+    if (body->dim == 2) {
+        sum_content(body, 3);
+    } else {
+        sum_content(body, 4);
+    }
+    if (body->volumes.direct != NULL) {
+        average_strains(body);
+    }
+    nodal_pressures_solve(body);
+}
+
+/* sum_a N_a(q) pi_a */
+static double carried(const struct body *body, int64_t point)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    double sum = 0.0;
+    for (int64_t k = point * vertices; k < (point + 1) * vertices; k++) {
+        sum += volumes->share[k] * volumes->pressure[volumes->of_point[k]];
+    }
+    return sum / body->weight[point];
+}
+
+/* dU/dy of a point at the last evaluation, Pa. */
+static double conjugate(const struct body *body, int64_t point)
+{
+    const struct nodal_volumes *volumes = &body->volumes;
+    const double *direct = volumes->direct != NULL ? volumes->direct : volumes->strain;
+    return carried(body, point) +
+           nodal_volume_modulus(&body->materials[body->material[point]]) * direct[point];
+}
+
+double nodal_volume_pressure(const struct body *body, int64_t point)
+{
+    return conjugate(body, point) *
+           material_volume_slope(&body->materials[body->material[point]], body->J[point]);
+}
+
+double nodal_volume_energy(const struct body *body, int64_t point)
+{
+    return 0.5 * conjugate(body, point) * body->volumes.strain[point];
+}
+
+void nodal_volumes_free(struct nodal_volumes *volumes)
+{
+    nodal_pressures_free(&volumes->pressures);
+    FREE_ALL(volumes->of_point, volumes->share, volumes->ptr, volumes->slot, volumes->strain,
+             volumes->content, volumes->pressure, volumes->direct, volumes->modulus, volumes->mean);
+    *volumes = (struct nodal_volumes){0};
+}

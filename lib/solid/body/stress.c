@@ -1,0 +1,151 @@
+#include "solid/body/stress.h"
+
+#include "solid/body/nodal_volume.h"
+#include "base/vector.h"
+
+#include <string.h>
+
+/* Volumetric pressure at a point, Pa; negative in compression. */
+static double point_pressure(const struct body *body, int64_t q, double J)
+{
+    return body->averaged ? nodal_volume_pressure(body, q)
+                          : material_pressure(&body->materials[body->material[q]], J);
+}
+
+void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
+{
+    memset(F, 0, 9 * sizeof *F);
+    F[8] = 1.0;
+    for (int a = 0; a < dim; a++) {
+        for (int b = 0; b < dim; b++) {
+            F[3 * a + b] = row[(a * dim + b) * apart];
+        }
+    }
+}
+
+/* P at a point: the isochoric part, and the volumetric part along the cofactor of F. */
+static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
+{
+    double C[9];
+    material_isochoric_stress(&body->materials[body->material[q]], F, P);
+    cofactor(F, C);
+    double pressure = point_pressure(body, q, J);
+    for (int k = 0; k < 9; k++) {
+        P[k] += pressure * C[k];
+    }
+}
+
+/* Store the first dim rows and columns, times the weight, at place i of a block. */
+static void put(const struct body *body, int64_t q, int64_t i, const double stress[9], block_rows P)
+{
+    int dim = body->dim;
+    for (int k = 0; k < dim * dim; k++) {
+        P[k][i] = body->weight[q] * stress[3 * (k / dim) + k % dim];
+    }
+}
+
+void stress_points(const struct body *body, const struct block *block, block_rows P)
+{
+    for (int64_t i = 0; i < block->point_count; i++) {
+        double F[9], stress[9];
+        int64_t q = block->first_point + i;
+        stress_matrix(body->dim, body->F + q, body->point_count, F);
+        point_stress(body, q, F, body->J[q], stress);
+        put(body, q, i, stress, P);
+    }
+}
+
+double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9])
+{
+    double H[9];
+    stress_matrix(body->dim, body->cells.interpolant + point, body->point_count, H);
+    double shear = body->materials[body->material[point]].shear_modulus;
+    return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * vector_distance2(9, H, F);
+}
+
+/* d cof H along D, by which cof H : D changes with H: along : dH. */
+static void cofactor_along(const double H[9], const double D[9], double along[9])
+{
+    double sum[9], both[9], of_H[9], of_D[9];
+    for (int k = 0; k < 9; k++) {
+        sum[k] = H[k] + D[k];
+    }
+    cofactor(sum, both);
+    cofactor(H, of_H);
+    cofactor(D, of_D);
+    for (int k = 0; k < 9; k++) {
+        along[k] = both[k] - of_H[k] - of_D[k];
+    }
+}
+
+static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double F[9], H[9], C[9], D[9], along[9];
+    stress_matrix(body->dim, body->F + q, body->point_count, F);
+    stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
+    vector_subtract(9, H, F, D);
+    double stiffness = SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
+    double pressure = point_pressure(body, q, body->J[q]);
+    material_isochoric_stress(material, F, P);
+    cofactor(H, C);
+    cofactor_along(H, D, along);
+    for (int k = 0; k < 9; k++) {
+        P[k] += pressure * C[k] - stiffness * D[k];
+        T[k] = stiffness * D[k] - pressure * along[k];
+    }
+}
+
+void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T)
+{
+    for (int64_t i = 0; i < block->point_count; i++) {
+        double on_gradient[9], on_interpolant[9];
+        cell_stress(body, block->first_point + i, on_gradient, on_interpolant);
+        put(body, block->first_point + i, i, on_gradient, P);
+        put(body, block->first_point + i, i, on_interpolant, T);
+    }
+}
+
+/* The derivative of the energy when F, and in a cell F_h with it, change alike. */
+static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
+{
+    double *P = (double *)stress + body->order[q] * 9, T[9];
+    if (!body->smoothed) {
+        point_stress(body, q, F, J, P);
+        return;
+    }
+    cell_stress(body, q, P, T);
+    for (int k = 0; k < 9; k++) {
+        P[k] += T[k];
+    }
+}
+
+void body_stress(struct body *body, double *stress)
+{
+    body_share_collect(body);
+    body_visit(body, 0, body->block_count, put_stress, stress);
+}
+
+static void put_gradient(const struct body *body, int64_t q, const double F[9], double J, void *gradient)
+{
+    (void)J;
+    memcpy((double *)gradient + body->order[q] * 9, F, 9 * sizeof *F);
+}
+
+void body_gradient(struct body *body, double *gradient)
+{
+    body_share_collect(body);
+    body_visit(body, 0, body->block_count, put_gradient, gradient);
+}
+
+static void put_volume_ratio(const struct body *body, int64_t q, const double F[9], double J, void *ratio)
+{
+    (void)F;
+    ((double *)ratio)[body->order[q]] = J;
+}
+
+void body_volume_ratio(struct body *body, double *ratio)
+{
+    body_share_collect(body);
+    body_visit(body, 0, body->block_count, put_volume_ratio, ratio);
+}

@@ -1,0 +1,20 @@
+/* Stresses of points and smoothed cells of any law, one at a time; private to lib/solid. */
+#pragma once
+
+#include "solid/body/kernel.h"
+
+/* Visit the points of blocks first .. last - 1 with F and J at the last evaluation. */
+typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
+void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
+
+/* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
+void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
+
+/* Weighted stresses P of a block of points. */
+void stress_points(const struct body *body, const struct block *block, block_rows P);
+
+/* Weighted stresses of a block of cells, P on F and T on F_h: see smoothed_cells.h. */
+void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
+
+/* Energy k |F_h - F|^2 / 2 of a cell, Pa: see smoothed_cells.h. */
+double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9]);

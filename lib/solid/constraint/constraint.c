@@ -1,0 +1,319 @@
+#include "solid/constraint/constraint.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include "solid/operators/inverse_factor.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
+ * that is independent of the others is at most a hundred-thousandth of it. */
+static const double least_pivot = 1e-10;
+
+void constraint_rows_init(struct constraint_rows *rows, int dim)
+{
+    *rows = (struct constraint_rows){.dim = dim};
+}
+
+void constraint_rows_free(struct constraint_rows *rows)
+{
+    FREE_ALL(rows->ptr, rows->first, rows->list, rows->idx, rows->phi, rows->direction, rows->target,
+             rows->start, rows->curve, rows->section, rows->node);
+    *rows = (struct constraint_rows){0};
+}
+
+static enum status reserve(struct constraint_rows *rows, int64_t length, struct error *error)
+{
+    int64_t pairs = rows->list_count > 0 ? rows->ptr[rows->list_count] : 0;
+    if (rows->count == rows->capacity) {
+        int64_t capacity = rows->capacity * 2 + 64;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->ptr, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->first, capacity + 1, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->list, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->direction, capacity * rows->dim, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->target, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->curve, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->section, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->node, capacity, error));
+        rows->capacity = capacity;
+        rows->ptr[0] = rows->first[0] = 0;
+    }
+    if (pairs + length > rows->pair_capacity) {
+        int64_t capacity = (pairs + length) * 2 + 1024;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->idx, capacity, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&rows->phi, capacity, error));
+        rows->pair_capacity = capacity;
+    }
+    return STATUS_OK;
+}
+
+/* Is that the list of the last row? */
+static bool is_last_list(const struct constraint_rows *rows, int64_t length, const int32_t *idx,
+                         const double *phi)
+{
+    if (rows->count == 0) {
+        return false;
+    }
+    struct average last = constraint_rows_average(rows, rows->count - 1);
+    return last.length == length && memcmp(last.idx, idx, (size_t)length * sizeof *idx) == 0 &&
+           memcmp(last.phi, phi, (size_t)length * sizeof *phi) == 0;
+}
+
+enum status constraint_rows_add(struct constraint_rows *rows, int64_t length, const int32_t *idx,
+                                const double *phi, const double *direction, double target, int32_t curve,
+                                int32_t section, int32_t node, struct error *error)
+{
+    if (length < 1) {
+        return fail(error, STATUS_INPUT, "a condition at node %d over no nodes", node);
+    }
+    enum status status = reserve(rows, length, error);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    if (!is_last_list(rows, length, idx, phi)) {
+        int64_t at = rows->ptr[rows->list_count++];
+        memcpy(rows->idx + at, idx, (size_t)length * sizeof *idx);
+        memcpy(rows->phi + at, phi, (size_t)length * sizeof *phi);
+        rows->ptr[rows->list_count] = at + length;
+    }
+    int64_t row = rows->count++;
+    rows->list[row] = rows->list_count - 1;
+    rows->first[rows->list_count] = rows->count;
+    memcpy(rows->direction + row * rows->dim, direction, (size_t)rows->dim * sizeof *direction);
+    rows->target[row] = target;
+    rows->curve[row] = curve;
+    rows->section[row] = section;
+    rows->node[row] = node;
+    return STATUS_OK;
+}
+
+/* List l as an average. */
+static struct average average_of_list(const struct constraint_rows *rows, int64_t l)
+{
+    int64_t at = rows->ptr[l];
+    return (struct average){rows->ptr[l + 1] - at, rows->idx + at, rows->phi + at};
+}
+
+struct average constraint_rows_average(const struct constraint_rows *rows, int64_t r)
+{
+    return average_of_list(rows, rows->list[r]);
+}
+
+/* The component of a vector along the direction of row r. */
+static double along(const struct constraint_rows *rows, int64_t r, const double *vector)
+{
+    return vector_dot(rows->dim, rows->direction + r * rows->dim, vector);
+}
+
+void constraint_rows_take(const struct constraint_rows *rows, int64_t begin, int64_t end, const double *u,
+                          double *value)
+{
+    for (int64_t l = begin; l < end; l++) {
+        struct average average = average_of_list(rows, l);
+        double mean[3];
+        average_take(&average, rows->dim, u, mean);
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            value[r] = along(rows, r, mean);
+        }
+    }
+}
+
+double constraint_rows_value(const struct constraint_rows *rows, int64_t r, const double *u)
+{
+    struct average average = constraint_rows_average(rows, r);
+    double mean[3];
+    average_take(&average, rows->dim, u, mean);
+    return along(rows, r, mean);
+}
+
+double constraint_rows_target(const struct constraint_rows *rows, int64_t r, const double *factor)
+{
+    double target = rows->target[r] * factor[rows->curve[r]];
+    return rows->start != NULL ? target + rows->start[r] * factor[rows->start_curve] : target;
+}
+
+/* G M^-1 G^T in CSR. Rows of orthogonal directions do not couple, so that axis-aligned conditions decompose.
+ */
+static enum status assemble(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                            int64_t **ptr, int64_t **column, double **value, struct error *error)
+{
+    const struct sparse lists = {rows->list_count, node_count, rows->ptr, rows->idx, rows->phi};
+    FREED_BY(sparse_free) struct sparse of_node = {0};
+    SCRATCH int64_t *touched = NULL, *last = NULL;
+    int64_t capacity = 0, at = 0; /* last: the list that touched each last */
+    SCRATCH double *sum = NULL;
+    RETURN_IF_ERROR(sparse_transpose(&lists, &of_node, error));
+    RETURN_IF_ERROR(NEW_ARRAY(ptr, rows->count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&touched, rows->list_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&last, rows->list_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sum, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        int64_t count = 0;
+        for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
+            int32_t node = rows->idx[i];
+            for (int64_t k = of_node.ptr[node]; k < of_node.ptr[node + 1]; k++) {
+                int32_t m = of_node.idx[k];
+                if (last[m] != l + 1) {
+                    last[m] = l + 1;
+                    sum[m] = 0.0;
+                    touched[count++] = m;
+                }
+                sum[m] += rows->phi[i] * of_node.value[k] / mass[node];
+            }
+        }
+        for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
+            for (int64_t t = 0; t < count; t++) {
+                for (int64_t s = rows->first[touched[t]]; s < rows->first[touched[t] + 1]; s++) {
+                    double cosine = along(rows, r, rows->direction + s * rows->dim);
+                    if (fabs(cosine) < 1e-14) {
+                        continue;
+                    }
+                    if (at == capacity) {
+                        capacity = at * 2 + 1024;
+                        RETURN_IF_ERROR(RESIZE_ARRAY(column, capacity, error));
+                        RETURN_IF_ERROR(RESIZE_ARRAY(value, capacity, error));
+                    }
+                    (*column)[at] = s;
+                    (*value)[at++] = cosine * sum[touched[t]];
+                }
+            }
+            (*ptr)[r + 1] = at;
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                                 double least, struct envelope *factor, struct error *error)
+{
+    SCRATCH int64_t *ptr = NULL, *column = NULL;
+    SCRATCH double *value = NULL;
+    RETURN_IF_ERROR(assemble(rows, node_count, mass, &ptr, &column, &value, error));
+    return envelope_factorise(rows->count, ptr, column, value, least, factor, error);
+}
+
+/* Of several processes: what each does, of about the same work, and the nodes that its rows of L^T need. */
+static enum status share(struct constraint *constraint, bool **wanted, struct error *error)
+{
+    const struct constraint_rows *rows = constraint->rows;
+    const struct ranks *ranks = constraint->inverse->ranks;
+    SCRATCH double *work = NULL;
+    RETURN_IF_ERROR(inverse_factor_wanted(constraint->inverse, wanted, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&work, rows->list_count, error));
+    for (int64_t l = 0; l < rows->list_count; l++) {
+        work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
+    }
+    RETURN_IF_ERROR(ranks_share(ranks, rows->list_count, work, &constraint->list_first, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&constraint->row_first, ranks->count + 1, error));
+    for (int r = 0; r <= ranks->count; r++) {
+        constraint->row_first[r] = rows->first[constraint->list_first[r]];
+    }
+    RETURN_IF_ERROR(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
+    constraint->ranks = ranks;
+    return STATUS_OK;
+}
+
+enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
+                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
+                             struct constraint *constraint, struct error *error)
+{
+    SCRATCH bool *wanted = NULL;
+    *constraint = (struct constraint){.node_count = node_count,
+                                      .rows = rows,
+                                      .mass = mass,
+                                      .inverse = inverse,
+                                      .inverse_rows = inverse_rows};
+    if (rows->count == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
+    if (inverse != NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
+        rows = inverse_rows;
+    }
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
+    RETURN_IF_ERROR(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error)
+                                                              : STATUS_OK);
+    return constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error);
+}
+
+void constraint_free(struct constraint *constraint)
+{
+    FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
+             constraint->place_first);
+    constraint_nodes_free(&constraint->nodes);
+    envelope_free(&constraint->factor);
+    *constraint = (struct constraint){0};
+}
+
+void constraint_values(const struct constraint *constraint, const double *u, double *value)
+{
+    const struct ranks *ranks = constraint->ranks;
+    const struct constraint_rows *rows = constraint->rows;
+    const int64_t all[2] = {0, rows->list_count};
+    const int64_t *first = ranks != NULL ? constraint->list_first + ranks->rank : all;
+    struct chunks lists = chunks_for_threads(first[1] - first[0], first[1] - first[0], LISTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(lists.threads)
+    for (int64_t c = 0; c < lists.count; c++) {
+        constraint_rows_take(rows, first[0] + chunks_begin(&lists, c), first[0] + chunks_begin(&lists, c + 1),
+                             u, value);
+    }
+    ranks_gather(ranks, value, sizeof *value, constraint->row_first);
+}
+
+void constraint_solve(const struct constraint *constraint, double *x)
+{
+    envelope_solve_shared(&constraint->factor, constraint->ranks, constraint->place_first, x);
+}
+
+void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
+{
+    if (constraint->inverse == NULL) {
+        constraint_nodes_spread(&constraint->nodes, amount, u);
+        return;
+    }
+    int dim = constraint->rows->dim;
+    int64_t size = constraint->node_count * dim;
+    double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
+    memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
+    constraint_nodes_spread(&constraint->nodes, amount, on_inverse);
+    inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
+    for (int64_t i = 0; i < size; i++) {
+        u[i] += move[i];
+    }
+}
+
+void constraint_project(struct constraint *constraint, const double *factor, double *u)
+{
+    const struct constraint_rows *rows = constraint->rows;
+    if (rows == NULL || rows->count == 0) {
+        return;
+    }
+    double *multiplier = constraint->multiplier;
+    constraint_values(constraint, u, multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        multiplier[r] = (factor != NULL ? constraint_rows_target(rows, r, factor) : 0.0) - multiplier[r];
+    }
+    constraint_solve(constraint, multiplier);
+    constraint_spread(constraint, multiplier, u);
+}
+
+double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,
+                            int64_t *row)
+{
+    double worst = 0.0;
+    for (int64_t r = 0; r < constraint->rows->count; r++) {
+        const struct constraint_rows *rows = constraint->rows;
+        double wanted = factor != NULL ? constraint_rows_target(rows, r, factor) : 0.0;
+        double violation = fabs(wanted - constraint_rows_value(rows, r, u));
+        if (!(violation <= worst)) {
+            worst = violation;
+            if (row != NULL) {
+                *row = r;
+            }
+        }
+    }
+    return worst;
+}

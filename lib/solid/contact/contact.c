@@ -1,0 +1,386 @@
+#include "solid/contact/contact_between.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include "solid/contact/contact_rest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Depths below this part of a point's width are none. */
+static const double round_off = 1e-6;
+/* Unit normals that differ by less are the same. */
+static const double same_normal = 1e-6;
+/* Modulus of the penalty by the largest pressure that multipliers exert: at least, and when it is raised. */
+static const double least_modulus = 10.0, most_modulus = 15.0;
+enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
+
+/* A point of a facet is half or a third of it. */
+double contact_width(const struct contact *contact, int64_t p)
+{
+    int points = contact->averages == NULL ? 1 : contact->dim;
+    double area = contact->points->area[p] * points;
+    return contact->dim == 2 ? area : sqrt(area);
+}
+
+double contact_most_depth(const struct contact *contact, int64_t p)
+{
+    return 0.5 * contact_width(contact, p);
+}
+
+double contact_round_off(const struct contact *contact, int64_t p)
+{
+    return round_off * contact_width(contact, p);
+}
+
+/* Cosine between the body's outward normal at point p and the surface's normal. Where they can touch it is
+ * about -1. */
+static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
+{
+    double cosine = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        cosine += contact->points->normal[p * contact->dim + c] * closest->normal[c];
+    }
+    return cosine;
+}
+
+/* No point may start far behind the surface. No point may start on it or behind it while the body faces away
+ * from it, as a body on the wrong side of a shell does at a small depth. */
+static enum status check_side(const struct contact *contact, struct error *error)
+{
+    int64_t worst = -1;
+    double deepest = -INFINITY;
+    for (int64_t p = 0; p < contact->count; p++) {
+        struct rigid_contact closest =
+            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
+        double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
+        bool back = closest.found && facing(contact, p, &closest) > 0.5;
+        if (depth > deepest && (depth > length || (depth > -round_off * length && back))) {
+            deepest = depth;
+            worst = p;
+        }
+    }
+    if (worst < 0) {
+        return STATUS_OK;
+    }
+    if (deepest > round_off * contact_most_depth(contact, worst)) {
+        return fail(error, STATUS_INPUT,
+                    "contact: node %d starts %.3g m behind the rigid surface: state its other "
+                    "side, or leave the node's facets out",
+                    contact->points->node[worst], deepest);
+    }
+    return fail(error, STATUS_INPUT,
+                "contact: node %d faces away from the surface that it starts on, as a body "
+                "behind the rigid surface: state its other side, or leave the node's facets out",
+                contact->points->node[worst]);
+}
+
+enum status contact_allocate(struct contact *contact, double stiffness, struct error *error)
+{
+    int64_t count = contact->count, dim = contact->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->stiffness, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->rest, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->change, contact_nodes(contact)->count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->behind, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_x, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_distance, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_normal, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->held, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->gap, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->pressure, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->normal, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->view, count, error));
+    for (int64_t p = 0; p < count; p++) {
+        contact->gap[p] = INFINITY;
+        contact->stiffness[p] = stiffness;
+    }
+    for (int64_t i = 0; i < count * dim; i++) {
+        contact->checked_x[i] = INFINITY; /* no search yet: it may be in contact from the start */
+    }
+    contact->part = 1.0;
+    return STATUS_OK;
+}
+
+enum status contact_build(const struct boundary_averages *points, const struct boundary_averages *averages,
+                          const double *X, int dim, struct rigid_surface *surface, double stiffness,
+                          struct contact *contact, struct error *error)
+{
+    *contact = (struct contact){
+        .dim = dim, .count = points->count, .points = points, .averages = averages, .surface = *surface};
+    *surface = (struct rigid_surface){0};
+    RETURN_IF_ERROR(contact_allocate(contact, stiffness, error));
+    RETURN_IF_ERROR(contact_rest_place(contact, X, error));
+    return check_side(contact, error);
+}
+
+void contact_set_stiffness(struct contact *contact, double modulus)
+{
+    contact->modulus = modulus;
+    for (int64_t p = 0; p < contact->count; p++) {
+        contact->stiffness[p] = modulus / contact_width(contact, p);
+    }
+    contact_between_stiffen(contact, modulus);
+}
+
+bool contact_stiffen(struct contact *contact)
+{
+    double largest = 0.0;
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        largest = fmax(largest, vector_length(contact->dim, contact->multiplier + a * contact->dim));
+    }
+    if (contact->modulus == 0.0 || contact->modulus >= least_modulus * largest) {
+        return false;
+    }
+    contact_set_stiffness(contact, most_modulus * largest);
+    return true;
+}
+
+void contact_free(struct contact *contact)
+{
+    rigid_free(&contact->surface);
+    contact_between_free(contact);
+    FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->change, contact->behind,
+             contact->checked_x, contact->checked_distance, contact->checked_normal, contact->held,
+             contact->gap, contact->pressure, contact->normal, contact->view);
+    *contact = (struct contact){0};
+}
+
+enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
+                          struct error *error)
+{
+    int64_t count = contact->count, dim = contact->dim;
+    const struct state_value values[] = {
+        {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
+        {"change", STATE_NUMBERS, contact->change, contact_nodes(contact)->count * dim},
+        {"part", STATE_NUMBERS, &contact->part, 1},
+        {"behind", STATE_FLAGS, contact->behind, count},
+        {"deepest", STATE_NUMBERS, &contact->deepest, 1},
+        {"modulus", STATE_NUMBERS, &contact->modulus, 1},
+        {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
+        {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
+        {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
+    };
+    RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
+    if (contact->modulus > 0.0) {
+        contact_set_stiffness(contact, contact->modulus);
+    }
+    contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
+    return STATUS_OK;
+}
+
+/* Whether point p was, at its last search, in front of the tangent plane of the surface at the point closest
+ * to x, its present position. */
+static bool was_in_front(const struct contact *contact, int64_t p, const double *x,
+                         const struct rigid_contact *closest)
+{
+    double height = closest->gap;
+    for (int c = 0; c < contact->dim; c++) {
+        height += (contact->checked_x[p * contact->dim + c] - x[c]) * closest->normal[c];
+    }
+    return height >= -contact_round_off(contact, p);
+}
+
+/* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
+static bool has_turned(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
+{
+    double turn2 = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        double d = closest->normal[c] - contact->checked_normal[p * contact->dim + c];
+        turn2 += d * d;
+    }
+    return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
+}
+
+/* Search for the surface at point p. */
+static void search(struct contact *contact, int64_t p, struct contact_view *view)
+{
+    struct rigid_contact closest = rigid_closest(&contact->surface, view->sought, INFINITY);
+    bool was_inside = contact->checked_distance[p] < 0.0 && !contact->behind[p];
+    double gap = closest.found ? closest.gap : INFINITY;
+    view->searched = true;
+    view->behind =
+        gap < 0.0 && (contact->behind[p] || (!was_inside && -gap > contact_most_depth(contact, p) &&
+                                             !was_in_front(contact, p, view->sought, &closest)));
+    view->turned = gap < 0.0 && !view->behind && has_turned(contact, p, &closest);
+    view->distance = fmin(gap, closest.distance);
+    memcpy(view->normal, closest.normal, sizeof view->normal);
+    contact->pressure[p] = view->behind ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
+    contact->gap[p] = view->behind ? INFINITY : gap;
+    for (int c = 0; c < contact->dim; c++) {
+        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
+    }
+}
+
+/* Lower bound of the distance of y_p from the surface, from that at the last search, m. */
+static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
+{
+    double moved2 = 0.0;
+    for (int c = 0; c < contact->dim; c++) {
+        double step = view->sought[c] - contact->checked_x[p * contact->dim + c];
+        moved2 += step * step;
+    }
+    return contact->checked_distance[p] - sqrt(moved2);
+}
+
+/* Gaps and pressures of the points from `begin` to before `end`. Where the surface is too far away for a
+ * pressure it is not searched for, and the gap is that of the last search. */
+static void measure_points(struct contact *contact, int64_t begin, int64_t end, const double *u, bool all)
+{
+    int dim = contact->dim;
+    for (int64_t p = begin; p < end; p++) {
+        struct contact_view *view = &contact->view[p];
+        double x[3], *normal = contact->normal + p * dim;
+        struct average average = average_of_boundary(contact->points, p);
+        average_place(&average, dim, contact->rest + p * dim, u, x);
+        rigid_place_to_rest(&contact->place, dim, x, view->x);
+        for (int c = 0; c < dim; c++) {
+            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
+        }
+        view->searched = view->turned = false;
+        contact->gap[p] = contact->checked_distance[p];
+        contact->pressure[p] = 0.0;
+        memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *normal);
+        if (all || !(least_distance(contact, p, view) > 0.0)) {
+            search(contact, p, view);
+        }
+        memcpy(normal, view->normal, (size_t)dim * sizeof *normal);
+        rigid_place_turn(&contact->place, dim, normal);
+    }
+}
+
+void contact_move(struct contact *contact, const double *factor)
+{
+    contact->place = rigid_place_at(&contact->motion, factor);
+}
+
+void contact_measure(struct contact *contact, const double *u, bool all)
+{
+    if (contact->between != NULL) {
+        contact_between_measure(contact, u, all);
+        return;
+    }
+    struct chunks points = chunks_of(contact->count, POINTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(points.threads)
+    for (int64_t c = 0; c < points.count; c++) {
+        measure_points(contact, chunks_begin(&points, c), chunks_begin(&points, c + 1), u, all);
+    }
+}
+
+void contact_accept(struct contact *contact)
+{
+    int dim = contact->dim;
+    contact_between_accept(contact);
+    for (int64_t p = 0; p < contact->count; p++) {
+        const struct contact_view *view = &contact->view[p];
+        contact->deepest = fmax(contact->deepest, contact->pressure[p] / contact->stiffness[p]);
+        if (view->searched) {
+            contact->behind[p] = view->behind;
+            contact->checked_distance[p] = view->distance;
+            memcpy(contact->checked_x + p * dim, view->sought, (size_t)dim * sizeof *view->sought);
+            memcpy(contact->checked_normal + p * dim, view->normal, (size_t)dim * sizeof *view->normal);
+        }
+    }
+}
+
+void contact_point_force(const struct contact *contact, int64_t p, double force[3])
+{
+    double strength = contact->pressure[p] * contact->points->area[p];
+    for (int c = 0; c < contact->dim; c++) {
+        force[c] = strength * contact->normal[p * contact->dim + c];
+    }
+}
+
+void contact_force(struct contact *contact, const double *u, double *force)
+{
+    contact_measure(contact, u, false);
+    for (int64_t p = 0; p < contact->count; p++) {
+        if (contact->pressure[p] > 0.0) {
+            struct average average = average_of_boundary(contact->points, p);
+            double on_point[3];
+            contact_point_force(contact, p, on_point);
+            average_spread(&average, contact->dim, on_point, force);
+        }
+    }
+    contact_between_react(contact, force);
+}
+
+double contact_energy(const struct contact *contact)
+{
+    double sum = 0.0;
+    for (int64_t p = 0; p < contact->count; p++) {
+        double difference = contact->pressure[p] * contact->pressure[p];
+        for (int c = 0; c < contact->dim; c++) {
+            double held = contact->held[p * contact->dim + c];
+            difference -= held * held;
+        }
+        difference = contact_between_led(contact, p) ? 0.0 : difference;
+        sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
+    }
+    return sum;
+}
+
+void contact_total(const struct contact *contact, double *total)
+{
+    double sign = contact_between_sign(contact);
+    memset(total, 0, (size_t)contact->dim * sizeof *total);
+    for (int64_t p = 0; p < contact->count; p++) {
+        for (int c = 0; c < contact->dim; c++) {
+            total[c] += sign * contact->pressure[p] * contact->points->area[p] *
+                        contact->normal[p * contact->dim + c];
+        }
+    }
+}
+
+void contact_moment(const struct contact *contact, const double *point, double moment[3])
+{
+    int dim = contact->dim;
+    double sign = contact_between_sign(contact);
+    memset(moment, 0, 3 * sizeof *moment);
+    for (int64_t p = 0; p < contact->count; p++) {
+        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
+        if (!(contact->pressure[p] > 0.0)) {
+            continue;
+        }
+        contact_point_force(contact, p, force);
+        rigid_place_from_rest(&contact->place, dim, contact->view[p].x, arm);
+        for (int c = 0; c < dim; c++) {
+            double raised = contact->rest[p * dim + c] - contact->points->position[p * dim + c];
+            arm[c] -= raised + point[c];
+        }
+        for (int c = 0; c < 3; c++) {
+            int i = (c + 1) % 3, j = (c + 2) % 3;
+            moment[c] += sign * (arm[i] * force[j] - arm[j] * force[i]);
+        }
+    }
+}
+
+struct contact_work contact_work(const struct contact *contact, const double *factor_from,
+                                 const double *factor_to)
+{
+    struct contact_work sum = {0.0, 0.0};
+    int dim = contact->dim;
+    if (!contact->motion.moves) {
+        return sum;
+    }
+    struct rigid_place from = rigid_place_at(&contact->motion, factor_from);
+    struct rigid_place to = rigid_place_at(&contact->motion, factor_to);
+    for (int64_t p = 0; p < contact->count; p++) {
+        double before[3], after[3], force[3];
+        if (!(contact->pressure[p] > 0.0)) {
+            continue;
+        }
+        contact_point_force(contact, p, force);
+        rigid_place_from_rest(&from, dim, contact->view[p].x, before);
+        rigid_place_from_rest(&to, dim, contact->view[p].x, after);
+        for (int c = 0; c < dim; c++) {
+            double way = after[c] - before[c];
+            sum.work += force[c] * way;
+            sum.unresolved += contact->stiffness[p] * contact->points->area[p] * way * way;
+        }
+    }
+    return sum;
+}

@@ -1,0 +1,196 @@
+/* Frictionless contact of a boundary with a rigid surface, or with another part of the boundary
+ * (contact_between.h), finite sliding, by an augmented Lagrangian: equations (19) and (20) of lib/README.md.
+ *
+ * Contact points are quadrature points of the facets. Point p is at x_p = sum_j Phi_pj (X_j + u_j). It must
+ * stay in the set C of positions in front of the surface. The multiplier is a vector, the traction that the
+ * surface holds against the point. The energy is the Moreau envelope of this condition (Moreau 1965;
+ * Rockafellar and Wets 1998, 11.57). With the penalty k_p and P(y), the position in C that is closest to y,
+ *
+ *     held_p = sum_a N_a(p) lambda_a,   y_p = x_p - held_p / k_p,   t_p = k_p (P(y_p) - y_p),
+ *
+ * with multipliers lambda_a at the boundary nodes and the hat functions N_a of the facets, as in mortar
+ * methods. The force on the parameters is Phi_pj A_p t_p, minus the gradient of contact_energy. Where the
+ * surface is flat about the point, of normal n and gap g_p, that is the usual
+ *
+ *     t_p = max(0, held_p . n - k_p g_p) n.
+ *
+ * Where the body lies in a re-entrant corner of the surface, C is convex: P is unique, and t_p is a
+ * continuous function of x_p whose direction lies between the normals of the facets there. On a convex edge
+ * of the surface the nearest facet alone counts.
+ *
+ * The traction of a point with held_p . n > 0 is linear in its gap on both sides of g_p = 0. So only points
+ * at the border of the contact area open and close. The gap of a node is the mean gap of the points in the
+ * support of its hat function, weighted by it. Augmentations make it vanish at nodes in contact. Without
+ * nodal averages each point has a multiplier of its own; such points may themselves be boundary averages.
+ *
+ * Contact begins where a point goes through the surface. A point that passes an open rim and is then behind
+ * the surface by more than half its own width stays free until it is in front again.
+ *
+ * An evaluation changes no state: the same parameters give the same forces, whatever was evaluated between.
+ * Two functions change it, contact_accept at a step that is taken and contact_augment. The surface may move:
+ * positions and multipliers are kept in the frame in which it rests. */
+#pragma once
+
+#include "approx/shape/boundary.h"
+#include "base/state.h"
+#include "solid/constraint/average.h"
+#include "solid/rigid/rigid.h"
+#include "solid/rigid/rigid_motion.h"
+
+/* What an evaluation sees of a point. */
+struct contact_view {
+    double x[3];      /* where it is, in the surface's frame, m */
+    double sought[3]; /* y_p, whose closest point of the surface is searched for, in its frame, m */
+    bool searched;    /* else the surface is too far away for a pressure; by the search: */
+    bool behind;      /* as in the state */
+    bool turned;      /* pressed by an edge or a vertex, or by another facet of a rigid surface than at the
+                       * last step */
+    double distance;  /* as checked_distance */
+    double normal[3]; /* as checked_normal */
+};
+
+struct contact_between;
+
+struct contact {
+    int dim;
+    int64_t count;                            /* points */
+    const struct boundary_averages *points;   /* the caller's, as the averages; must outlive the contact */
+    const struct boundary_averages *averages; /* at the nodes; their samples are the points; NULL: none */
+    struct rigid_surface surface;             /* owned; at rest */
+    struct contact_between *between;          /* owned: facets of the body instead of the surface; or NULL */
+    struct rigid_motion motion;               /* of the surface */
+    struct rigid_place place;                 /* placement of the surface: see contact_move */
+    int32_t section;                          /* the caller's label */
+    double *stiffness;                        /* count: k_p, Pa/m, > 0 */
+    double modulus;                           /* k_p by the width there, Pa; 0: k_p is stated */
+    double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
+    /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
+     * from checked_x by the surface's distance there. */
+    double *multiplier; /* dim for each lambda_a, Pa, in the surface's frame; as many as contact_nodes has */
+    double *change;     /* as many: what they lacked at the last augmentation, Pa; 0: none to compare with */
+    double part;        /* share of that change which it added */
+    double deepest;     /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
+    bool *behind;       /* count: reached the back of the surface without going through it */
+    double *checked_x;  /* count * dim: y_p at the last search, m */
+    double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
+    double *checked_normal;   /* count * dim: of the surface there, in its frame */
+    double *held;             /* count * dim: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
+    /* Of the last evaluation. */
+    double *gap; /* count: of x_p along the normal, m; INFINITY beyond a rim; where the surface is too far
+                    away, that of y_p at the last search */
+    double *pressure;          /* count: |t_p|, Pa */
+    double *normal;            /* count * dim: unit, of t_p; 0 where it was never searched for */
+    struct contact_view *view; /* count */
+};
+
+/* Takes over `surface`, which becomes empty, also on failure. It is at rest unless the caller sets
+ * contact->motion, whose factors must be 0 at the start. X: nodes, m. The facets are chords of a curved
+ * boundary: the points are raised to it by the normals at the nodes. `averages`: of the same facets, or NULL.
+ * STATUS_INPUT when a point starts behind the surface by more than half its width, or behind or on it and
+ * facing away from it: the surface's side is the wrong one. */
+MUST_CHECK enum status contact_build(const struct boundary_averages *points,
+                                     const struct boundary_averages *averages, const double *X, int dim,
+                                     struct rigid_surface *surface, double stiffness, struct contact *contact,
+                                     struct error *error);
+void contact_free(struct contact *contact);
+
+/* The arrays of a contact whose dim, count, points and averages are set. */
+MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffness, struct error *error);
+
+/* The width of the facets at point p, m; and the largest depth at which a point that is found behind the
+ * surface counts as having gone through it. */
+double contact_width(const struct contact *contact, int64_t p);
+double contact_most_depth(const struct contact *contact, int64_t p);
+
+/* Depths of point p below this are none, m. */
+double contact_round_off(const struct contact *contact, int64_t p);
+
+/* Force on point p at the last evaluation, N (2D: N/m). */
+void contact_point_force(const struct contact *contact, int64_t p, double force[3]);
+
+/* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
+void contact_set_stiffness(struct contact *contact, double modulus);
+
+/* Make the penalty stiffer where multipliers demand it: under a pressure that is not small against the
+ * modulus the boundary buckles between its nodes. Returns whether it became stiffer. */
+bool contact_stiffen(struct contact *contact);
+
+/* The state of a contact; `prefix` goes in front of the names. */
+MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
+                                     struct error *error);
+
+/* Evaluate gaps and pressures at parameters u and add the contact forces on the body, - grad_u of
+ * contact_energy, to force[node_count * dim], N (2D: N/m). */
+void contact_force(struct contact *contact, const double *u, double *force);
+
+/* Place the surface as at these values of the load curves, for the evaluations that follow. */
+void contact_move(struct contact *contact, const double *factor);
+
+/* The same without forces: gaps and pressures at parameters u. With `all` the surface is searched for also
+ * where it is too far away for a pressure. */
+void contact_measure(struct contact *contact, const double *u, bool all);
+
+/* Take the step whose state was evaluated last: what that evaluation found becomes the state. */
+void contact_accept(struct contact *contact);
+
+/* Augment by the last evaluation: a step up the gradient of the augmented Lagrangian, which is concave in the
+ * multipliers. The penalties give the length of step that does not overshoot:
+ *
+ *     lambda_a <- lambda_a + sum_p N_a A_p (t_p - held_p) / k_p / sum_p N_a A_p / k_p,
+ *
+ * or 0 where its component along the mean normal would be tension. Where the surface is flat and all points
+ * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap.
+ *
+ * With `steady` the last augmentation was at the same load. The step is then of the length that Irons and
+ * Tuck (1969) take from the two changes: shorter where multipliers go to and fro, as near an instability they
+ * do between two states; and longer where they are one geometric sequence, as where the body is held beside
+ * the contact and cannot give way. The augmentation after a longer one has length 1. */
+void contact_augment(struct contact *contact, bool steady);
+
+/* The tractions held at the points, from the multipliers. */
+void contact_spread_multipliers(struct contact *contact);
+
+/* Penetration or opening of contact nodes that the multipliers do not yet hold, at the last evaluation, m:
+ * the largest change of a multiplier in an augmentation, divided by the penalty stiffness. */
+double contact_miss(const struct contact *contact);
+
+/* Work of the contact's tractions along what it gives way by so far, J (2D: J/m): sum_a A_a c_a
+ * (|lambda_a'|^2 - |lambda_a|^2) / 2 in absolute value, with the multipliers lambda' after the next
+ * augmentation and c_a the mean of 1 / k_p. The body is in equilibrium with a surface that lies that much too
+ * far away. So to first order this is what its energy lacks. Nodes that give way to and fro within a patch
+ * cancel, as they do there. */
+double contact_missing_work(const struct contact *contact);
+
+/* The contact nodes, or the points where there are no nodal averages; and the last evaluation at one: means
+ * over the points, weighted by its hat function. */
+const struct boundary_averages *contact_nodes(const struct contact *contact);
+struct contact_node {
+    double gap;       /* m, of the points that have one; INFINITY: none has */
+    double pressure;  /* Pa */
+    double pressed;   /* weight of the points that press, 0 to 1 */
+    double stiffness; /* Pa/m, of the penalty */
+    bool turned;      /* as contact_view, of one of the points */
+    double normal[3]; /* unit; 0 where the surface was never searched for */
+};
+struct contact_node contact_node(const struct contact *contact, int64_t a);
+
+/* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), J (2D: J/m). */
+double contact_energy(const struct contact *contact);
+
+/* Total force on the body at the last evaluation, total[dim], N (2D: N/m). Between facets of the body, see
+ * contact_between.h: that on the facets named first, or 0. */
+void contact_total(const struct contact *contact, double *total);
+
+/* Moment of that about point[dim] at the last evaluation, N m (2D: N): that of the forces on the
+ * parameters where their nodes' parameters have moved to. In 2D moment[2] alone is not 0. */
+void contact_moment(const struct contact *contact, const double *point, double moment[3]);
+
+/* Work of the surface on the body, with the pressures of the last evaluation, as it moves from its placement
+ * at one set of factors to that at another. */
+struct contact_work {
+    double work;       /* sum p A n . w, w the displacement of the surface under each point, J (2D: J/m) */
+    double unresolved; /* sum k_p A w^2 over the points that touch, J (2D: J/m). The work of a point that
+                        * is first touched within a step is wrong by at most an eighth of it */
+};
+struct contact_work contact_work(const struct contact *contact, const double *factor_from,
+                                 const double *factor_to);

@@ -1,0 +1,361 @@
+#include "solid/contact/contact_between.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Facets further away from a point than so many of its widths are not opposite to it; for gaps that are told.
+ * In two dimensions the mass of a relaxation counts all that have something opposite. */
+static const double reach_widths_2d = 1.0, reach_widths_3d = 0.5, told_widths = 10.0;
+enum { FACETS_FOR_THREAD = 300 }; /* see chunks_of */
+
+void contact_between_free(struct contact *contact)
+{
+    struct contact_between *between = contact->between;
+    if (between != NULL) {
+        opposite_free(&between->opposite);
+        FREE_ALL(between->part, between->begin, between->before, between->checked_way, between->checked_free,
+                 between->taken_facet, between->taken_weight, between->now, between->view);
+    }
+    free(between);
+    contact->between = NULL;
+}
+
+enum status contact_between_state(struct contact *contact, const char *prefix, const struct state *state,
+                                  struct error *error)
+{
+    struct contact_between *between = contact->between;
+    int64_t count = contact->count;
+    if (between == NULL) {
+        return STATUS_OK;
+    }
+    const struct state_value values[] = {
+        {"before", STATE_NUMBERS, between->before, between->values},
+        {"way", STATE_NUMBERS, &between->way, 1},
+        {"checked_way", STATE_NUMBERS, between->checked_way, count},
+        {"checked_free", STATE_NUMBERS, between->checked_free, count},
+        {"taken_facet", STATE_COUNTS, between->taken_facet, count},
+        {"taken_weight", STATE_NUMBERS, between->taken_weight, count * 3},
+    };
+    return state_visit(state, prefix, values, sizeof values / sizeof *values, error);
+}
+
+void contact_between_stiffen(struct contact *contact, double modulus)
+{
+    for (int64_t v = 0; contact->between != NULL && v < contact->between->opposite.rows.count; v++) {
+        double area = contact->between->opposite.rows.area[v];
+        contact->between->opposite.stiffness[v] = modulus / (contact->dim == 2 ? area : sqrt(area));
+    }
+}
+
+double contact_between_sign(const struct contact *contact)
+{
+    return contact->between == NULL ? 1.0 : (double)contact->between->sign;
+}
+
+bool contact_between_led(const struct contact *contact, int64_t p)
+{
+    return contact->between != NULL && contact->between->view[p].led;
+}
+
+/* The points of facet f at parameters u. */
+static void place_facet(struct contact *contact, int64_t f, const double *u)
+{
+    int dim = contact->dim, points = contact->between->per_facet;
+    for (int64_t p = f * points; p < (f + 1) * points; p++) {
+        struct contact_view *view = &contact->view[p];
+        struct average average = average_of_boundary(contact->points, p);
+        average_place(&average, dim, contact->rest + p * dim, u, view->x);
+        for (int c = 0; c < dim; c++) {
+            view->sought[c] = view->x[c] - contact->held[p * dim + c] / contact->stiffness[p];
+        }
+    }
+}
+
+/* The outward normal of facet f, by its points. */
+static void facet_normal(const struct contact *contact, int64_t f, double normal[3])
+{
+    static const int32_t corners[] = {0, 1, 2};
+    int dim = contact->dim;
+    double x[9], length2 = 0.0;
+    for (int k = 0; k < dim; k++) {
+        memcpy(x + k * dim, contact->view[f * contact->between->per_facet + k].x, (size_t)dim * sizeof *x);
+    }
+    face_area_vector(dim, x, corners, normal);
+    for (int c = 0; c < dim; c++) {
+        length2 += normal[c] * normal[c];
+    }
+    for (int c = 0; c < dim && length2 > 0.0; c++) {
+        normal[c] /= sqrt(length2);
+    }
+}
+
+/* How far y_p is from x_p, m. */
+static double held_way(const struct contact *contact, int64_t p)
+{
+    double held = vector_length(contact->dim, contact->held + p * contact->dim);
+    return held > 0.0 ? held / contact->stiffness[p] : 0.0; /* at rest there is no stiffness yet */
+}
+
+/* The opposite place closest to y_p, of point p of a facet with that normal. */
+static struct rigid_contact find_place(const struct contact *contact, int64_t p, const double *normal,
+                                       double reach, double *free_way)
+{
+    const struct contact_between *between = contact->between;
+    struct seeker seeker = {.x = contact->view[p].sought,
+                            .rest = contact->points->position + p * contact->dim,
+                            .rest_normal = contact->points->normal + p * contact->dim,
+                            .normal = normal,
+                            .width = contact_width(contact, p),
+                            .depth = contact_most_depth(contact, p) + held_way(contact, p),
+                            .corner = contact->points->node + p - p % between->per_facet,
+                            .average = average_of_boundary(contact->points, p),
+                            .last_u = contact->checked_distance[p] < 0.0 ? NULL : between->before,
+                            .began = -between->begin[p] + contact_round_off(contact, p),
+                            .part = between->part[p]};
+    struct rigid_contact closest = opposite_closest(&between->opposite, &seeker, reach, free_way);
+    *free_way -= held_way(contact, p);
+    return closest;
+}
+
+/* How far a search looks, m. */
+static double reach_of(const struct contact *contact, int64_t p)
+{
+    return (contact->dim == 2 ? reach_widths_2d : reach_widths_3d) * contact_width(contact, p);
+}
+
+/* Search for what is opposite point p. */
+static void search(struct contact *contact, int64_t p, const double *normal, bool all)
+{
+    struct contact_between *between = contact->between;
+    struct contact_view *view = &contact->view[p];
+    struct between_view *here = &between->view[p];
+    double reach = all ? told_widths * contact_width(contact, p) : reach_of(contact, p);
+    struct rigid_contact closest = find_place(contact, p, normal, reach, &here->free_way);
+    memset(view->normal, 0, sizeof view->normal);
+    view->distance = contact->gap[p] = INFINITY;
+    if (!closest.found) {
+        return;
+    }
+    here->facet = closest.facet;
+    here->led = !opposite_leads(&between->opposite, contact->points->normal + p * contact->dim,
+                                p / between->per_facet, closest.facet);
+    memcpy(here->weight, closest.weight, sizeof here->weight);
+    memcpy(view->normal, closest.normal, sizeof view->normal);
+    double gap = closest.gap - between->begin[p];
+    view->distance = gap - held_way(contact, p);
+    contact->pressure[p] = here->led ? 0.0 : fmax(0.0, -contact->stiffness[p] * gap);
+    view->turned = contact->pressure[p] > 0.0 && closest.on_edge;
+    contact->gap[p] = gap;
+    for (int c = 0; c < contact->dim; c++) {
+        contact->gap[p] += view->normal[c] * contact->held[p * contact->dim + c] / contact->stiffness[p];
+    }
+}
+
+/* Whether what is opposite point p may have come near enough for a pressure, or turned to it. */
+static bool may_touch(const struct contact *contact, int64_t p)
+{
+    const struct contact_between *between = contact->between;
+    double free_way = fmin(contact->checked_distance[p], between->checked_free[p]);
+    return !(between->way + between->moved < between->checked_way[p] + free_way - held_way(contact, p));
+}
+
+/* What is opposite the points of facet f is looked for where that is needed; else their gaps are those of the
+ * last search. */
+static void measure_facet(struct contact *contact, int64_t f, const double *u, bool all)
+{
+    int dim = contact->dim, points = contact->between->per_facet;
+    bool any = false;
+    double normal[3];
+    for (int64_t p = f * points; p < (f + 1) * points; p++) {
+        any = any || contact->view[p].searched;
+    }
+    if (any) {
+        place_facet(contact, f, u);
+        facet_normal(contact, f, normal);
+    }
+    for (int64_t p = f * points; p < (f + 1) * points; p++) {
+        struct contact_view *view = &contact->view[p];
+        if (view->searched) {
+            search(contact, p, normal, all);
+        }
+        memcpy(contact->normal + p * dim, view->normal, (size_t)dim * sizeof *view->normal);
+    }
+}
+
+/* How far a point and an opposite place may have moved against each other since the last step. */
+static double relative_way(const struct contact *contact, const double *u)
+{
+    const struct contact_between *between = contact->between;
+    double most2 = 0.0;
+    for (int64_t n = 0; n < between->values; n += contact->dim) {
+        double way2 = 0.0;
+        for (int c = 0; c < contact->dim; c++) {
+            way2 += (u[n + c] - between->before[n + c]) * (u[n + c] - between->before[n + c]);
+        }
+        most2 = fmax(most2, way2);
+    }
+    return between->leverage * sqrt(most2);
+}
+
+void contact_between_measure(struct contact *contact, const double *u, bool all)
+{
+    struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    bool any = false;
+    between->moved = relative_way(contact, u);
+    memcpy(between->now, u, (size_t)between->values * sizeof *u);
+    for (int64_t p = 0; p < contact->count; p++) {
+        struct contact_view *view = &contact->view[p];
+        view->searched = all || may_touch(contact, p);
+        view->turned = false;
+        any = any || view->searched;
+        between->view[p].facet = -1;
+        between->view[p].led = false;
+        contact->gap[p] = contact->checked_distance[p];
+        contact->pressure[p] = 0.0;
+        memcpy(view->normal, contact->checked_normal + p * dim, (size_t)dim * sizeof *view->normal);
+    }
+    if (any) {
+        opposite_move(&between->opposite, u);
+    }
+    struct chunks facets = chunks_of(contact->count / between->per_facet, FACETS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(facets.threads)
+    for (int64_t c = 0; c < facets.count; c++) {
+        for (int64_t f = chunks_begin(&facets, c); f < chunks_begin(&facets, c + 1); f++) {
+            measure_facet(contact, f, u, all);
+        }
+    }
+}
+
+void contact_between_accept(struct contact *contact)
+{
+    struct contact_between *between = contact->between;
+    if (between == NULL) {
+        return;
+    }
+    between->way += between->moved;
+    between->moved = 0.0;
+    memcpy(between->before, between->now, (size_t)between->values * sizeof *between->now);
+    for (int64_t p = 0; p < contact->count; p++) {
+        if (contact->view[p].searched) {
+            between->checked_way[p] = between->way;
+            between->checked_free[p] = between->view[p].free_way;
+        }
+    }
+}
+
+void contact_between_react(struct contact *contact, double *force)
+{
+    int dim = contact->dim;
+    if (contact->between == NULL) {
+        return;
+    }
+    struct opposite *opposite = &contact->between->opposite;
+    memset(opposite->load, 0, (size_t)(opposite->rows.count * dim) * sizeof *opposite->load);
+    for (int64_t p = 0; p < contact->count; p++) {
+        const struct between_view *here = &contact->between->view[p];
+        double on_point[3];
+        contact_point_force(contact, p, on_point);
+        for (int k = 0; k < dim && contact->pressure[p] > 0.0; k++) {
+            int64_t v = opposite->surface.facet[here->facet * dim + k];
+            for (int c = 0; c < dim; c++) {
+                opposite->load[v * dim + c] -= here->weight[k] * on_point[c];
+            }
+        }
+    }
+    for (int64_t v = 0; v < opposite->rows.count; v++) {
+        struct average average = average_of_boundary(&opposite->rows, v);
+        const double *load = opposite->load + v * dim;
+        if (load[0] != 0.0 || load[1] != 0.0 || load[dim - 1] != 0.0) {
+            average_spread(&average, dim, load, force);
+        }
+    }
+}
+
+/* 1-norm of the longest row. */
+static double longest_row(const struct boundary_averages *rows)
+{
+    double longest = 0.0;
+    for (int64_t a = 0; a < rows->count; a++) {
+        double sum = 0.0;
+        for (int64_t i = rows->ptr[a]; i < rows->ptr[a + 1]; i++) {
+            sum += fabs(rows->phi[i]);
+        }
+        longest = fmax(longest, sum);
+    }
+    return longest;
+}
+
+/* Where points start: behind an opposite facet, no further than chords of a curved boundary may be. Returns
+ * whether any facet faces any point. */
+static bool begin(struct contact *contact, bool far)
+{
+    struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    bool any = false;
+    for (int64_t p = 0; p < contact->count; p++) {
+        memcpy(contact->view[p].sought, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
+    }
+    for (int64_t p = 0; p < contact->count; p++) {
+        double reach = far && !any ? INFINITY : reach_of(contact, p);
+        struct rigid_contact closest =
+            find_place(contact, p, contact->points->normal + p * dim, reach, &between->view[p].free_way);
+        between->begin[p] = closest.found ? fmin(0.0, closest.gap) : 0.0;
+        any = any || closest.found;
+    }
+    return any;
+}
+
+static enum status allocate(struct contact *contact, int64_t values, struct error *error)
+{
+    struct contact_between *between = contact->between;
+    int64_t count = contact->count;
+    between->values = values;
+    RETURN_IF_ERROR(NEW_ARRAY(&between->part, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->begin, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->before, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->checked_way, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->checked_free, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->taken_facet, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->taken_weight, count * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&between->now, values, error));
+    return NEW_ARRAY(&between->view, count, error);
+}
+
+enum status contact_between_build(const struct boundary_averages *points,
+                                  const struct boundary_averages *averages, int dim, int64_t node_count,
+                                  int per_facet, struct opposite *opposite, const int32_t *part, int sign,
+                                  double stiffness, bool far, struct contact *contact, bool *any,
+                                  struct error *error)
+{
+    enum status status;
+    *contact = (struct contact){.dim = dim, .count = points->count, .points = points, .averages = averages};
+    TRY(NEW_ARRAY(&contact->between, 1, error));
+    struct contact_between *between = contact->between;
+    between->per_facet = per_facet;
+    between->sign = sign;
+    between->opposite = *opposite;
+    *opposite = (struct opposite){0};
+    between->leverage = longest_row(points) + longest_row(&between->opposite.rows);
+    TRY(contact_allocate(contact, stiffness, error));
+    TRY(allocate(contact, node_count * dim, error));
+    for (int64_t p = 0; p < contact->count; p++) {
+        between->part[p] = -1;
+        for (int64_t k = p - p % per_facet; k < p - p % per_facet + per_facet; k++) {
+            between->part[p] = part[points->node[k]] >= 0 ? part[points->node[k]] : between->part[p];
+        }
+    }
+    for (int64_t v = 0; v < between->opposite.rows.count; v++) {
+        between->opposite.stiffness[v] = stiffness;
+    }
+    memcpy(contact->rest, points->position, (size_t)(contact->count * dim) * sizeof *contact->rest);
+    *any = begin(contact, far);
+done:
+    opposite_free(opposite);
+    return status;
+}

@@ -1,0 +1,118 @@
+/* What preconditioner, time steps and the search for folds need of a contact between facets of the body: the
+ * parts of its gaps, bounds of its stiffness, the nodes that are near. */
+#include "solid/contact/contact_between.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+void contact_between_take(struct contact *contact)
+{
+    struct contact_between *between = contact->between;
+    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct between_view *here = &between->view[p];
+        if (contact->view[p].searched) {
+            between->taken_facet[p] = here->facet + 1;
+            memcpy(between->taken_weight + p * 3, here->weight, sizeof here->weight);
+        }
+    }
+}
+
+bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, int64_t *corner,
+                          double *weight)
+{
+    const struct boundary_averages *averages = contact->averages;
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    *weight = 0.0;
+    if (between == NULL || i >= dim * (averages->sample_ptr[a + 1] - averages->sample_ptr[a])) {
+        return false;
+    }
+    int64_t s = averages->sample_ptr[a] + i / dim, p = averages->sample_point[s];
+    int64_t facet = between->taken_facet[p] - 1;
+    if (facet >= 0) {
+        *weight = averages->sample_share[s] * between->taken_weight[p * 3 + i % dim];
+        *corner = between->opposite.surface.facet[facet * dim + i % dim];
+    }
+    return true;
+}
+
+int64_t contact_between_corners(const struct contact *contact)
+{
+    return contact->between == NULL ? 0 : contact->between->opposite.rows.count;
+}
+
+struct average contact_between_corner(const struct contact *contact, int64_t corner)
+{
+    return average_of_boundary(&contact->between->opposite.rows, corner);
+}
+
+void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned)
+{
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct opposite *opposite = &between->opposite;
+        int64_t facet = between->view[p].facet;
+        if (facet < 0 || !(contact->gap[p] < share * contact_width(contact, p))) {
+            continue;
+        }
+        const double *normal = opposite->rest_normal + facet * dim;
+        bool faced = vector_dot(dim, contact->points->normal + p * dim, normal) < OPPOSED;
+        for (int k = 0; k < dim; k++) {
+            int32_t own = contact->points->node[p - p % between->per_facet + k];
+            int32_t other = opposite->rows.node[opposite->surface.facet[facet * dim + k]];
+            marked[other] = true;
+            turned[other] |= !faced;
+            turned[own] |= !faced;
+        }
+    }
+}
+
+int64_t contact_bond_count(const struct contact *contact)
+{
+    return contact->count + (contact->between != NULL ? contact->between->opposite.rows.count : 0);
+}
+
+struct average contact_bond(const struct contact *contact, int64_t b, double *stiffness)
+{
+    const struct boundary_averages *points = contact->points;
+    if (b < contact->count) {
+        *stiffness = contact->stiffness[b] * points->area[b];
+        return average_of_boundary(points, b);
+    }
+    const struct opposite *opposite = &contact->between->opposite;
+    *stiffness = opposite->stiffness[b - contact->count] * opposite->rows.area[b - contact->count];
+    return average_of_boundary(&opposite->rows, b - contact->count);
+}
+
+static void add_bond(const struct average *average, double stiffness, double *mass)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < average->length; i++) {
+        sum += fabs(average->phi[i]);
+    }
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * fabs(average->phi[i]) * sum;
+    }
+}
+
+void contact_add_to_bound(const struct contact *contact, double *mass)
+{
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    for (int64_t p = 0; p < contact->count; p++) {
+        double stiffness;
+        struct average average = contact_bond(contact, p, &stiffness);
+        bool near = between == NULL || contact->gap[p] < INFINITY;
+        if (near) {
+            add_bond(&average, stiffness, mass);
+        }
+        for (int k = 0; k < dim && near && between != NULL && between->view[p].facet >= 0; k++) {
+            int64_t v = between->opposite.surface.facet[between->view[p].facet * dim + k];
+            average = average_of_boundary(&between->opposite.rows, v);
+            add_bond(&average, stiffness * between->view[p].weight[k], mass);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+/* Contact nodes: their multipliers, and nodal averages of gap, pressure and normal. */
+#include "solid/contact/contact_between.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Part of an augmentation that is made at least; its inverse at most, where two changes in a row have this
+ * cosine. */
+static const double least_part = 1.0 / 16.0, aligned = 0.99;
+
+void contact_spread_multipliers(struct contact *contact)
+{
+    const struct boundary_averages *averages = contact->averages;
+    size_t size = (size_t)(contact->count * contact->dim) * sizeof *contact->held;
+    if (averages == NULL) {
+        memcpy(contact->held, contact->multiplier, size);
+        return;
+    }
+    memset(contact->held, 0, size);
+    for (int64_t a = 0; a < averages->count; a++) {
+        const double *multiplier = contact->multiplier + a * contact->dim;
+        for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+            int64_t p = averages->sample_point[s];
+            double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
+            for (int c = 0; c < contact->dim; c++) {
+                contact->held[p * contact->dim + c] += weight * multiplier[c];
+            }
+        }
+    }
+}
+
+const struct boundary_averages *contact_nodes(const struct contact *contact)
+{
+    return contact->averages != NULL ? contact->averages : contact->points;
+}
+
+/* Add the values at point p to the averages of a node, with the weight `share`. Returns the share where the
+ * point has a gap, else 0. */
+static double add_point(const struct contact *contact, int64_t p, double share, struct contact_node *node)
+{
+    bool within = contact->gap[p] < INFINITY;
+    node->gap += within ? share * contact->gap[p] : 0.0;
+    node->pressure += share * contact->pressure[p];
+    node->pressed += contact->pressure[p] > 0.0 ? share : 0.0;
+    node->stiffness += share * contact->stiffness[p];
+    node->turned = node->turned || contact->view[p].turned;
+    for (int c = 0; c < contact->dim; c++) {
+        node->normal[c] += share * contact->normal[p * contact->dim + c];
+    }
+    return within ? share : 0.0;
+}
+
+struct contact_node contact_node(const struct contact *contact, int64_t a)
+{
+    const struct boundary_averages *averages = contact->averages;
+    struct contact_node node = {0};
+    double length2 = 0.0, within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
+    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
+         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
+        within += add_point(contact, averages->sample_point[s], averages->sample_share[s], &node);
+    }
+    node.gap = within > 0.0 ? node.gap / within : INFINITY;
+    for (int c = 0; c < contact->dim; c++) {
+        length2 += node.normal[c] * node.normal[c];
+    }
+    for (int c = 0; c < contact->dim && length2 > 0.0; c++) {
+        node.normal[c] /= sqrt(length2);
+    }
+    return node;
+}
+
+/* Add to sum[dim] the traction of point p that its multiplier does not hold yet, and to direction[dim] its
+ * normal, both with that weight. */
+static void add_difference(const struct contact *contact, int64_t p, double weight, double *sum,
+                           double *direction)
+{
+    for (int c = 0; c < contact->dim; c++) {
+        double normal = contact->view[p].normal[c];
+        sum[c] += weight * (contact->pressure[p] * normal - contact->held[p * contact->dim + c]);
+        direction[c] += weight * normal;
+    }
+}
+
+/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns by how much its change is what the
+ * contact gives way by there, m/Pa; 0: nothing changes. */
+static double augmented(const struct contact *contact, int64_t a, double next[3])
+{
+    const struct boundary_averages *averages = contact->averages;
+    double sum[3] = {0.0, 0.0, 0.0}, direction[3] = {0.0, 0.0, 0.0}, compliance = 0.0, along = 0.0;
+    memcpy(next, contact->multiplier + a * contact->dim, (size_t)contact->dim * sizeof *next);
+    if (averages == NULL) {
+        compliance = 1.0 / contact->stiffness[a];
+        add_difference(contact, a, compliance, sum, direction);
+    }
+    for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
+         averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
+        int64_t p = averages->sample_point[s];
+        double part =
+            contact_between_led(contact, p) ? 0.0 : averages->sample_share[s] / contact->stiffness[p];
+        compliance += part;
+        add_difference(contact, p, part, sum, direction);
+    }
+    if (!(compliance > 0.0)) { /* all of it is pressed on by others */
+        return 0.0;
+    }
+    for (int c = 0; c < contact->dim; c++) {
+        next[c] += sum[c] / compliance;
+        along += next[c] * direction[c];
+    }
+    for (int c = 0; c < contact->dim; c++) {
+        next[c] = along > 0.0 ? next[c] : 0.0;
+    }
+    return compliance;
+}
+
+/* The next augmentation is not compared with the last one. */
+static void forget_change(struct contact *contact)
+{
+    size_t values = (size_t)(contact_nodes(contact)->count * contact->dim);
+    contact->part = 1.0;
+    memset(contact->change, 0, values * sizeof *contact->change);
+}
+
+/* Let contact->change become what the multipliers lack by the last evaluation. Returns the part of it to go
+ * on by. With the change d before, of which part w was made, and d' now it is w d . (d - d') / |d - d'|^2: of
+ * a geometric sequence the whole way to its limit. */
+static double take_change(struct contact *contact)
+{
+    const struct boundary_averages *nodes = contact_nodes(contact);
+    double before2 = 0.0, both = 0.0, now2 = 0.0, next[3];
+    for (int64_t a = 0; a < nodes->count; a++) {
+        (void)augmented(contact, a, next);
+        for (int c = 0; c < contact->dim; c++) {
+            double *change = &contact->change[a * contact->dim + c], before = *change;
+            *change = next[c] - contact->multiplier[a * contact->dim + c];
+            before2 += nodes->area[a] * before * before;
+            both += nodes->area[a] * before * *change;
+            now2 += nodes->area[a] * *change * *change;
+        }
+    }
+    if (!(before2 > 0.0)) {
+        return contact->part;
+    }
+    double apart2 = before2 - 2.0 * both + now2, most = 1.0;
+    if (both > aligned * before2) { /* no limit is in sight */
+        return fmax(least_part, 0.5 * contact->part);
+    }
+    if (both > aligned * sqrt(before2 * now2)) {
+        most = 1.0 / least_part;
+    }
+    double part = contact->part * (before2 - both) / apart2;
+    return fmin(most, fmax(least_part, part));
+}
+
+void contact_augment(struct contact *contact, bool steady)
+{
+    int dim = contact->dim;
+    if (!steady) {
+        forget_change(contact);
+    }
+    double part = take_change(contact);
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        double *multiplier = contact->multiplier + a * dim, next[3], along = 0.0;
+        for (int c = 0; c < dim; c++) {
+            double change = contact->change[a * dim + c];
+            next[c] = multiplier[c] + part * change;
+            along += next[c] * (multiplier[c] + change);
+        }
+        for (int c = 0; c < dim; c++) { /* beyond the whole change it may become a pull */
+            multiplier[c] = part <= 1.0 || along > 0.0 ? next[c] : 0.0;
+        }
+    }
+    contact->part = part;
+    if (part > 1.0) {
+        forget_change(contact); /* what comes next is no sequence with it */
+    }
+    contact_spread_multipliers(contact);
+}
+
+double contact_miss(const struct contact *contact)
+{
+    double miss = 0.0, next[3];
+    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
+        const double *multiplier = contact->multiplier + a * contact->dim;
+        double compliance = augmented(contact, a, next);
+        miss = fmax(miss, compliance * vector_distance(contact->dim, next, multiplier));
+    }
+    return miss;
+}
+
+double contact_missing_work(const struct contact *contact)
+{
+    const struct boundary_averages *nodes = contact_nodes(contact);
+    double work = 0.0, next[3];
+    for (int64_t a = 0; a < nodes->count; a++) {
+        const double *multiplier = contact->multiplier + a * contact->dim;
+        double compliance = augmented(contact, a, next),
+               square =
+                   vector_dot(contact->dim, next, next) - vector_dot(contact->dim, multiplier, multiplier);
+        work += nodes->area[a] * compliance * square / 2.0;
+    }
+    return fabs(work);
+}

@@ -1,0 +1,67 @@
+/* Facets of the deforming body that points of a contact press against: those of another part of the boundary,
+ * or of the same one.
+ *
+ * Their corners are at X_a + sum_j Phi_aj u_j with the values of boundary_corners_build, so that the surface
+ * is continuous, and follows the field by the boundary's own quadrature. The closest point of it to a contact
+ * point is sought among the facets that face the point: their normals are opposed, by more than 120 degrees,
+ * and the point is behind them by no more than it may be. Facets that face it through the body are excluded
+ * by the reference state: facets of the same body that were near there, each behind the other. A facet that
+ * shares a corner with the point's own facet is always near, whether the point has penetrated it or not. It
+ * counts only if the point came from its front. */
+#pragma once
+
+#include "approx/shape/boundary.h"
+#include "solid/constraint/average.h"
+#include "solid/rigid/rigid.h"
+
+/* Normals are opposed when their cosine is below this: 120 degrees. */
+#define OPPOSED (-0.5)
+
+struct opposite {
+    bool itself;                   /* the points are on the same facets */
+    struct rigid_surface surface;  /* its vertices are the corners, where they are now */
+    struct boundary_averages rows; /* values at the vertices */
+    double *stiffness;             /* vertices: Pa/m, what points may add at each, for bounds */
+    double *rest;                  /* vertices * dim, m */
+    double *rest_normal;           /* facets * dim */
+    double *middle;                /* facets * dim: at rest, m */
+    double *width;                 /* facets: at rest, m */
+    int32_t *part;                 /* facets: the connected body of each; -1: not known */
+    int64_t *across;               /* 3D: facets * 3: half-edge facet * 3 + k beyond that edge; -1: a rim */
+    double *load;                  /* vertices * dim: scratch */
+};
+
+/* The facets of a set; part[table->node_count]: the body of each node, -1: not known. STATUS_INPUT when a
+ * facet is no face of the table. */
+MUST_CHECK enum status opposite_build(const struct face_table *table, const struct facet_set *set,
+                                      const int32_t *part, bool itself, struct opposite *opposite,
+                                      struct error *error);
+void opposite_free(struct opposite *opposite);
+
+/* Move the facets to parameters u. */
+void opposite_move(struct opposite *opposite, const double *u);
+
+/* A point whose closest opposite facet is searched: a point of a facet of the body, at rest and now. */
+struct seeker {
+    const double *x;           /* now, m */
+    const double *rest;        /* m */
+    const double *rest_normal; /* outward, of its facet */
+    const double *normal;      /* outward, now */
+    double width, depth;       /* of its facet; how far it may be behind another one, m */
+    int32_t part;              /* its body */
+    const int32_t *corner;     /* dim: nodes of its facet */
+    struct average average;    /* that moves it from rest */
+    const double *last_u;      /* parameters at the last step, m; NULL: it was behind a facet that faced it */
+    double began;              /* how far behind a facet it was at rest, m */
+};
+/* *free_way: how far the point and facets that do not face it now may move against each other before any of
+ * them, within reach, may face it, m. */
+struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
+                                      double reach, double *free_way);
+
+/* Where a boundary is in contact with itself, each pair of facets must count only once: whether points of a
+ * facet of that normal at rest press on facet f, and not the points of f on it. */
+bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f);
+
+/* The body of each node; part[cells->node_count]. -1 for a node of several bodies, or none. */
+MUST_CHECK enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error);

@@ -1,0 +1,128 @@
+/* The length of the steps of explicit dynamics, and the move itself. */
+#include "solid/dynamics/dynamics_private.h"
+
+#include "base/clock.h"
+#include "solid/contact/contact_between.h"
+#include "solid/preconditioner/frequency.h"
+
+#include <math.h>
+
+double dynamics_time_now(const struct dynamics *d)
+{
+    return d->left == 0 ? d->options->end_time : d->mark + (double)d->done * d->step;
+}
+
+double dynamics_time_next(const struct dynamics *d)
+{
+    return d->left == 1 ? d->options->end_time : d->mark + (double)(d->done + 1) * d->step;
+}
+
+/* The largest sum of the magnitudes of a row of M^-1 K, for the penalties of all contacts, bounds its
+ * eigenvalues. */
+void dynamics_bound_contacts(struct dynamics *d)
+{
+    const struct solid_system *system = d->system;
+    double *stiffness = d->scratch;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        stiffness[n] = 0.0;
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        /* A point and what is opposite are one row; its square is no more than twice those of its parts. */
+        double parts = system->contacts[c].between != NULL ? 2.0 : 1.0;
+        for (int64_t b = 0; b < contact_bond_count(&system->contacts[c]); b++) {
+            double sum = 0.0, bond;
+            struct average average = contact_bond(&system->contacts[c], b, &bond);
+            for (int64_t i = 0; i < average.length; i++) {
+                sum += fabs(average.phi[i]);
+            }
+            sum *= parts * bond;
+            for (int64_t i = 0; i < average.length; i++) {
+                stiffness[average.idx[i]] += sum * fabs(average.phi[i]);
+            }
+        }
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        d->contact_squared = fmax(d->contact_squared, stiffness[n] / system->lumped_mass[n]);
+    }
+}
+
+void dynamics_estimate_frequency(struct dynamics *d, int iterations)
+{
+    struct preconditioner preconditioner = {
+        .dim = d->system->dim, .node_count = d->system->node_count, .mass = d->system->lumped_mass};
+    double frequency = system_largest_frequency(d->system, &preconditioner, d->u, d->residual, iterations,
+                                                d->mode, d->scratch);
+    d->report->force_evaluations += iterations;
+    frequency = sqrt(frequency * frequency + d->contact_squared);
+    /* The estimate is from below and wanders: follow rises at once, falls slowly. */
+    d->frequency = frequency > d->frequency ? frequency : 0.98 * d->frequency + 0.02 * frequency;
+}
+
+bool dynamics_choose_step(struct dynamics *d)
+{
+    struct dynamics_report *report = d->report;
+    double margin = d->options->time_step_margin, critical = 2.0 / d->frequency;
+    double too_long = (margin + 0.3 * (1.0 - margin)) * critical, too_short = 0.8 * margin * critical;
+    bool is_first = d->step == 0.0;
+    if (!is_first && d->step <= too_long && d->step >= too_short) {
+        return true;
+    }
+    double now = is_first ? 0.0 : dynamics_time_now(d), to_go = d->options->end_time - now;
+    double steps = ceil(to_go / (margin * critical));
+    if (!(steps < 1e15) || (!is_first && to_go / steps < DYNAMICS_LEAST_STEP * report->first_step &&
+                            margin * critical < DYNAMICS_LEAST_STEP * report->first_step)) {
+        return false;
+    }
+    d->left = steps > 1.0 ? (int64_t)steps : 1;
+    d->mark = now;
+    d->done = 0;
+    d->step = to_go / (double)d->left;
+    if (is_first) {
+        report->first_step = report->least_step = d->step;
+        report->critical_step = critical;
+        d->previous_step = d->step;
+    } else {
+        report->least_step = fmin(report->least_step, d->step);
+        report->step_changes++;
+    }
+    return true;
+}
+
+void dynamics_advance(struct dynamics *d, bool is_first)
+{
+    const struct solid_system *system = d->system;
+    int dim = system->dim;
+    double c = d->options->damping, dt = d->step, h = 0.5 * (d->previous_step + dt);
+    double grow = 1.0 + 0.5 * c * h, keep = (1.0 - 0.5 * c * h) / grow, push = h / grow;
+    if (is_first) { /* from the velocity at time 0 */
+        keep = 1.0 - 0.5 * c * dt;
+        push = 0.5 * dt;
+    }
+    double *move = d->after;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        double share = push / system->lumped_mass[n];
+        for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
+            move[i] = dt * (keep * d->before[i] + share * d->residual[i]);
+        }
+    }
+    if (system->rows.count > 0) {
+        double started = clock_seconds();
+        for (int64_t i = 0; i < system->curve_count; i++) {
+            d->factor_change[i] = d->factor_after[i] - d->factor_now[i];
+        }
+        constraint_project(&d->constraint, d->factor_change, move);
+        for (int64_t r = 0; r < system->rows.count; r++) {
+            d->constraint.multiplier[r] /= dt * push;
+        }
+        d->system->cost.constraints += clock_seconds() - started;
+    }
+    for (int64_t i = 0; i < d->size; i++) {
+        d->next[i] = d->u[i] + move[i];
+        d->after[i] = move[i] / dt;
+    }
+    if (is_first) { /* the velocity half a step before the begin, by the same acceleration */
+        for (int64_t i = 0; i < d->size; i++) {
+            d->before[i] = 2.0 * d->before[i] - d->after[i];
+        }
+    }
+}

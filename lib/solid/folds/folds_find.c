@@ -1,0 +1,290 @@
+/* Looking for folds of a displacement field; see folds.h. */
+#include "solid/folds/folds_private.h"
+
+#include "base/chunks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double full_turn = 6.28318530717958648;
+
+enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
+
+static const double beyond_body = 1e-3; /* see folds_find_beyond */
+static const double turned_share = 0.1; /* see is_turned_over */
+
+void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
+{
+    fold->facet[0] = facet;
+    fold->facet[1] = other;
+    vector_middle(input->dim, input->x, input->dim, input->facet + facet * input->dim, fold->place);
+}
+
+/* Combine what was found in consecutive shares: the first fold of the gravest kind, and the number of that
+ * kind. */
+static struct fold combine(int64_t count, const struct fold *found)
+{
+    struct fold fold = found[0];
+    for (int64_t i = 1; i < count; i++) {
+        if (found[i].kind == fold.kind) {
+            fold.count += found[i].count;
+        } else if (fold.kind == FOLD_NONE || (found[i].kind != FOLD_NONE && found[i].kind < fold.kind)) {
+            fold = found[i];
+        }
+    }
+    return fold;
+}
+
+/* Search the cells, rings, boxes or facets [begin, end). */
+typedef struct fold search_range(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+
+/* Search [0, count), shared among the threads of all processes. */
+static struct fold search(const struct folds *folds, int64_t count, search_range *of_range,
+                          const bool *stopped)
+{
+    const struct ranks *ranks = folds->input.ranks;
+    int64_t first = count * ranks_rank(ranks) / ranks_count(ranks);
+    int64_t last = count * (ranks_rank(ranks) + 1) / ranks_count(ranks);
+    struct chunks chunks = chunks_of(last - first, ITEMS_FOR_THREAD);
+    struct fold found[CHUNKS_MOST];
+#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
+        found[c] = of_range(folds, begin, end, stopped);
+    }
+    folds->found[ranks_rank(ranks)] = combine(chunks.count, found);
+    ranks_gather(ranks, folds->found, sizeof *found, NULL);
+    return combine(ranks_count(ranks), folds->found);
+}
+
+/* Whether the cell is pressed flat against an obstacle: all its nodes are held or stopped, and at least one
+ * is stopped. */
+static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
+{
+    bool all = true, any = false;
+    for (int k = 0; k <= folds->input.dim; k++) {
+        all = all && (folds->is_held[node[k]] || stopped[node[k]]);
+        any = any || stopped[node[k]];
+    }
+    return all && any;
+}
+
+/* The volume of a cell as fold_volume has it. */
+static double cell_size(const struct folds *folds, const int32_t *node)
+{
+    int dim = folds->input.dim;
+    return fold_volume(dim, fold_position(folds, node[0]), fold_position(folds, node[1]),
+                       fold_position(folds, node[2]), fold_position(folds, node[dim]));
+}
+
+/* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
+ * edge. */
+static bool is_turned_over(const struct folds *folds, const int32_t *node, double volume)
+{
+    int dim = folds->input.dim;
+    double longest2 = 0.0, largest2 = 0.0;
+    for (int k = 0; k <= dim; k++) {
+        int32_t side[3] = {0, 0, 0};
+        double area[3];
+        for (int i = 0; i < dim; i++) {
+            side[i] = node[(k + 1 + i) % (dim + 1)];
+        }
+        fold_area_vector(dim, folds->y, side, area);
+        largest2 = fmax(largest2, vector_dot(dim, area, area));
+        for (int m = k + 1; m <= dim; m++) {
+            longest2 = fmax(longest2, vector_distance2(dim, fold_position(folds, node[k]),
+                                                       fold_position(folds, node[m])));
+        }
+    }
+    return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
+}
+
+/* Whether a cell is between facets that continue each other at rest, and do not face each other now. */
+static bool is_in_hollow(const struct folds *folds, int64_t cell)
+{
+    int32_t r = folds->flat_ring[cell];
+    return r >= 0 && fold_facet_cosine(&folds->input, folds->y, folds->rings[r].facet,
+                                       folds->rings[r].other) >= FOLD_REVERSING;
+}
+
+/* Turned cells, or else inverted ones. */
+static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+{
+    const struct fold_input *input = &folds->input;
+    struct fold fold = FOLD_NOTHING;
+    int dim = input->dim, corners = dim + 1;
+    for (int64_t c = begin; c < end; c++) {
+        const int32_t *node = input->cell + c * corners;
+        double volume = cell_size(folds, node);
+        if (volume > 0.0 || is_flattened(folds, node, stopped)) {
+            continue;
+        }
+        enum fold_kind kind =
+            is_turned_over(folds, node, volume) && !is_in_hollow(folds, c) ? FOLD_CELL : FOLD_FLAT;
+        if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
+            fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
+            vector_middle(dim, input->x, corners, node, fold.place);
+        }
+        fold.count += kind == fold.kind;
+    }
+    return fold;
+}
+
+/* Angle of a cell at the ring given by its first nodes; negative where the cell is inverted. */
+static double angle_around(const struct folds *folds, const int32_t *node)
+{
+    int dim = folds->input.dim;
+    double a[3], b[3], axis[3], cosine, sine2;
+    const double *origin = fold_position(folds, node[0]);
+    vector_subtract(dim, fold_position(folds, node[dim - 1]), origin, a);
+    vector_subtract(dim, fold_position(folds, node[dim]), origin, b);
+    if (dim == 3) { /* across the edge */
+        vector_subtract(dim, fold_position(folds, node[1]), origin, axis);
+        double length2 = vector_dot(3, axis, axis), on_a = vector_dot(3, a, axis),
+               on_b = vector_dot(3, b, axis);
+        for (int i = 0; i < 3; i++) {
+            a[i] -= on_a / length2 * axis[i];
+            b[i] -= on_b / length2 * axis[i];
+        }
+    }
+    cosine = vector_dot(dim, a, b);
+    sine2 = vector_dot(dim, a, a) * vector_dot(dim, b, b) - cosine * cosine;
+    double angle = atan2(sqrt(fmax(0.0, sine2)), cosine);
+    return cell_size(folds, node) > 0.0 ? angle : -angle;
+}
+
+/* The sum of angles at a ring above which facets have passed through each other there. Where the body is in
+ * contact with itself, a twentieth more is admitted, since contact acts on averages. */
+static double most_angle(const struct folds *folds, const struct fold_ring *ring)
+{
+    const bool *in_contact = folds->in_contact;
+    bool closed =
+        in_contact != NULL && in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
+    return full_turn * (1.0 + 1e-6) + (closed ? FOLD_BEYOND_FACET : 0.0);
+}
+
+static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+{
+    struct fold fold = FOLD_NOTHING;
+    int corners = folds->input.dim + 1;
+    (void)stopped;
+    for (int64_t r = begin; r < end; r++) {
+        double sum = 0.0;
+        for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
+            sum += angle_around(folds, folds->ring_cell + i * corners);
+        }
+        if (sum > most_angle(folds, &folds->rings[r]) && fold.count++ == 0) {
+            fold_name_facets(&folds->input, folds->rings[r].facet, -1, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_CREASE : FOLD_NONE;
+    return fold;
+}
+
+/* Sliding facets that show their backs. */
+static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+{
+    const struct fold_input *input = &folds->input;
+    struct fold fold = FOLD_NOTHING;
+    int dim = input->dim;
+    (void)stopped;
+    for (int64_t f = begin; f < end; f++) {
+        double now[3], rest[3];
+        if (!input->slides[f]) {
+            continue;
+        }
+        fold_area_vector(dim, folds->y, input->facet + f * dim, now);
+        fold_area_vector(dim, input->x, input->facet + f * dim, rest);
+        if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
+            fold_name_facets(&folds->input, f, -1, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_REVERSED : FOLD_NONE;
+    return fold;
+}
+
+void folds_fill_planes(struct folds *folds, const double *y)
+{
+    int dim = folds->input.dim;
+    memset(folds->plane, 0, (size_t)folds->input.facet_count * 7 * sizeof *folds->plane);
+    for (int64_t f = 0; f < folds->input.facet_count; f++) {
+        double area[3], *plane = folds->plane + folds->support[f] * 7;
+        if (folds->support[f] < 0) {
+            continue;
+        }
+        fold_area_vector(dim, y, folds->input.facet + f * dim, area);
+        for (int i = 0; i < dim; i++) {
+            plane[i] += area[i];
+            for (int k = 0; k < dim; k++) {
+                plane[3 + i] += y[(int64_t)folds->input.facet[f * dim + k] * dim + i];
+            }
+        }
+        plane[6] += dim;
+    }
+}
+
+double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y, double *reach)
+{
+    int dim = folds->input.dim;
+    const double *plane = folds->plane + folds->support[rim->support_facet] * 7;
+    const double *node = y + (int64_t)rim->node * dim;
+    double depth = 0.0;
+    for (int i = 0; i < dim; i++) {
+        depth += plane[i] * (node[i] - plane[3 + i] / plane[6]);
+    }
+    *reach = vector_distance(dim, y + (int64_t)rim->on_rim * dim, node);
+    return depth / vector_length(dim, plane);
+}
+
+void folds_take_positions(struct folds *folds, const double *u)
+{
+    folds->largest = 0.0;
+    for (int64_t i = 0; i < folds->input.node_count * folds->input.dim; i++) {
+        folds->y[i] = folds->input.x[i] + u[i];
+        folds->largest = fmax(folds->largest, fabs(folds->y[i]));
+    }
+}
+
+struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
+{
+    folds_take_positions(folds, u);
+    if (folds->input.slides != NULL) {
+        struct fold sliding = search(folds, folds->input.facet_count, search_sliding, stopped);
+        if (sliding.kind != FOLD_NONE) {
+            return sliding;
+        }
+    }
+    struct fold cells = search(folds, folds->input.cell_count, search_cells, stopped);
+    if (cells.kind == FOLD_CELL) {
+        return cells;
+    }
+    struct fold fold = FOLD_NOTHING;
+    if (folds->at_rest.kind != FOLD_CREASE) {
+        fold = search(folds, folds->ring_count, search_rings, stopped);
+    }
+    if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
+        folds_sort_boxes(folds);
+        fold = search(folds, folds->input.facet_count, folds_search_boxes, stopped);
+        if (fold.kind == FOLD_NONE) {
+            folds_find_within(folds, &fold);
+        }
+    }
+    return fold.kind != FOLD_NONE ? fold : cells;
+}
+
+struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)
+{
+    struct fold fold = FOLD_NOTHING;
+    folds_take_positions(folds, u);
+    folds_fill_planes(folds, folds->y);
+    for (int64_t r = 0; r < folds->rim_count; r++) {
+        const struct fold_rim *rim = &folds->rims[r];
+        double reach, depth = folds_rim_beyond(folds, rim, folds->y, &reach);
+        if (!stopped[rim->node] && depth > fmax(beyond_body * folds->extent, FOLD_BEYOND_FACET * reach) &&
+            fold.count++ == 0) {
+            fold_name_facets(&folds->input, rim->facet, rim->support_facet, &fold);
+        }
+    }
+    fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;
+    return fold;
+}

@@ -1,0 +1,97 @@
+/* Geometry of cells and facets that looking for folds needs; private to lib/solid. */
+#pragma once
+
+#include "base/vector.h"
+#include "solid/folds/folds.h"
+
+/* Normals whose cosine is below this, that of 120 degrees, face opposite ways. */
+#define FOLD_REVERSING (-0.5)
+
+/* Depth, by the length of a facet, up to which facets that go through each other or through the plane of a
+ * support are no fold: the field at the nodes is uncertain by as much. */
+#define FOLD_BEYOND_FACET 0.05
+
+#define FOLD_NOTHING ((struct fold){.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}})
+
+/* Deformed position of a node, dim components. */
+static inline const double *fold_position(const struct folds *folds, int32_t node)
+{
+    return folds->y + (int64_t)node * folds->input.dim;
+}
+
+/* Set the two facets of a fold, `other` -1 where there is none, and its place, the middle of the first facet
+ * at rest. */
+void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold);
+
+static inline double fold_cosine(int dim, const double *one, const double *other)
+{
+    return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
+}
+
+/* Outward normal times length or twice the area of a facet. */
+static inline void fold_area_vector(int dim, const double *y, const int32_t *facet, double area[3])
+{
+    double a[3], b[3];
+    const double *origin = y + (int64_t)facet[0] * dim;
+    vector_subtract(dim, y + (int64_t)facet[1] * dim, origin, a);
+    if (dim == 2) {
+        area[0] = a[1];
+        area[1] = -a[0];
+        return;
+    }
+    vector_subtract(dim, y + (int64_t)facet[2] * dim, origin, b);
+    vector_cross(a, b, area);
+}
+
+/* The cosine of the angle between the normals of two facets, at positions y. */
+static inline double fold_facet_cosine(const struct fold_input *input, const double *y, int64_t f, int64_t g)
+{
+    double one[3], other[3];
+    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
+    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
+    return fold_cosine(input->dim, one, other);
+}
+
+/* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
+static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
+{
+    double u[3], v[3], w[3];
+    vector_subtract(dim, b, a, u);
+    vector_subtract(dim, c, a, v);
+    if (dim == 2) {
+        return determinant2(u, v);
+    }
+    vector_subtract(dim, d, a, w);
+    return determinant3(u, v, w);
+}
+
+/* Find the parts and bodies of the cells. */
+MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
+
+/* ---- folds_crossing.c: facets that go through each other ---- */
+
+/* Fill folds->boxes, ascending along the first axis. */
+void folds_sort_boxes(struct folds *folds);
+
+/* Search the boxes [begin, end) and those behind them for facets that cross; `stopped` is not used. */
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+
+/* ---- folds_within.c ---- */
+
+/* Look for a body within another, where boundaries do not cross. */
+void folds_find_within(struct folds *folds, struct fold *fold);
+
+/* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node
+ * with. Boundaries that go through each other at nodes, or lie on each other, do not show as crossed. */
+MUST_CHECK enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
+                                               struct error *error);
+
+/* Positions of the displacement u, in the scratch. */
+void folds_take_positions(struct folds *folds, const double *u);
+
+/* Sums over the facets of each plane support, into folds->plane. */
+void folds_fill_planes(struct folds *folds, const double *y);
+
+/* How far the rim's node is beyond the plane of the support, m; *reach receives its distance from the rim. */
+double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y,
+                        double *reach);

@@ -1,0 +1,195 @@
+#include "solid/operators/field_averages.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A table that is copied into the rows of a matrix from `first_row` on. */
+struct copy {
+    const struct field_averages_input *input;
+    const struct average_table *table;
+    const bool *wanted;
+    int64_t first, last; /* columns */
+    int64_t first_row;
+    int64_t *place; /* of each of the caller's rows among those of the table */
+    bool lets_go;   /* the table is not needed afterwards */
+};
+
+static bool copies_row(const struct copy *copy, int64_t f)
+{
+    return copy->wanted == NULL || copy->wanted[copy->first_row + copy->place[f]];
+}
+
+static bool copies_entry(const struct copy *copy, int64_t i)
+{
+    int32_t node = copy->input->place[copy->table->idx[i]];
+    return node >= copy->first && node < copy->last;
+}
+
+/* length[]: of each of the matrix's rows. */
+static void measure_rows(const struct copy *copy, int64_t *length)
+{
+    const int64_t *ptr = copy->table->ptr;
+    bool all = copy->first == 0 && copy->last == copy->input->node_count;
+    for (int64_t f = 0; f < copy->table->row_count; f++) {
+        int64_t count = copies_row(copy, f) && all ? ptr[f + 1] - ptr[f] : 0;
+        for (int64_t i = ptr[f]; i < ptr[f + 1] && copies_row(copy, f) && !all; i++) {
+            count += copies_entry(copy, i);
+        }
+        length[copy->first_row + copy->place[f]] = count;
+    }
+}
+
+/* Copy the table in its own order, so that its memory can be released step by step. */
+static void copy_rows(const struct copy *copy, struct sparse *matrix)
+{
+    enum { STEP = 1 << 20 };
+    const struct average_table *table = copy->table;
+    int64_t gone = 0;
+    for (int64_t f = 0; f < table->row_count; f++) {
+        int64_t at = matrix->ptr[copy->first_row + copy->place[f]];
+        for (int64_t i = table->ptr[f]; i < table->ptr[f + 1] && copies_row(copy, f); i++) {
+            if (copies_entry(copy, i)) {
+                matrix->idx[at] = copy->input->place[table->idx[i]];
+                matrix->value[at++] = table->phi[i];
+            }
+        }
+        if (copy->lets_go && table->ptr[f + 1] - gone >= STEP) {
+            memory_give_back(table->idx + gone, STEP * sizeof *table->idx);
+            memory_give_back(table->phi + gone, STEP * sizeof *table->phi);
+            gone += STEP;
+        }
+    }
+}
+
+enum status field_averages_copy(const struct field_averages_input *input, const bool *wanted, int64_t first,
+                                int64_t last, struct sparse *matrix, struct error *error)
+{
+    enum status status;
+    struct copy copies[2] = {{0}};
+    int64_t faces = input->tables[0].row_count, rows = faces + input->tables[1].row_count;
+    int64_t *length = NULL, entries = 0;
+    *matrix = (struct sparse){0};
+    TRY(NEW_ARRAY(&length, rows, error));
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &input->tables[k];
+        copies[k] =
+            (struct copy){input, table, wanted, first, last, k * faces, NULL, k == 0 && input->lets_go};
+        TRY(NEW_ARRAY(&copies[k].place, table->row_count, error));
+        for (int64_t r = 0; r < table->row_count; r++) {
+            copies[k].place[table->order[r]] = r;
+        }
+        measure_rows(&copies[k], length);
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        entries += length[r];
+    }
+    TRY(sparse_new(rows, input->node_count, entries, matrix, error));
+    for (int64_t r = 0; r < rows; r++) {
+        matrix->ptr[r + 1] = matrix->ptr[r] + length[r];
+    }
+    copy_rows(&copies[0], matrix);
+    copy_rows(&copies[1], matrix);
+done:
+    FREE_ALL(length, copies[0].place, copies[1].place);
+    return status;
+}
+
+/* Set of_corner: the rows that each corner uses. */
+static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
+                                 struct error *error)
+{
+    int64_t *index_of = NULL; /* the body's index of each of the caller's rows */
+    int32_t *of_corner = averages->of_corner;
+    for (int k = 0; k < 2; k++) {
+        const struct average_table *table = &input->tables[k];
+        int64_t first = k * input->tables[0].row_count;
+        RETURN_IF_ERROR(NEW_ARRAY(&index_of, table->row_count, error));
+        for (int64_t r = 0; r < table->row_count; r++) {
+            index_of[table->order[r]] = first + r;
+        }
+        int64_t count = input->corner_count * (k == 0 ? FACE_ROWS(input->dim) : 1);
+        for (int64_t i = 0; i < count; i++) {
+            *of_corner++ = (int32_t)(index_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
+        }
+        free(index_of);
+        index_of = NULL;
+    }
+    return STATUS_OK;
+}
+
+/* The corners of each row. */
+static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
+{
+    int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
+    int64_t uses = of_faces + averages->corner_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, uses, error));
+    for (int64_t i = 0; i < uses; i++) {
+        averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
+    }
+    for (int64_t r = 0; r < rows; r++) {
+        averages->corner_ptr[r + 2] += averages->corner_ptr[r + 1];
+    }
+    for (int64_t i = 0; i < uses; i++) {
+        averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
+            (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
+    }
+    return STATUS_OK;
+}
+
+enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,
+                                 struct error *error)
+{
+    const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
+    int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
+    int64_t uses = input->corner_count * (FACE_ROWS(input->dim) + 1);
+    *averages = (struct field_averages){.corner_count = input->corner_count, .row_count = rows};
+    if (rows > INT32_MAX / stride || uses > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, uses, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
+    RETURN_IF_ERROR(match_corners(input, averages, error));
+    return list_corners(input->dim, averages, error);
+}
+
+enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
+                                       struct error *error)
+{
+    struct sparse *fetched = &averages->fetched;
+    struct average_table *faces = &averages->given[0];
+    const int64_t *ptr = matrix->ptr;
+    int64_t at = 0, begin = 0;
+    SCRATCH bool *kept = NULL;
+    if (fetched->ptr == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&kept, fetched->row_count, error));
+    for (int64_t r = 0; r < fetched->row_count; r++) {
+        kept[faces->order[r]] = ptr[r] == ptr[r + 1];
+    }
+    for (int64_t f = 0; f < fetched->row_count; f++) {
+        int64_t end = fetched->ptr[f + 1], length = kept[f] ? end - begin : 0;
+        memmove(fetched->idx + at, fetched->idx + begin, (size_t)length * sizeof *fetched->idx);
+        memmove(fetched->value + at, fetched->value + begin, (size_t)length * sizeof *fetched->value);
+        begin = end;
+        fetched->ptr[f + 1] = at += length;
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->idx, at + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->value, at + 1, error));
+    faces->idx = fetched->idx;
+    faces->phi = fetched->value;
+    return STATUS_OK;
+}
+
+void field_averages_free(struct field_averages *averages)
+{
+    sparse_free(&averages->fetched);
+    FREE_ALL(averages->value, averages->force, averages->of_corner, averages->corner_force,
+             averages->corner_ptr, averages->corner, averages->face_order);
+    *averages = (struct field_averages){0};
+}

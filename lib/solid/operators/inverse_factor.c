@@ -1,0 +1,72 @@
+#include "solid/operators/inverse_factor.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+void inverse_factor_free(struct inverse_factor *factor)
+{
+    sparse_free(&factor->rows);
+    sparse_free(&factor->transposed);
+    halo_free(&factor->halo);
+    free(factor->first);
+    factor->first = NULL;
+}
+
+enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wanted, struct error *error)
+{
+    const struct sparse *matrix = &factor->transposed;
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    enum status status = NEW_ARRAY(wanted, matrix->row_count, error);
+    for (int64_t i = matrix->ptr[first[0]]; status == STATUS_OK && i < matrix->ptr[first[1]]; i++) {
+        (*wanted)[matrix->idx[i]] = true;
+    }
+    return status;
+}
+
+void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y)
+{
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    sparse_apply_rows(&factor->rows, first[0], first[1], dim, x, y);
+    halo_exchange(&factor->halo, dim, y);
+}
+
+void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x, double *y)
+{
+    const int64_t *first = factor->first + ranks_rank(factor->ranks);
+    sparse_apply_rows(&factor->transposed, first[0], first[1], dim, x, y);
+    ranks_gather(factor->ranks, y, (size_t)dim * sizeof *y, factor->first);
+}
+
+/* The width is known when compiling; sums stay in registers. */
+static inline __attribute__((always_inline)) void solve_transposed(const struct sparse *matrix, int width,
+                                                                   double *x)
+{
+    for (int64_t n = matrix->row_count; n-- > 0;) {
+        int64_t first = matrix->ptr[n];
+        double sum[3] = {0.0, 0.0, 0.0};
+        for (int a = 0; a < width; a++) {
+            sum[a] = x[n * width + a];
+        }
+        for (int64_t i = first + 1; i < matrix->ptr[n + 1]; i++) {
+            const double *at = x + (int64_t)matrix->idx[i] * width;
+            for (int a = 0; a < width; a++) {
+                sum[a] -= matrix->value[i] * at[a];
+            }
+        }
+        for (int a = 0; a < width; a++) {
+            x[n * width + a] = sum[a] / matrix->value[first];
+        }
+    }
+}
+
+void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
+{
+    if (dim == 1) {
+        solve_transposed(&factor->transposed, 1, x);
+    } else if (dim == 2) {
+        solve_transposed(&factor->transposed, 2, x);
+    } else {
+        solve_transposed(&factor->transposed, 3, x);
+    }
+}

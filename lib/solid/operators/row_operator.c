@@ -1,0 +1,180 @@
+#include "solid/operators/row_operator.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+/* The table that is transposed. */
+static const struct sparse *transposed_table(const struct row_operator *rows)
+{
+    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
+}
+
+/* Stripes of about as many entries each. */
+static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
+                               int threads, struct error *error)
+{
+    int64_t entries = transposed_table(rows)->ptr[transposed_table(rows)->row_count], sum = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->stripes, threads, error));
+    rows->stripe_count = threads;
+    for (int s = 0; s < threads; s++) {
+        struct row_stripe *stripe = &rows->stripes[s];
+        stripe->begin = begin;
+        while (begin < end && (s == threads - 1 || sum < entries / threads * (s + 1))) {
+            sum += count[begin++];
+        }
+        stripe->end = begin;
+    }
+    return STATUS_OK;
+}
+
+/* Add row r, with columns from `low` to `high`, to a stripe that contains some of them; without arrays only
+ * count. */
+static void list_row(const struct sparse *table, int64_t r, int32_t low, int32_t high,
+                     struct row_stripe *stripe)
+{
+    struct sparse *cut = &stripe->cut;
+    bool whole = low >= stripe->begin && high < stripe->end;
+    int64_t found = 0, entries = cut->ptr != NULL ? cut->ptr[cut->row_count] : 0;
+    for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && !whole; i++) {
+        int32_t column = table->idx[i];
+        if (column < stripe->begin || column >= stripe->end) {
+            continue;
+        }
+        if (cut->ptr != NULL) {
+            cut->idx[entries + found] = table->idx[i];
+            cut->value[entries + found] = table->value[i];
+        }
+        found++;
+    }
+    if (!whole && found == 0) {
+        return;
+    }
+    if (stripe->row != NULL) {
+        stripe->row[stripe->row_count] = (int32_t)(whole ? r : -1 - r);
+    }
+    stripe->row_count++;
+    if (!whole) {
+        cut->row_count++;
+        cut->column_count += found; /* while counting: entries */
+        if (cut->ptr != NULL) {
+            cut->ptr[cut->row_count] = entries + found;
+        }
+    }
+}
+
+static void list_rows(const struct sparse *table, const int32_t *range, struct row_stripe *stripe)
+{
+    for (int64_t r = 0; r < table->row_count; r++) {
+        if (range[2 * r] < stripe->end && range[2 * r + 1] >= stripe->begin) {
+            list_row(table, r, range[2 * r], range[2 * r + 1], stripe);
+        }
+    }
+}
+
+static enum status make_stripe(const struct sparse *table, const int32_t *range, struct row_stripe *stripe,
+                               struct error *error)
+{
+    list_rows(table, range, stripe);
+    RETURN_IF_ERROR(sparse_new(stripe->cut.row_count, table->column_count, stripe->cut.column_count,
+                               &stripe->cut, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stripe->row, stripe->row_count, error));
+    stripe->row_count = stripe->cut.row_count = 0;
+    list_rows(table, range, stripe);
+    stripe->cut.column_count = table->column_count;
+    return STATUS_OK;
+}
+
+enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
+                                struct error *error)
+{
+    const struct sparse *table = transposed_table(rows);
+    SCRATCH int32_t *count = NULL, *range = NULL;
+    if (table->column_count > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&count, table->column_count, error));
+    for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
+        count[table->idx[i]]++;
+    }
+    RETURN_IF_ERROR(cut_columns(rows, count, begin, end, threads, error));
+    RETURN_IF_ERROR(row_operator_ranges(rows, &range, error));
+    for (int s = 0; s < threads; s++) {
+        RETURN_IF_ERROR(make_stripe(table, range, &rows->stripes[s], error));
+    }
+    return STATUS_OK;
+}
+
+void row_operator_free(struct row_operator *rows)
+{
+    for (int s = 0; s < rows->stripe_count; s++) {
+        free(rows->stripes[s].row);
+        sparse_free(&rows->stripes[s].cut);
+    }
+    free(rows->stripes);
+    sparse_free(&rows->matrix);
+    sparse_free(&rows->columns);
+    *rows = (struct row_operator){0};
+}
+
+enum status row_operator_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
+{
+    const struct sparse *table = transposed_table(rows);
+    enum status status = NEW_ARRAY(range, 2 * table->row_count, error);
+    for (int64_t r = 0; r < table->row_count && status == STATUS_OK; r++) {
+        int32_t low = INT32_MAX, high = -1;
+        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
+            int32_t column = table->idx[i];
+            low = column < low ? column : low;
+            high = column > high ? column : high;
+        }
+        (*range)[2 * r] = low;
+        (*range)[2 * r + 1] = high;
+    }
+    return status;
+}
+
+/* Count the entries of the columns into next[], or put them into the rows of `transposed`, behind next[]. */
+static void visit_columns(const struct sparse *table, const int32_t *range, const int32_t *column,
+                          int64_t count, const int32_t *slot, int64_t *next, struct sparse *transposed)
+{
+    for (int64_t r = 0; r < table->row_count && count > 0; r++) {
+        bool has = range[2 * r] <= column[count - 1] && range[2 * r + 1] >= column[0];
+        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && has; i++) {
+            int32_t of = table->idx[i], at = slot[of];
+            if (at < 0 || at >= count || column[at] != of) {
+                continue;
+            }
+            if (transposed->ptr != NULL) {
+                transposed->idx[next[at]] = (int32_t)r;
+                transposed->value[next[at]] = table->value[i];
+            }
+            next[at]++;
+        }
+    }
+}
+
+enum status row_operator_transpose(const struct row_operator *rows, const int32_t *range,
+                                   const int32_t *column, int64_t count, int32_t *slot,
+                                   struct sparse *transposed, struct error *error)
+{
+    const struct sparse *table = transposed_table(rows);
+    SCRATCH int64_t *next = NULL;
+    int64_t sum = 0;
+    *transposed = (struct sparse){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
+    for (int64_t c = 0; c < count; c++) {
+        slot[column[c]] = (int32_t)c;
+    }
+    visit_columns(table, range, column, count, slot, next, transposed);
+    for (int64_t c = 0; c < count; c++) {
+        sum += next[c];
+    }
+    RETURN_IF_ERROR(sparse_new(count, table->row_count, sum, transposed, error));
+    for (int64_t c = 0; c < count; c++) {
+        transposed->ptr[c + 1] = transposed->ptr[c] + next[c];
+        next[c] = transposed->ptr[c];
+    }
+    visit_columns(table, range, column, count, slot, next, transposed);
+    return STATUS_OK;
+}

@@ -1,0 +1,292 @@
+#include "solid/preconditioner/coarse_space.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/processor.h"
+#include "base/queue.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
+ * steps. */
+static const double radius_factor = 1.5;
+/* The length of a path is divided by this before it is compared with the Euclidean distance, so that in
+ * convex bodies the latter counts. */
+static const double most_detour = 2.0;
+enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
+
+/* share[..][c] = lengths of the shortest paths from a node, from neighbour to neighbour; infinite where there
+ * is none. */
+static enum status path_lengths(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
+                                int64_t from, struct queue *queue, struct error *error)
+{
+    int dim = coarse->dim;
+    of_centres *length = coarse->share;
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        length[n][c] = INFINITY;
+    }
+    length[from][c] = 0.0;
+    RETURN_IF_ERROR(queue_push(queue, 0.0, (int32_t)from, error));
+    while (queue->count > 0) {
+        struct path_end end = queue_pop(queue);
+        int64_t last = end.length > length[end.node][c] ? 0 : neighbours->ptr[end.node + 1];
+        for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
+            int32_t next = neighbours->idx[i];
+            double path = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
+                                                       coarse->X + (int64_t)next * dim);
+            if (path < length[next][c]) {
+                length[next][c] = path;
+                RETURN_IF_ERROR(queue_push(queue, path, next, error));
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* share[..][c] = distances from node `from`, which becomes centre c. */
+static enum status add_centre(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
+                              int64_t from, struct queue *queue, struct error *error)
+{
+    int dim = coarse->dim;
+    const double *place = coarse->X + from * dim;
+    for (int a = 0; a < dim; a++) {
+        coarse->centre[a][c] = place[a];
+    }
+    if (neighbours != NULL) {
+        RETURN_IF_ERROR(path_lengths(coarse, neighbours, c, from, queue, error));
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double straight = vector_distance(dim, coarse->X + n * dim, place);
+        double path = neighbours != NULL ? coarse->share[n][c] / most_detour : 0.0;
+        coarse->share[n][c] = isfinite(path) ? fmax(straight, path) : straight;
+    }
+    return STATUS_OK;
+}
+
+/* Centres: nodes, each the farthest from those before it. Sets the radius; share = distances from the
+ * centres, m. */
+static enum status pick_centres(struct coarse_space *coarse, const struct neighbours *neighbours,
+                                struct error *error)
+{
+    FREED_BY(queue_free) struct queue queue = {0};
+    SCRATCH double *least = NULL;
+    int64_t next = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&least, coarse->node_count, error));
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        least[n] = INFINITY;
+    }
+    for (int64_t c = 0; c < coarse->centre_count; c++) {
+        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, error));
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            least[n] = fmin(least[n], coarse->share[n][c]);
+        }
+        for (int64_t n = 0; n < coarse->node_count; n++) {
+            next = least[n] > least[next] ? n : next;
+        }
+    }
+    coarse->radius = radius_factor * least[next];
+    return STATUS_OK;
+}
+
+/* Quartic spline of a distance. */
+static double weight_at(const struct coarse_space *coarse, double distance)
+{
+    double q = distance / coarse->radius, q2 = q * q;
+    return q < 1.0 ? 1.0 + q2 * (-6.0 + q * (8.0 - 3.0 * q)) : 0.0;
+}
+
+static void share_unity(struct coarse_space *coarse)
+{
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double sum = 0.0;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            sum += coarse->share[n][c] = weight_at(coarse, coarse->share[n][c]);
+        }
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            coarse->share[n][c] /= sum;
+        }
+    }
+}
+
+enum status coarse_space_build(int dim, int64_t node_count, const double *X,
+                               const struct neighbours *neighbours, int64_t centre_count,
+                               struct coarse_space *coarse, struct error *error)
+{
+    *coarse = (struct coarse_space){.dim = dim,
+                                    .node_count = node_count,
+                                    .X = X,
+                                    .centre_count = centre_count,
+                                    .count = centre_count * (dim + 1)};
+    if (centre_count > 0) {
+        RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, node_count, error));
+        RETURN_IF_ERROR(pick_centres(coarse, neighbours, error));
+        share_unity(coarse);
+    }
+    return STATUS_OK;
+}
+
+void coarse_space_free(struct coarse_space *coarse)
+{
+    free(coarse->share);
+    *coarse = (struct coarse_space){0};
+}
+
+int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int field[COARSE_MOST_AT_NODE],
+                         double value[COARSE_MOST_AT_NODE])
+{
+    int dim = coarse->dim, count = 0;
+    for (int c = 0; c < coarse->centre_count; c++) {
+        double share = coarse->share[node][c];
+        for (int m = 0; m <= dim && share > 0.0; m++, count++) {
+            double coordinate =
+                m == 0 ? 1.0 : (coarse->X[node * dim + m - 1] - coarse->centre[m - 1][c]) / coarse->radius;
+            field[count] = c * (dim + 1) + m;
+            value[count] = share * coordinate;
+        }
+    }
+    return count;
+}
+
+/* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
+typedef of_centres coarse_amounts[4][3];
+
+/* Numbers of eight centres, which fit into one register of processors with AVX-512: longer vectors would go
+ * through memory. */
+enum { EIGHT = 8 };
+typedef double eight_centres __attribute__((vector_size(8 * EIGHT), aligned(8), may_alias));
+typedef double four_centres __attribute__((vector_size(32)));
+typedef double two_centres __attribute__((vector_size(16)));
+
+#define EIGHT_OF(from) (*(const eight_centres *)(from))
+
+/* The coarse fields at a node of eight centres, from `first` on, but for the radius. The dimension is known
+ * when compiling, here and below. */
+KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int first, int64_t node,
+                             eight_centres value[4])
+{
+    value[0] = EIGHT_OF(coarse->share[node] + first);
+    for (int a = 0; a < dim; a++) {
+        value[a + 1] = value[0] * (coarse->X[node * dim + a] - EIGHT_OF(coarse->centre[a] + first));
+    }
+}
+
+/* sum = what v, times weight unless NULL, does at the nodes from `begin` to before `end`. */
+KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
+                           const double *weight, const double *v, coarse_amounts sum)
+{
+    for (int first = 0; first < coarse->centre_count; first += EIGHT) {
+        eight_centres all[4][3] = {{{0.0}}}, value[4];
+        for (int64_t n = begin; n < end; n++) {
+            double scale = weight != NULL ? weight[n] : 1.0;
+            monomials(coarse, dim, first, n, value);
+            for (int a = 0; a < dim; a++) {
+                double scaled = scale * v[n * dim + a];
+                for (int m = 0; m <= dim; m++) {
+                    all[m][a] += value[m] * scaled;
+                }
+            }
+        }
+        for (int i = 0; i < (dim + 1) * dim; i++) {
+            memcpy(sum[i / dim][i % dim] + first, &all[i / dim][i % dim], sizeof all[0][0]);
+        }
+    }
+}
+
+/* By halves: in a fixed order, which costs few instructions. */
+KERNEL_INLINE double total(const eight_centres *value)
+{
+    eight_centres half = *value;
+    four_centres quarter =
+        __builtin_shufflevector(half, half, 0, 1, 2, 3) + __builtin_shufflevector(half, half, 4, 5, 6, 7);
+    two_centres eighth =
+        __builtin_shufflevector(quarter, quarter, 0, 1) + __builtin_shufflevector(quarter, quarter, 2, 3);
+    return eighth[0] + eighth[1];
+}
+
+/* u += amount there. */
+KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
+                       const coarse_amounts amount, double *u)
+{
+    for (int64_t n = begin; n < end; n++) {
+        eight_centres sum[3] = {{0.0}}, value[4];
+        for (int first = 0; first < coarse->centre_count; first += EIGHT) {
+            monomials(coarse, dim, first, n, value);
+            for (int a = 0; a < dim; a++) {
+                eight_centres part = value[0] * EIGHT_OF(amount[0][a] + first);
+                for (int m = 1; m <= dim; m++) {
+                    part += value[m] * EIGHT_OF(amount[m][a] + first);
+                }
+                sum[a] += part;
+            }
+        }
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] += total(&sum[a]);
+        }
+    }
+}
+
+ALL_SETS static void collect_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
+                                   const double *weight, const double *v, coarse_amounts sum)
+{
+    if (coarse->dim == 2) {
+        collect(coarse, 2, begin, end, weight, v, sum);
+    } else {
+        collect(coarse, 3, begin, end, weight, v, sum);
+    }
+}
+
+ALL_SETS static void add_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
+                               const coarse_amounts amount, double *u)
+{
+    if (coarse->dim == 2) {
+        add(coarse, 2, begin, end, amount, u);
+    } else {
+        add(coarse, 3, begin, end, amount, u);
+    }
+}
+
+void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
+                           double *amount)
+{
+    struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
+    int dim = coarse->dim;
+    coarse_amounts partial[CHUNKS_MOST];
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v, partial[c]);
+    }
+    for (int m = 0; m <= dim; m++) {
+        for (int a = 0; a < dim; a++) {
+            for (int64_t c = 0; c < coarse->centre_count; c++) {
+                double sum = partial[0][m][a][c];
+                for (int64_t k = 1; k < chunks.count; k++) {
+                    sum += partial[k][m][a][c];
+                }
+                amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum : sum / coarse->radius;
+            }
+        }
+    }
+}
+
+void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u)
+{
+    struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
+    int dim = coarse->dim;
+    coarse_amounts sorted = {{{0.0}}};
+    for (int m = 0; m <= dim; m++) {
+        for (int a = 0; a < dim; a++) {
+            for (int64_t c = 0; c < coarse->centre_count; c++) {
+                double part = amount[(c * (dim + 1) + m) * dim + a];
+                sorted[m][a][c] = m == 0 ? part : part / coarse->radius;
+            }
+        }
+    }
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        add_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1),
+                  (const of_centres(*)[3])sorted, u);
+    }
+}

@@ -1,0 +1,341 @@
+#include "solid/preconditioner/frequency.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int first_check = 16;
+static const double check_growth = 4.0 / 3.0, settled_change = 0.05;
+static const double least_share =
+    0.6; /* of the ratio of the largest frequency to the lowest: iterations at least */
+/* A start vector whose projection onto the admissible moves is below this share of it is taken for zero. */
+static const double least_free = 1e-4;
+static const double strain =
+    1e-6; /* about that much is a cell strained by the move that K is measured with */
+
+static double largest_entry(const double *vector, int64_t size)
+{
+    double largest = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        largest = fabs(vector[i]) > largest ? fabs(vector[i]) : largest;
+    }
+    return largest;
+}
+
+/* Mean spacing of the points. */
+static double point_spacing(const struct solid_system *system)
+{
+    return pow(body_volume(&system->body) / (double)system->body.point_count, 1.0 / system->dim);
+}
+
+/* response = the residual at displaced = u + epsilon move, which strains the body by about `strain`; returns
+ * epsilon. */
+static double residual_along(struct solid_system *system, const double *u, double spacing, const double *move,
+                             double *displaced, double *response)
+{
+    int64_t size = system->node_count * system->dim;
+    double epsilon = strain * spacing / largest_entry(move, size);
+    for (int64_t i = 0; i < size; i++) {
+        displaced[i] = u[i] + epsilon * move[i];
+    }
+    (void)system_residual(system, displaced, response);
+    return epsilon;
+}
+
+/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
+static void start_mode(double *mode, int64_t size)
+{
+    uint64_t state = 0x9e3779b97f4a7c15u;
+    for (int64_t i = 0; i < size; i++) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        mode[i] = (double)(int64_t)state / 9223372036854775808.0;
+    }
+}
+
+double system_largest_frequency(struct solid_system *system, struct preconditioner *p, const double *u,
+                                const double *residual, int iterations, double *mode, double *scratch)
+{
+    int64_t size = system->node_count * system->dim;
+    double *displaced = scratch, *response = scratch + size;
+    double eigenvalue = 0.0;
+    if (largest_entry(mode, size) == 0.0) {
+        start_mode(mode, size);
+        constraint_project(&p->constraint, NULL, mode);
+    }
+    double spacing = point_spacing(system);
+    for (int it = 0; it < iterations; it++) {
+        double epsilon = residual_along(system, u, spacing, mode, displaced, response);
+        double top = 0.0;
+        for (int64_t i = 0; i < size; i++) {
+            displaced[i] = (residual[i] - response[i]) / epsilon;
+        }
+        preconditioner_resist_open(p, system, mode, displaced);
+        for (int64_t i = 0; i < size; i++) {
+            top += mode[i] * displaced[i];
+        }
+        eigenvalue = top / preconditioner_product(p, mode, mode);
+        preconditioner_apply(p, displaced, response);
+        double scale = 1.0 / largest_entry(response, size);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] = response[i] * scale;
+        }
+    }
+    return eigenvalue > 0.0 ? sqrt(eigenvalue) : 0.0;
+}
+
+/* Share of the largest: a negative eigenvalue above minus that is within the round-off of the differences of
+ * residuals. */
+static const double least_told = -1e-6;
+
+/* How many eigenvalues of the symmetric tridiagonal matrix (diagonal[n], off_diagonal[n - 1]) are below x:
+ * Sturm's count. */
+static int eigenvalues_below(int n, const double *diagonal, const double *off_diagonal, double x)
+{
+    int below = 0;
+    double pivot = 1.0;
+    for (int i = 0; i < n; i++) {
+        double off2 = i > 0 ? off_diagonal[i - 1] * off_diagonal[i - 1] : 0.0;
+        pivot = diagonal[i] - x - (off2 > 0.0 ? off2 / pivot : 0.0);
+        if (fabs(pivot) < 1e-300) {
+            pivot = -1e-300;
+        }
+        below += pivot < 0.0;
+    }
+    return below;
+}
+
+/* Its least eigenvalue, to a part in 1e4 (or of its rounding errors), by bisection between Gershgorin's
+ * bounds. */
+static double least_eigenvalue(int n, const double *diagonal, const double *off_diagonal)
+{
+    double low = INFINITY, high = INFINITY, most = 0.0;
+    for (int i = 0; i < n; i++) {
+        double reach = (i > 0 ? fabs(off_diagonal[i - 1]) : 0.0) + (i + 1 < n ? fabs(off_diagonal[i]) : 0.0);
+        low = fmin(low, diagonal[i] - reach);
+        high = fmin(high, diagonal[i]); /* no diagonal entry is below the least eigenvalue */
+        most = fmax(most, fabs(diagonal[i]) + reach);
+    }
+    while (high - low > 1e-4 * fmax(fabs(high), 1e-14 * most)) {
+        double middle = 0.5 * (low + high);
+        if (eigenvalues_below(n, diagonal, off_diagonal, middle) > 0) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return high;
+}
+
+/* Its largest one. */
+static double largest_eigenvalue(int n, double *diagonal, const double *off_diagonal)
+{
+    for (int i = 0; i < n; i++) {
+        diagonal[i] = -diagonal[i];
+    }
+    double largest = -least_eigenvalue(n, diagonal, off_diagonal);
+    for (int i = 0; i < n; i++) {
+        diagonal[i] = -diagonal[i];
+    }
+    return largest;
+}
+
+/* product = M^-1 K move, from the change of the residual from u along the move. */
+static void apply(struct solid_system *system, struct preconditioner *p, const double *u,
+                  const double *residual, double spacing, const double *move, double *displaced,
+                  double *product)
+{
+    double epsilon = residual_along(system, u, spacing, move, displaced, product);
+    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
+        displaced[i] = (residual[i] - product[i]) / epsilon;
+    }
+    preconditioner_apply(p, displaced, product);
+}
+
+/* Whether `count` iterations suffice for the least eigenvalue: with fewer than a share of the ratio of the
+ * frequencies the Ritz value stays on a plateau, at a higher mode. */
+static bool enough(int count, double largest, double least)
+{
+    return count >= least_share * sqrt(largest / fmax(least, 1e-14 * largest));
+}
+
+/* y[n]: the eigenvector of that matrix to its least eigenvalue, by inverse iteration from just below it. */
+static void least_eigenvector(int n, const double *diagonal, const double *off_diagonal, double least,
+                              double *pivot, double *y)
+{
+    double shift = least - 1e-3 * fabs(least);
+    for (int i = 0; i < n; i++) {
+        pivot[i] =
+            diagonal[i] - shift - (i > 0 ? off_diagonal[i - 1] * off_diagonal[i - 1] / pivot[i - 1] : 0.0);
+        y[i] = 1.0;
+    }
+    for (int turn = 0; turn < 4; turn++) {
+        for (int i = 1; i < n; i++) {
+            y[i] -= off_diagonal[i - 1] / pivot[i - 1] * y[i - 1];
+        }
+        for (int i = n - 1; i >= 0; i--) {
+            y[i] = (y[i] - (i + 1 < n ? off_diagonal[i] * y[i + 1] : 0.0)) / pivot[i];
+        }
+        double scale = 1.0 / largest_entry(y, n);
+        for (int i = 0; i < n; i++) {
+            y[i] *= scale;
+        }
+    }
+}
+
+/* The node that moves most in a vector of the nodes. */
+static int32_t most_moved(int dim, int64_t node_count, const double *vector)
+{
+    double most = -1.0;
+    int32_t node = 0;
+    for (int64_t n = 0; n < node_count; n++) {
+        double length2 = vector_dot(dim, vector + n * dim, vector + n * dim);
+        if (length2 > most) {
+            most = length2;
+            node = (int32_t)n;
+        }
+    }
+    return node;
+}
+
+/* A Lanczos iteration at a state. */
+struct lanczos {
+    struct solid_system *system;
+    struct preconditioner *preconditioner;
+    const double *u, *residual;
+    double spacing;
+    double *vector, *before, *product, *displaced; /* system->node_count * dim */
+    double norm;                                   /* of vector, in the product of the mass */
+};
+
+/* From l->vector; false when its projection onto the admissible moves vanishes. */
+static bool lanczos_begin(struct lanczos *l)
+{
+    double whole = preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector);
+    constraint_project(&l->preconditioner->constraint, NULL, l->vector);
+    memset(l->before, 0, (size_t)(l->system->node_count * l->system->dim) * sizeof *l->before);
+    l->norm = sqrt(preconditioner_product(l->preconditioner, l->vector, l->vector));
+    return preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector) >
+           least_free * least_free * whole;
+}
+
+/* Vectors in scratch[4 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
+static struct lanczos lanczos_at(struct solid_system *system, struct preconditioner *p, const double *u,
+                                 const double *residual, const double *start, double *scratch)
+{
+    int64_t size = system->node_count * system->dim;
+    struct lanczos l = {.system = system,
+                        .preconditioner = p,
+                        .u = u,
+                        .residual = residual,
+                        .spacing = point_spacing(system),
+                        .vector = scratch,
+                        .before = scratch + size,
+                        .product = scratch + 2 * size,
+                        .displaced = scratch + 3 * size};
+    memcpy(l.vector, start, (size_t)size * sizeof *start);
+    if (largest_entry(start, size) == 0.0) {
+        start_mode(l.vector, size);
+    }
+    return l;
+}
+
+/* Entries k of the diagonal and beside it; before: the k-th vector, of norm 1. */
+static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off_diagonal)
+{
+    int64_t size = l->system->node_count * l->system->dim;
+    double coupling = k > 0 ? l->norm : 0.0, *product = l->product;
+    for (int64_t i = 0; i < size; i++) {
+        l->vector[i] /= l->norm;
+    }
+    apply(l->system, l->preconditioner, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
+    diagonal[k] = preconditioner_product(l->preconditioner, l->vector, product);
+    for (int64_t i = 0; i < size; i++) {
+        product[i] -= diagonal[k] * l->vector[i] + coupling * l->before[i];
+    }
+    l->norm = off_diagonal[k] = sqrt(preconditioner_product(l->preconditioner, product, product));
+    memcpy(l->before, l->vector, (size_t)size * sizeof *l->before);
+    memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
+}
+
+enum status system_spectrum(struct solid_system *system, struct preconditioner *p, const double *u,
+                            const double *residual, int most_iterations, const double *start, double *scratch,
+                            struct spectrum *spectrum, struct error *error)
+{
+    SCRATCH double *diagonal = NULL, *off_diagonal = NULL;
+    double last = INFINITY, largest = 0.0;
+    int next_check = first_check;
+    *spectrum = (struct spectrum){.lowest = INFINITY};
+    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, most_iterations, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, most_iterations, error));
+    struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
+    if (!lanczos_begin(&l)) {
+        spectrum->lowest = spectrum->largest = 1.0;
+        return STATUS_OK;
+    }
+    for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
+        lanczos_step(&l, k, diagonal, off_diagonal);
+        largest = fmax(largest, diagonal[k]);
+        spectrum->iterations = k + 1;
+        if (k + 1 == next_check || k + 1 == most_iterations || !(l.norm > 1e-12 * largest)) {
+            double value = least_eigenvalue(k + 1, diagonal, off_diagonal);
+            bool is_settled = enough(k + 1, largest, value) && last - value < settled_change * value;
+            spectrum->lowest = value;
+            spectrum->largest = largest_eigenvalue(k + 1, diagonal, off_diagonal);
+            if (is_settled || value < least_told * largest) {
+                break;
+            }
+            last = value;
+            next_check = (int)ceil(next_check * check_growth);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status system_unstable_mode(struct solid_system *system, struct preconditioner *p, const double *u,
+                                 const double *residual, const struct spectrum *spectrum, const double *start,
+                                 double *scratch, struct stability *stability, struct error *error)
+{
+    int count = spectrum->iterations;
+    int64_t size = system->node_count * system->dim;
+    SCRATCH double *diagonal = NULL, *off_diagonal = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
+    *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
+    if (!(spectrum->lowest < least_told * spectrum->largest)) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&share, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pivot, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mode, size, error));
+    struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
+    (void)lanczos_begin(&l);
+    for (int k = 0; k < count; k++) { /* the matrix first, */
+        lanczos_step(&l, k, diagonal, off_diagonal);
+    }
+    least_eigenvector(count, diagonal, off_diagonal, spectrum->lowest, pivot, share);
+    l = lanczos_at(system, p, u, residual, start, scratch);
+    (void)lanczos_begin(&l);
+    for (int k = 0; k < count; k++) { /* then its vectors, of which the mode is a sum */
+        lanczos_step(&l, k, diagonal, off_diagonal);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] += share[k] * l.before[i];
+        }
+    }
+    stability->least = -INFINITY;
+    for (int way = 0; way < 2; way++) { /* a contact that opens or closes does so one way */
+        l = lanczos_at(system, p, u, residual, mode, scratch);
+        (void)lanczos_begin(&l);
+        lanczos_step(&l, 0, diagonal, off_diagonal);
+        stability->least = fmax(stability->least, diagonal[0] / spectrum->largest);
+        for (int64_t i = 0; i < size; i++) {
+            mode[i] = -mode[i];
+        }
+    }
+    stability->least = stability->least < least_told ? stability->least : 0.0;
+    stability->node = most_moved(system->dim, system->node_count, mode);
+    return STATUS_OK;
+}

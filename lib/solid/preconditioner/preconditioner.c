@@ -1,0 +1,353 @@
+#include "solid/preconditioner/preconditioner_private.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include "solid/contact/contact_between.h"
+#include "solid/system/rigid_modes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Nodes for each field at least. */
+static const int64_t nodes_per_coarse_field = 8;
+/* Of the coarse space at most: each costs an evaluation at the begin, and when the body has stiffened. So
+ * there are up to 16 centres in two dimensions and 8 in three. */
+static const int64_t most_unknowns = 96;
+
+enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
+
+static int64_t centre_count(const struct solid_system *system)
+{
+    int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
+    int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    return count < most ? count : most;
+}
+
+/* L^-T Z of the scalar coarse fields, by rows. */
+static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
+{
+    const struct ranks *ranks = p->factor.ranks;
+    int64_t nodes = p->node_count, *first = NULL;
+    int field[COARSE_MOST_AT_NODE];
+    double value[COARSE_MOST_AT_NODE];
+    RETURN_IF_ERROR(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
+    first = p->field_first;
+    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
+    for (int64_t n = 0; n < nodes; n++) {
+        int count = coarse_space_at_node(&p->coarse, n, field, value);
+        for (int k = 0; k < count; k++) {
+            p->inverse_fields[field[k] * nodes + n] = value[k];
+        }
+    }
+    int64_t begin = first[ranks_rank(ranks)], end = first[ranks_rank(ranks) + 1];
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int64_t k = begin; k < end; k++) {
+        inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
+    }
+    ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
+    return STATUS_OK;
+}
+
+static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
+{
+    RETURN_IF_ERROR(inverse_stiffness_factor(system, &p->factor, error));
+    RETURN_IF_ERROR(inverse_stiffness_rows(&p->factor, &system->rows, &p->factor_rows, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
+    system_relaxation_mass(system, true, p->at_rest);
+    RETURN_IF_ERROR(transform_fields(p, system->body.threads, error));
+    return STATUS_OK;
+}
+
+/* The coarse fields at the corners opposite to points of contacts. */
+static enum status take_fields_opposite(const struct solid_system *system, struct preconditioner *p,
+                                        struct error *error)
+{
+    int64_t corners = 0, at = 0, count = p->coarse.count;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        corners += contact_between_corners(&system->contacts[c]);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&p->opposite, corners * count, error));
+    for (int64_t c = 0; c < system->contact_count && count > 0; c++) {
+        for (int64_t v = 0; v < contact_between_corners(&system->contacts[c]); v++, at++) {
+            struct average average = contact_between_corner(&system->contacts[c], v);
+            preconditioner_add_fields(p, &average, p->opposite + at * count);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
+                                 struct error *error)
+{
+    int64_t cells;
+    *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
+    p->has_rigid_mode = system_has_rigid_mode(system);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        p->contact_node_count += contact_nodes(&system->contacts[c])->count;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&p->mass, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
+    RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
+                                       coarse ? centre_count(system) : 0, &p->coarse, error));
+    p->size = p->coarse.count * p->dim;
+    cells = p->size * p->size;
+    RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->creased, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->turned, p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->idle, 2 * p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->patience, 2 * p->contact_node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->free_weight, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
+    RETURN_IF_ERROR(take_fields_opposite(system, p, error));
+    if (coarse && system_has_inverse(system)) {
+        RETURN_IF_ERROR(build_inverse(system, p, error));
+    }
+    return ranks_share(p->factor.ranks, p->size, NULL, &p->column_first, error);
+}
+
+void preconditioner_free(struct preconditioner *p)
+{
+    constraint_free(&p->constraint);
+    coarse_space_free(&p->coarse);
+    inverse_factor_free(&p->factor);
+    constraint_rows_free(&p->factor_rows);
+    FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
+             p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
+             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->contacts, p->impact,
+             p->pushed, p->opposite);
+    *p = (struct preconditioner){0};
+}
+
+/* y = matrix x, the matrix symmetric */
+static void multiply(int64_t n, const double *matrix, const double *x, double *restrict y)
+{
+    memset(y, 0, (size_t)n * sizeof *y);
+    for (int64_t k = 0; k < n; k++) {
+        for (int64_t i = 0; i < n; i++) {
+            y[i] += x[k] * matrix[k * n + i];
+        }
+    }
+}
+
+/* y = D^-1 x */
+static void divide_by_mass(const struct preconditioner *p, const double *x, double *y)
+{
+    for (int64_t n = 0; n < p->node_count; n++) {
+        double inverse = 1.0 / p->mass[n];
+        for (int64_t i = n * p->dim; i < (n + 1) * p->dim; i++) {
+            y[i] = inverse * x[i];
+        }
+    }
+}
+
+void preconditioner_smooth(struct preconditioner *p, const double *force, double *result)
+{
+    const struct inverse_factor *inverse = &p->factor;
+    double *on_inverse = p->on_inverse;
+    if (inverse->rows.row_count == 0) {
+        divide_by_mass(p, force, result);
+        return;
+    }
+    inverse_factor_apply(inverse, p->dim, force, on_inverse);
+    divide_by_mass(p, on_inverse, on_inverse);
+    inverse_factor_apply_transposed(inverse, p->dim, on_inverse, result);
+}
+
+/* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
+ */
+static void release_rows(const struct preconditioner *p, const double *values, double *amount)
+{
+    const struct constraint_rows *rows = p->constraint.rows;
+    const struct ranks *ranks = p->factor.ranks;
+    const int64_t *first = p->column_first + ranks_rank(ranks);
+    int64_t columns = first[1] - first[0];
+    struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
+        for (int64_t r = 0; r < rows->count; r++) {
+            const double *held = p->held + r * p->size;
+            for (int64_t k = begin; k < end && values[r] != 0.0; k++) {
+                amount[k] -= held[k] * values[r];
+            }
+        }
+    }
+    ranks_gather(ranks, amount, sizeof *amount, p->column_first);
+}
+
+void preconditioner_restrict_force(struct preconditioner *p, const double *force, double *acceleration,
+                                   double *amount)
+{
+    const struct constraint_rows *rows = p->constraint.rows;
+    double *seen = p->constraint.multiplier;
+    preconditioner_smooth(p, force, acceleration);
+    if (p->size > 0) {
+        coarse_space_restrict(&p->coarse, NULL, force, amount);
+    }
+    if (rows == NULL) {
+        return;
+    }
+    constraint_values(&p->constraint, acceleration, seen);
+    release_rows(p, seen, amount);
+}
+
+void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
+{
+    struct constraint *constraint = &p->constraint;
+    const struct constraint_rows *rows = constraint->rows;
+    double *multiplier = constraint->multiplier, *solved = p->amount + p->size;
+    preconditioner_restrict_force(p, force, acceleration, p->amount);
+    if (p->size > 0) {
+        multiply(p->size, p->inverse, p->amount, solved);
+        coarse_space_prolongate(&p->coarse, solved, acceleration);
+    }
+    if (rows == NULL || rows->count == 0) {
+        return;
+    }
+    constraint_solve(constraint, multiplier);
+#pragma omp parallel for schedule(static)                                                                    \
+    num_threads(chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads)
+    for (int64_t r = 0; r < rows->count; r++) {
+        const double *held = p->held + r * p->size;
+        double sum = multiplier[r];
+        for (int64_t k = 0; k < p->size; k++) {
+            sum += held[k] * solved[k];
+        }
+        multiplier[r] = -sum;
+    }
+    constraint_spread(constraint, multiplier, acceleration);
+}
+
+/* L^-T move, into scratch; or the move itself. */
+static const double *on_inverse(const struct preconditioner *p, const double *move, double *scratch)
+{
+    if (p->factor.rows.row_count == 0) {
+        return move;
+    }
+    memcpy(scratch, move, (size_t)(p->node_count * p->dim) * sizeof *move);
+    inverse_factor_solve_transposed(&p->factor, p->dim, scratch);
+    return scratch;
+}
+
+/* x . D y */
+static double weighted_product(const struct preconditioner *p, const double *x, const double *y)
+{
+    int dim = p->dim;
+    double sum = 0.0;
+    for (int64_t n = 0; n < p->node_count; n++) {
+        sum += p->mass[n] * vector_dot(dim, x + n * dim, y + n * dim);
+    }
+    return sum;
+}
+
+/* amount[size] = Z^T B^-1 move = (L^-T Z)^T D L^-T move, of moved = L^-T move. */
+static void restrict_move(const struct preconditioner *p, const double *moved, double *amount)
+{
+    int dim = p->dim;
+    int64_t nodes = p->node_count;
+    if (p->factor.rows.row_count == 0) {
+        coarse_space_restrict(&p->coarse, p->mass, moved, amount);
+        return;
+    }
+    const struct ranks *ranks = p->factor.ranks;
+    const int64_t *first = p->field_first + ranks_rank(ranks);
+#pragma omp parallel for schedule(static)                                                                    \
+    num_threads(chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads)
+    for (int64_t k = first[0]; k < first[1]; k++) {
+        const double *field = p->inverse_fields + k * nodes;
+        double sum[3] = {0.0, 0.0, 0.0};
+        for (int64_t n = 0; n < nodes; n++) {
+            double weight = p->mass[n] * field[n];
+            for (int a = 0; a < dim; a++) {
+                sum[a] += weight * moved[n * dim + a];
+            }
+        }
+        memcpy(amount + k * dim, sum, (size_t)dim * sizeof *sum);
+    }
+    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, p->field_first);
+}
+
+/* Both moves in terms of L. */
+static void transform_both(struct preconditioner *p, const double **x, const double **y)
+{
+    double *scratch = p->on_inverse;
+    bool same = *x == *y;
+    *x = on_inverse(p, *x, scratch);
+    *y = same ? *x : on_inverse(p, *y, scratch + p->node_count * p->dim);
+}
+
+double preconditioner_product_diagonal(struct preconditioner *p, const double *x, const double *y)
+{
+    transform_both(p, &x, &y);
+    return weighted_product(p, x, y);
+}
+
+double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
+{
+    double *amount = p->amount, *solved = p->amount + p->size;
+    transform_both(p, &x, &y);
+    double sum = weighted_product(p, x, y);
+    if (p->size > 0) {
+        restrict_move(p, x, amount);
+        multiply(p->size, p->capacitance_inverse, amount, solved);
+        if (y != x) {
+            restrict_move(p, y, amount);
+        }
+        for (int64_t k = 0; k < p->size; k++) {
+            sum -= amount[k] * solved[k];
+        }
+    }
+    return sum;
+}
+
+void preconditioner_momentum(struct preconditioner *p, const double *velocity, double *amount,
+                             double *momentum)
+{
+    const double *x = velocity, *y = velocity;
+    transform_both(p, &x, &y);
+    restrict_move(p, x, momentum);
+    if (p->constraint.rows != NULL) {
+        constraint_values(&p->constraint, velocity, p->constraint.multiplier);
+        release_rows(p, p->constraint.multiplier, momentum);
+    }
+    multiply(p->size, p->capacitance_inverse, momentum, amount);
+    multiply(p->size, p->free_weight, amount, p->amount);
+    for (int64_t k = 0; k < p->size; k++) {
+        momentum[k] -= p->amount[k];
+    }
+}
+
+void preconditioner_prolongate(struct preconditioner *p, const double *amount, double *field)
+{
+    memset(field, 0, (size_t)(p->node_count * p->dim) * sizeof *field);
+    coarse_space_prolongate(&p->coarse, amount, field);
+    constraint_project(&p->constraint, NULL, field);
+}
+
+enum status preconditioner_state(struct preconditioner *p, const struct state *state, struct error *error)
+{
+    const struct state_value values[] = {
+        {"mass", STATE_NUMBERS, p->mass, p->node_count},
+        {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
+        {"body", STATE_NUMBERS, p->body, p->size * p->size},
+        {"measured", STATE_NUMBERS, &p->measured_mass, 1},
+        {"touching", STATE_FLAGS, p->active, p->contact_node_count},
+        {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
+        {"creased", STATE_FLAGS, p->creased, p->contact_node_count},
+        {"turned", STATE_FLAGS, p->turned, p->contact_node_count},
+        {"idle", STATE_COUNTS, p->idle, 2 * p->contact_node_count},
+        {"patience", STATE_COUNTS, p->patience, 2 * p->contact_node_count},
+    };
+    return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
+}

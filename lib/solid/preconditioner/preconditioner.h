@@ -1,0 +1,124 @@
+/* The fictitious mass of a relaxation: a preconditioner, since a state at rest does not depend on the mass
+ * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
+ *
+ * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
+ * step, and the modes of the lowest frequencies determine the number of steps. On a few smooth fields Z
+ * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto motions that
+ * satisfy the homogeneous conditions, and A made of the stiffness Z^T P^T K P Z (below equation (25)),
+ *
+ *   M^-1 = P (B + Z A^-1 Z^T) P^T
+ *
+ * where, with the constraint rows G and S = G B G^T, P^T f = f - G^T S^-1 G B f: one product G B f gives both
+ * the amounts of the coarse fields and the constraint forces. By the Woodbury formula
+ *
+ *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
+ *
+ * for x and y that satisfy the homogeneous conditions. Of smoothed cells B = L^T D^-1 L, with the factor L of
+ * inverse_stiffness.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
+ *
+ * so that the slowest modes left are those that the coarse fields do not resolve. For linear systems this is
+ * a two-level additive preconditioner with deflated constraints. Any positive definite A is admissible. Its
+ * contact part must be updated as contacts close, because a mode that suddenly becomes stiffer than A would
+ * be unstable.
+ */
+#pragma once
+
+#include "base/state.h"
+#include "solid/preconditioner/coarse_space.h"
+#include "solid/preconditioner/inverse_stiffness.h"
+#include "solid/system/system.h"
+
+struct preconditioner {
+    int dim;
+    int64_t node_count;
+    double *stiffness;                  /* node_count: that D was set from, N/m (2D: N/m2), */
+    double *at_rest;                    /* and with an inverse factor what it is at rest */
+    double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
+    struct inverse_factor factor;       /* node_count 0: none */
+    struct constraint_rows factor_rows; /* G L^T */
+    double *inverse_fields;             /* coarse.count rows of node_count: L^-T of the coarse fields */
+    int64_t *field_first;               /* of several processes: the fields that each multiplies with, */
+    int64_t *column_first;              /* and the columns of the matrices that it computes */
+    double *on_inverse;                 /* 2 * node_count * dim: scratch */
+    struct constraint constraint;       /* with D */
+    struct coarse_space coarse;         /* count 0: none, M = D */
+    int64_t size;                       /* fields.count * dim: rows and columns of the matrices */
+    double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
+                     N/m2) */
+    double measured_mass; /* sum of D when it was measured */
+    bool has_rigid_mode;  /* the conditions leave the body free to move as a whole */
+    bool *active;         /* contact nodes of all contacts: those that A counts in (NULL: none), */
+    double *normal;       /* contact_node_count * dim: and the surface's normals there */
+    bool *creased; /* contact_node_count: held in all directions, as it lies in a crease of the surface */
+    bool *turned;  /* contact_node_count: it has turned (contact.h) since A last left nodes out */
+    int64_t *idle; /* contact_node_count, as active nodes, and as many, as creased ones: checks in a row in
+                      which the node could have been left out, */
+    int64_t *patience; /* and how many of them it stays counted in */
+    int64_t contact_node_count;
+    double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
+    double *weight;      /* Z^T D Z */
+    double *free_weight; /* Z^T D P Z */
+    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
+    double *contacts;            /* stiffness along the coarse fields of the contact nodes that A counts in */
+    bool *pushed;                /* contact_node_count: those that A counts in anew; scratch */
+    double *impact;              /* size * size + 2 * size: scratch */
+    double *inverse;             /* A^-1 */
+    double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
+    double *amount;              /* 2 * size: scratch */
+};
+
+/* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
+MUST_CHECK enum status preconditioner_build(struct solid_system *system, bool coarse,
+                                            struct preconditioner *preconditioner, struct error *error);
+void preconditioner_free(struct preconditioner *preconditioner);
+
+/* Set D from system_relaxation_mass at the system's last evaluation, and what depends on it. */
+MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditioner,
+                                               const struct solid_system *system, const double *stiffness,
+                                               struct error *error);
+
+/* Measure the stiffness along the coarse fields at u by differences. This takes size + 1 evaluations of the
+ * body, so that its last evaluation is not the one before. A follows the contacts. */
+MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditioner,
+                                              struct solid_system *system, const double *u,
+                                              struct error *error);
+
+/* Whether D has changed so much that the coarse fields should be measured again. */
+bool preconditioner_is_stale(const struct preconditioner *preconditioner);
+
+/* force += K_c move, with the stiffness K_c that the contact nodes counted in A may add to K at the last
+ * evaluation: that of the nodes that are open and may close, and that along the surface of nodes in a crease.
+ * move, force: node_count * dim. */
+void preconditioner_resist_open(const struct preconditioner *preconditioner,
+                                const struct solid_system *system, const double *move, double *force);
+
+/* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
+ * that are no longer near are left out when `leave`. True when M has changed.
+ *
+ * Where nodes are counted in, `velocity` keeps its momentum along the coarse fields, as in a plastic impact;
+ * where they are left out it keeps its value. So the kinetic energy does not rise: a body that arrived with
+ * the mass of a free one and kept its velocity would go on with the mass of one that is held, which may be
+ * hundreds of times as large. NULL: a body at rest. field[node_count * dim]: scratch, or NULL with it. */
+bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
+                           bool leave, double *velocity, double *field);
+
+/* acceleration = M^-1 force. */
+void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);
+
+/* result = B force */
+void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
+
+/* x . B^-1 y */
+double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
+                                       const double *y);
+
+/* x . M y for x and y that satisfy the homogeneous conditions. */
+double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
+
+/* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
+ * preconditioner_restore.
+ */
+MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
+                                            struct error *error);
+MUST_CHECK enum status preconditioner_restore(struct preconditioner *preconditioner,
+                                              const struct solid_system *system, struct error *error);

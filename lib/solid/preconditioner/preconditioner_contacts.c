@@ -1,0 +1,254 @@
+/* The mass along the coarse fields follows the contacts. */
+#include "solid/preconditioner/preconditioner_private.h"
+
+#include "base/dense.h"
+#include "base/vector.h"
+#include "solid/contact/contact_between.h"
+
+#include <string.h>
+
+static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
+
+/* matrix += stiffness row row^T */
+static void add_square(int64_t size, double stiffness, const double *row, double *matrix)
+{
+    for (int64_t i = 0; i < size; i++) {
+        double part = stiffness * row[i];
+        for (int64_t k = 0; k < size && part != 0.0; k++) {
+            matrix[i * size + k] += part * row[k];
+        }
+    }
+}
+
+/* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
+static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, int64_t *corner,
+                          double *weight)
+{
+    while (contact_between_part(contact, a, (*i)++, corner, weight)) {
+        if (*weight != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* field[coarse.count]: the coarse fields' means at contact node a, less what is opposite: opposite[corners *
+ * coarse.count]. */
+static void take_fields(const struct preconditioner *p, const struct contact *contact, int64_t a,
+                        const double *opposite, double *field)
+{
+    struct average average = average_of_boundary(contact_nodes(contact), a);
+    int64_t count = p->coarse.count, corner;
+    double weight;
+    memset(field, 0, (size_t)count * sizeof *field);
+    preconditioner_add_fields(p, &average, field);
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        for (int64_t k = 0; k < count; k++) {
+            field[k] -= weight * opposite[corner * count + k];
+        }
+    }
+}
+
+void preconditioner_add_contacts(const struct preconditioner *p, const struct solid_system *system,
+                                 const bool *only, double *matrix)
+{
+    double *row = p->amount, *field = p->amount + p->size;
+    const double *opposite = p->opposite;
+    int64_t dim = p->dim, at = 0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *averages = contact_nodes(contact);
+        for (int64_t a = 0; a < averages->count; a++, at++) {
+            if (!p->active[at] || (only != NULL && !only[at])) {
+                continue;
+            }
+            double stiffness = contact_node(contact, a).stiffness * averages->area[a];
+            bool creased = p->creased[at];
+            take_fields(p, contact, a, opposite, field);
+            for (int64_t d = 0; d < (creased ? dim : 1); d++) {
+                const double axis[3] = {d == 0, d == 1, d == 2};
+                const double *direction = creased ? axis : p->normal + at * dim;
+                for (int64_t i = 0; i < p->size; i++) {
+                    row[i] = field[i / dim] * direction[i % dim];
+                }
+                add_square(p->size, stiffness, row, matrix);
+            }
+        }
+        opposite += contact_between_corners(contact) * p->coarse.count;
+    }
+}
+
+/* mean[dim] -= the field opposite contact node a. */
+static void take_opposite(const struct contact *contact, int64_t a, const double *field, double *mean)
+{
+    int64_t corner;
+    double weight, there[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        struct average average = contact_between_corner(contact, corner);
+        average_take(&average, contact->dim, field, there);
+        for (int c = 0; c < contact->dim; c++) {
+            mean[c] -= weight * there[c];
+        }
+    }
+}
+
+/* The transpose. */
+static void spread_opposite(const struct contact *contact, int64_t a, const double *amount, double *field)
+{
+    int64_t corner;
+    double weight, there[3];
+    for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
+        struct average average = contact_between_corner(contact, corner);
+        for (int c = 0; c < contact->dim; c++) {
+            there[c] = -weight * amount[c];
+        }
+        average_spread(&average, contact->dim, there, field);
+    }
+}
+
+void preconditioner_resist_open(const struct preconditioner *p, const struct solid_system *system,
+                                const double *move, double *force)
+{
+    int64_t dim = p->dim, at = 0;
+    if (p->active == NULL) {
+        return;
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *averages = contact_nodes(contact);
+        for (int64_t a = 0; a < averages->count; a++, at++) {
+            if (!p->active[at]) {
+                continue;
+            }
+            struct contact_node node = contact_node(contact, a);
+            struct average average = average_of_boundary(averages, a);
+            const double *normal = p->normal + at * dim;
+            double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];
+            average_take(&average, (int)dim, move, mean);
+            take_opposite(contact, a, move, mean);
+            double along = vector_dot((int)dim, mean, normal);
+            for (int64_t i = 0; i < dim; i++) {
+                double aside = p->creased[at] && !node.turned ? mean[i] - along * normal[i] : 0.0;
+                on_node[i] = stiffness * ((1.0 - node.pressed) * along * normal[i] + aside);
+            }
+            average_spread(&average, (int)dim, on_node, force);
+            spread_opposite(contact, a, on_node, force);
+        }
+    }
+}
+
+/* Whether the normal has turned since the contact node was counted in. */
+static bool has_turned(const struct contact_node *node, int dim, const double *counted_normal)
+{
+    return vector_dot(dim, node->normal, counted_normal) < least_cosine;
+}
+
+/* At a check, `i` as in idle: whether a contact node that no longer needs to be counted in is left out. Each
+ * time it has been, it stays for twice as many checks: a node that is left out too soon comes back, and as M
+ * changes each time, that could go on for ever. */
+static bool leaves(struct preconditioner *p, int64_t i)
+{
+    int64_t *idle = &p->idle[i], *patience = &p->patience[i];
+    if (*idle < *patience) {
+        ++*idle;
+        return false;
+    }
+    *idle = 0;
+    *patience = *patience > 0 ? 2 * *patience : 1;
+    return true;
+}
+
+/* Set whether contact node `at` is taken to lie in a crease, where it is held in all directions: it has
+ * turned twice in a short time. A node that slides from facet to facet turns only once. Returns whether this
+ * has changed. */
+static bool follow_crease(struct preconditioner *p, const struct contact_node *node, int64_t at, bool leave)
+{
+    bool *turned = &p->turned[at], *creased = &p->creased[at], was = *creased;
+    int64_t i = p->contact_node_count + at;
+    bool again = *turned && node->turned;
+    *turned = *turned || node->turned;
+    p->idle[i] = *turned ? 0 : p->idle[i];
+    *creased = again || (*creased && (!leave || *turned || !leaves(p, i)));
+    *turned = *turned && !leave;
+    return *creased != was;
+}
+
+/* Count contact node a in or out; returns whether A changes. In a body with free rigid-body modes nodes far
+ * from the surface stay counted in, as it may come to rest on them. */
+static bool follow_node(struct preconditioner *p, const struct contact *contact, int64_t a, int64_t at,
+                        bool leave)
+{
+    double *normal = p->normal + at * contact->dim;
+    struct contact_node node = contact_node(contact, a);
+    bool *counts = &p->active[at], pressed = node.pressure > 0.0;
+    bool creased = follow_crease(p, &node, at, leave);
+    if (!pressed && !p->has_rigid_mode) {
+        bool left = *counts && leave && leaves(p, at);
+        *counts = *counts && !left;
+        return left || creased;
+    }
+    p->idle[at] = 0;
+    if (*counts ? !pressed || !has_turned(&node, contact->dim, normal) : !pressed && !leave) {
+        return creased;
+    }
+    *counts = true;
+    memcpy(normal, node.normal, (size_t)contact->dim * sizeof *normal);
+    return true;
+}
+
+/* Count all contact nodes in or out, and set which ones A counts in anew or with another normal. `pushes`:
+ * whether there are such. Returns whether A changes. */
+static bool follow_nodes(struct preconditioner *p, const struct solid_system *system, bool leave,
+                         bool *pushes)
+{
+    bool changed = false;
+    int64_t at = 0;
+    *pushes = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++, at++) {
+            bool changes = follow_node(p, &system->contacts[c], a, at, leave);
+            p->pushed[at] = changes && p->active[at];
+            *pushes = *pushes || p->pushed[at];
+            changed = changed || changes;
+        }
+    }
+    for (int64_t c = 0; c < system->contact_count && changed; c++) {
+        contact_between_take(&system->contacts[c]);
+    }
+    return changed;
+}
+
+/* The momentum A a of the velocity along the coarse fields with the A that counts in both what it did and
+ * what it does now: y + P Z (A'^-1 A a - a). Where A' falls to what A becomes, the velocity stays. */
+static void keep_momentum(struct preconditioner *p, const struct solid_system *system, double *velocity,
+                          double *field)
+{
+    double *matrix = p->impact, *amount = matrix + p->size * p->size, *change = amount + p->size;
+    preconditioner_momentum(p, velocity, amount, change);
+    preconditioner_add_contacts(p, system, p->pushed, p->contacts);
+    if (preconditioner_factorise(p, matrix) == 0.0) {
+        return;
+    }
+    dense_solve(p->size, matrix, change);
+    for (int64_t k = 0; k < p->size; k++) {
+        change[k] -= amount[k];
+    }
+    preconditioner_prolongate(p, change, field);
+    for (int64_t i = 0; i < p->node_count * p->dim; i++) {
+        velocity[i] += field[i];
+    }
+}
+
+bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave,
+                           double *velocity, double *field)
+{
+    bool pushes;
+    if (!follow_nodes(p, system, leave, &pushes) || p->size == 0) {
+        return false;
+    }
+    if (pushes && velocity != NULL && p->inverse[0] > 0.0) { /* else there is no coarse space */
+        keep_momentum(p, system, velocity, field);
+    }
+    preconditioner_invert(p, system);
+    return true;
+}

@@ -1,0 +1,153 @@
+/* The diagonal mass, and the matrices of the mass and of the conditions on the coarse fields. */
+#include "solid/preconditioner/preconditioner_private.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
+
+/* weight = (L^-T Z)^T D L^-T Z */
+static void weigh_inverse_fields(struct preconditioner *p)
+{
+    int64_t dim = p->dim, size = p->size, nodes = p->node_count;
+    for (int64_t i = 0; i < p->coarse.count; i++) {
+        const double *first = p->inverse_fields + i * nodes;
+        for (int64_t k = 0; k <= i; k++) {
+            const double *second = p->inverse_fields + k * nodes;
+            double sum = 0.0;
+            for (int64_t n = 0; n < nodes; n++) {
+                sum += p->mass[n] * first[n] * second[n];
+            }
+            for (int64_t a = 0; a < dim; a++) {
+                p->weight[(i * dim + a) * size + k * dim + a] =
+                    p->weight[(k * dim + a) * size + i * dim + a] = sum;
+            }
+        }
+    }
+}
+
+/* weight = Z^T B^-1 Z: directions do not couple. */
+static void weigh_coarse_space(struct preconditioner *p)
+{
+    int64_t dim = p->dim, size = p->size;
+    double *weight = p->weight, value[COARSE_MOST_AT_NODE];
+    int field[COARSE_MOST_AT_NODE];
+    memset(weight, 0, (size_t)(size * size) * sizeof *weight);
+    if (p->factor.rows.row_count > 0) {
+        weigh_inverse_fields(p);
+        return;
+    }
+    for (int64_t n = 0; n < p->node_count; n++) {
+        int count = coarse_space_at_node(&p->coarse, n, field, value);
+        for (int i = 0; i < count; i++) {
+            for (int k = 0; k < count; k++) {
+                weight[field[i] * dim * size + field[k] * dim] += p->mass[n] * value[i] * value[k];
+            }
+        }
+    }
+    for (int64_t i = 0; i < size; i += dim) {
+        for (int64_t a = 1; a < dim; a++) {
+            for (int64_t k = 0; k < size; k += dim) {
+                weight[(i + a) * size + k + a] = weight[i * size + k];
+            }
+        }
+    }
+}
+
+void preconditioner_add_fields(const struct preconditioner *p, const struct average *average, double *field)
+{
+    int number[COARSE_MOST_AT_NODE];
+    double value[COARSE_MOST_AT_NODE];
+    for (int64_t i = 0; i < average->length; i++) {
+        int count = coarse_space_at_node(&p->coarse, average->idx[i], number, value);
+        for (int k = 0; k < count; k++) {
+            field[number[k]] += average->phi[i] * value[k];
+        }
+    }
+}
+
+/* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid.
+ * Each process computes some columns. */
+static enum status weigh_conditions(struct preconditioner *p, struct error *error)
+{
+    const struct ranks *ranks = p->factor.ranks;
+    const struct constraint_rows *rows = p->constraint.rows;
+    const int64_t *first = p->column_first;
+    int64_t size = p->size;
+    double *field = p->amount;
+    SCRATCH double *conditions = NULL, *solved = NULL; /* solved: by columns */
+    memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
+    RETURN_IF_ERROR(NEW_ARRAY(&conditions, rows->count * size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&solved, rows->count * size, error));
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        memset(field, 0, (size_t)p->coarse.count * sizeof *field);
+        preconditioner_add_fields(p, &average, field);
+        for (int64_t i = 0; i < size; i++) {
+            conditions[r * size + i] = field[i / p->dim] * rows->direction[r * p->dim + i % p->dim];
+        }
+    }
+    for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
+        double *weight = p->free_weight + k * size; /* or row: symmetric */
+        double *column = solved + k * rows->count;
+        for (int64_t r = 0; r < rows->count; r++) {
+            column[r] = conditions[r * size + k];
+        }
+        envelope_solve(&p->constraint.factor, column);
+        for (int64_t r = 0; r < rows->count; r++) {
+            for (int64_t i = 0; i < size && column[r] != 0.0; i++) {
+                weight[i] -= column[r] * conditions[r * size + i];
+            }
+        }
+    }
+    ranks_gather(ranks, p->free_weight, (size_t)size * sizeof(double), first);
+    ranks_gather(ranks, solved, (size_t)rows->count * sizeof(double), first);
+    for (int64_t r = 0; r < rows->count; r++) {
+        for (int64_t k = 0; k < size; k++) {
+            p->held[r * size + k] = solved[k * rows->count + r];
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status preconditioner_set_mass(struct preconditioner *p, const struct solid_system *system,
+                                    const double *stiffness, struct error *error)
+{
+    for (int64_t n = 0; n < p->node_count; n++) {
+        p->stiffness[n] = stiffness[n];
+        p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
+    }
+    return preconditioner_restore(p, system, error);
+}
+
+enum status preconditioner_restore(struct preconditioner *p, const struct solid_system *system,
+                                   struct error *error)
+{
+    constraint_free(&p->constraint);
+    bool within = p->factor.rows.row_count > 0;
+    RETURN_IF_ERROR(system_constrain(system, p->mass, within ? &p->factor : NULL,
+                                     within ? &p->factor_rows : NULL, &p->constraint, error));
+    if (p->size > 0) {
+        weigh_coarse_space(p);
+        RETURN_IF_ERROR(weigh_conditions(p, error));
+        preconditioner_invert(p, system);
+    }
+    return STATUS_OK;
+}
+
+double preconditioner_sum_of_mass(const struct preconditioner *p)
+{
+    double sum = 0.0;
+    for (int64_t n = 0; n < p->node_count; n++) {
+        sum += p->mass[n];
+    }
+    return sum;
+}
+
+bool preconditioner_is_stale(const struct preconditioner *p)
+{
+    double change = preconditioner_sum_of_mass(p) / p->measured_mass;
+    return p->size > 0 && (change > most_change || change < 1.0 / most_change);
+}

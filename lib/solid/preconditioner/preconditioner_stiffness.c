@@ -1,0 +1,106 @@
+/* The stiffness of the coarse space: that of the body, by differences; and the inverses. */
+#include "solid/preconditioner/preconditioner_private.h"
+
+#include "base/dense.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Eigenvalues of the coarse space by the largest, which is about 1: a margin for stiffening until the
+ * stiffness is measured again. */
+static const double share = 0.25;
+/* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
+ */
+static const double kept = 1e-4;
+enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
+/* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
+static const double least_free = 0.01;
+static const double strain = 1e-6; /* of the differences that stiffness is measured with */
+
+/* Part of the coarse fields' mass that the conditions leave free. */
+static double free_part(const struct preconditioner *p)
+{
+    double all = 0.0, part = 0.0;
+    for (int64_t k = 0; k < p->size * p->size; k += p->size + 1) {
+        all += p->weight[k];
+        part += p->free_weight[k];
+    }
+    return part / all;
+}
+
+double preconditioner_factorise(const struct preconditioner *p, double *matrix)
+{
+    double keep = kept;
+    /* Of an unstable body the stiffness is indefinite. */
+    for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        for (int64_t i = 0; i < p->size * p->size; i++) {
+            matrix[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i];
+        }
+        if (dense_factorise(p->size, matrix)) {
+            return keep;
+        }
+        keep *= 10.0;
+    }
+    return 0.0;
+}
+
+void preconditioner_invert(struct preconditioner *p, const struct solid_system *system)
+{
+    int64_t cells = p->size * p->size;
+    double *capacitance = p->capacitance_inverse;
+    memset(p->contacts, 0, (size_t)cells * sizeof *p->contacts);
+    preconditioner_add_contacts(p, system, NULL, p->contacts);
+    double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->inverse) : 0.0;
+    for (int64_t i = 0; i < cells; i++) {
+        capacitance[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i] + p->free_weight[i];
+    }
+    if (keep == 0.0 || !dense_factorise(p->size, capacitance)) { /* then no coarse space */
+        memset(p->inverse, 0, (size_t)cells * sizeof *p->inverse);
+        memset(capacitance, 0, (size_t)cells * sizeof *capacitance);
+        return;
+    }
+    dense_invert(p->size, p->inverse);
+    dense_invert(p->size, capacitance);
+}
+
+static void make_symmetric(int64_t n, double *matrix)
+{
+    for (int64_t i = 0; i < n; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            matrix[i * n + k] = matrix[k * n + i] = 0.5 * (matrix[i * n + k] + matrix[k * n + i]);
+        }
+    }
+}
+
+enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
+                                   struct error *error)
+{
+    int64_t values = p->node_count * p->dim;
+    SCRATCH double *at_u = NULL, *moved = NULL, *force = NULL;
+    double epsilon = strain * system_node_spacing(system), *one = p->amount;
+    if (p->size == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&at_u, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&moved, values, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&force, values, error));
+    system_resist(system, u, at_u);
+    for (int64_t k = 0; k < p->size; k++) {
+        memset(one, 0, (size_t)p->size * sizeof *one);
+        one[k] = 1.0;
+        preconditioner_prolongate(p, one, moved);
+        for (int64_t i = 0; i < values; i++) {
+            moved[i] = u[i] + epsilon * moved[i];
+        }
+        system_resist(system, moved, force);
+        for (int64_t i = 0; i < values; i++) {
+            force[i] = (force[i] - at_u[i]) / epsilon;
+        }
+        preconditioner_restrict_force(p, force, moved, p->body + k * p->size);
+    }
+    make_symmetric(p->size, p->body);
+    p->measured_mass = preconditioner_sum_of_mass(p);
+    preconditioner_invert(p, system);
+    return STATUS_OK;
+}

@@ -1,0 +1,300 @@
+#include "solid/preconditioner/scalar_stiffness.h"
+
+#include "base/lists.h"
+#include "base/memory.h"
+#include "solid/body/merged_cells.h"
+#include "solid/system/system.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The points of a contact with a rigid surface. Where facets of the body will touch others is not known; the
+ * time step follows what they add. */
+static int64_t points_of(const struct contact *contact)
+{
+    return contact->between == NULL ? contact->points->count : 0;
+}
+
+/* The bonds: penalties of the conditions, one for each list of rows, then the points of the contacts. */
+static int64_t count_bonds(const struct solid_system *system)
+{
+    int64_t count = system->penalties.list_count;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        count += points_of(&system->contacts[c]);
+    }
+    return count;
+}
+
+/* Bond b, and its stiffness. */
+static struct average bond_at(const struct solid_system *system, int64_t b, double *stiffness)
+{
+    if (b < system->penalties.list_count) {
+        int64_t row = system->penalties.first[b];
+        *stiffness = system->penalty_stiffness[row];
+        return constraint_rows_average(&system->penalties, row);
+    }
+    b -= system->penalties.list_count;
+    int64_t c = 0;
+    for (; b >= points_of(&system->contacts[c]); c++) {
+        b -= points_of(&system->contacts[c]);
+    }
+    *stiffness = system->contacts[c].stiffness[b] * system->contacts[c].points->area[b];
+    return average_of_boundary(system->contacts[c].points, b);
+}
+
+/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are the body's entries.
+ * With several processes the body lacks rows that its cells do not use; they are taken from the tables. */
+static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    double unused;
+    *place = body->node_place;
+    if (f >= stiffness->field_count) {
+        return bond_at(stiffness->system, f - stiffness->field_count, &unused);
+    }
+    const struct sparse *matrix = &body->rows.matrix;
+    int64_t length = matrix->ptr[f + 1] - matrix->ptr[f];
+    if (length > 0 || body->share.ranks == NULL) {
+        *place = NULL;
+        return (struct average){length, matrix->idx + matrix->ptr[f], matrix->value + matrix->ptr[f]};
+    }
+    int64_t faces = averages->given[0].row_count;
+    const struct average_table *table = &averages->given[f < faces ? 0 : 1];
+    int64_t row = table->order[f < faces ? f : f - faces], at = table->ptr[row];
+    return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
+}
+
+/* The fields that node i is in, and its shares there. */
+static struct average fields_of(const struct scalar_stiffness *stiffness, const struct scalar_row *row,
+                                int64_t i)
+{
+    const struct sparse *fields = &row->fields;
+    int64_t r = row->slot[stiffness->system->body.node_place[i]], at = fields->ptr[r];
+    return (struct average){fields->ptr[r + 1] - at, fields->idx + at, fields->value + at};
+}
+
+static enum status list_bonds(struct scalar_stiffness *stiffness, struct error *error)
+{
+    const struct solid_system *system = stiffness->system;
+    FREED_BY(sparse_free) struct sparse by_bond = {0};
+    double unused;
+    int64_t entries = 0, at = 0;
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        entries += bond_at(system, b, &unused).length;
+    }
+    RETURN_IF_ERROR(sparse_new(stiffness->bond_count, system->node_count, entries, &by_bond, error));
+    for (int64_t b = 0; b < stiffness->bond_count; b++) {
+        struct average bond = bond_at(system, b, &stiffness->bond_stiffness[b]);
+        for (int64_t i = 0; i < bond.length; i++, at++) {
+            by_bond.idx[at] = bond.idx[i];
+            by_bond.value[at] = bond.phi[i];
+        }
+        by_bond.ptr[b + 1] = at;
+    }
+    return sparse_transpose(&by_bond, &stiffness->bonds, error);
+}
+
+enum status scalar_stiffness_make(const struct solid_system *system, struct scalar_stiffness *stiffness,
+                                  struct error *error)
+{
+    const struct body *body = &system->body;
+    *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
+    stiffness->field_count = body->cells.averages.row_count;
+    if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
+        return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
+    }
+    RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
+    return list_bonds(stiffness, error);
+}
+
+void scalar_stiffness_free(struct scalar_stiffness *stiffness)
+{
+    sparse_free(&stiffness->bonds);
+    FREE_ALL(stiffness->bond_stiffness, stiffness->range);
+    *stiffness = (struct scalar_stiffness){0};
+}
+
+enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
+                            struct error *error)
+{
+    int64_t nodes = stiffness->system->node_count, fields = stiffness->field_count + stiffness->bond_count;
+    *row = (struct scalar_row){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&row->slot, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->node, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->value, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->at_field, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->on_field, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->sum, nodes, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->touched, fields, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
+    return NEW_ARRAY(&row->field_seen, fields, error);
+}
+
+enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
+                               struct scalar_row *row, struct error *error)
+{
+    sparse_free(&row->fields);
+    return row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count, row->slot,
+                                  &row->fields, error);
+}
+
+void scalar_row_free(struct scalar_row *row)
+{
+    sparse_free(&row->fields);
+    FREE_ALL(row->slot, row->node, row->value, row->at_field, row->on_field, row->sum, row->touched,
+             row->cell_seen, row->field_seen);
+    *row = (struct scalar_row){0};
+}
+
+/* Volume of a cell times the modulus of pressure waves. */
+static double wave_modulus(const struct body *body, int64_t q)
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double shear = material->shear_modulus, bulk = material->bulk_modulus;
+    if (body->averaged) {
+        bulk = fmin(bulk, body->volumes.pressures.most * shear);
+    }
+    return body->weight[q] * (bulk + 4.0 / 3.0 * shear);
+}
+
+/* Volume of a cell times the modulus of the stabilisation. */
+static double stabilisation_modulus(const struct body *body, int64_t q)
+{
+    return body->weight[q] * SMOOTHING_STIFFNESS(body->dim) *
+           body->materials[body->material[q]].shear_modulus;
+}
+
+static void put(const double amount, int64_t f, int64_t i, struct scalar_row *row, int64_t *touched)
+{
+    if (row->field_seen[f] != i + 1) {
+        row->field_seen[f] = (int32_t)(i + 1);
+        row->touched[(*touched)++] = (int32_t)f;
+        row->on_field[f] = 0.0;
+    }
+    row->on_field[f] += amount;
+}
+
+/* The forces of a group of cells, the first of which is q, on the fields at their corners. */
+static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
+                      int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    int dim = body->dim;
+    int rows = FACE_ROWS(dim);
+    int64_t nodes = stiffness->field_count - body->node_count, end = smoothed_cells_group_end(body, q);
+    double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, k_smooth = 0.0, k_off = 0.0;
+    double gradients[MERGED_MOST_CELLS * 12];
+    for (int64_t c = q; c < end; c++) {
+        double *grad_N = gradients + (c - q) * 12, share = smoothed_cells_share(body, c);
+        k_smooth += wave_modulus(body, c);
+        k_off += stabilisation_modulus(body, c);
+        smoothed_cells_linear_gradients(body, c, grad_N);
+        for (int k = 0; k < (dim + 1) * dim; k++) {
+            grad_N[k] *= share;
+        }
+        for (int k = 0; k <= dim; k++) {
+            double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, c, k)];
+            for (int r = 0; r < rows; r++) {
+                mean += row->at_field[smoothed_cells_row(body, c, k, r)] / rows;
+            }
+            for (int a = 0; a < dim; a++) {
+                smooth[a] -= dim * mean * grad_N[k * dim + a];
+                off[a] += (value + dim * mean) * grad_N[k * dim + a];
+            }
+        }
+    }
+    for (int64_t c = q; c < end; c++) {
+        const double *grad_N = gradients + (c - q) * 12; /* times the share */
+        for (int k = 0; k <= dim; k++) {
+            double on_mean = 0.0, on_value = 0.0;
+            for (int a = 0; a < dim; a++) {
+                on_mean -= dim * (k_smooth * smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
+                on_value += k_off * off[a] * grad_N[k * dim + a];
+            }
+            for (int r = 0; r < rows; r++) {
+                put(on_mean / rows, smoothed_cells_row(body, c, k, r), i, row, touched);
+            }
+            put(on_value, nodes + smoothed_cells_node(body, c, k), i, row, touched);
+        }
+    }
+}
+
+/* Force on a node of the body's order, listed in row->node. */
+static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
+{
+    struct scalar_sum *at = &row->sum[node];
+    if (at->row != i + 1) {
+        *at = (struct scalar_sum){.row = i + 1};
+        row->node[row->count++] = node;
+    }
+    at->sum += amount;
+}
+
+/* The forces on the nodes up to i. */
+static void spread(const struct scalar_stiffness *stiffness, int64_t touched, int64_t i,
+                   struct scalar_row *row)
+{
+    const struct body *body = &stiffness->system->body;
+    const int32_t *place;
+    int64_t kept = 0;
+    row->count = 0;
+    for (int64_t t = 0; t < touched; t++) {
+        struct average field = field_at(stiffness, row->touched[t], &place);
+        double force = row->on_field[row->touched[t]];
+        for (int64_t k = 0; k < field.length; k++) {
+            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
+            add_to_node(node, force * field.phi[k], i, row);
+        }
+    }
+    for (int64_t k = 0; k < row->count; k++) {
+        int64_t node = body->node_order[row->node[k]];
+        if (node <= i) {
+            row->node[kept++] = (int32_t)node;
+        }
+    }
+    row->count = kept;
+    qsort(row->node, (size_t)row->count, sizeof *row->node, compare_int32);
+    for (int64_t k = 0; k < row->count; k++) {
+        row->value[k] = row->sum[body->node_place[row->node[k]]].sum;
+    }
+}
+
+/* Add the cells whose corners use field f. */
+static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
+                      int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    const struct field_averages *averages = &body->cells.averages;
+    for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
+        int64_t q =
+            smoothed_cells_group(body, averages->corner[c] % averages->corner_count / (body->dim + 1));
+        if (row->cell_seen[q] != i + 1) {
+            row->cell_seen[q] = (int32_t)(i + 1);
+            add_group(stiffness, q, i, row, touched);
+        }
+    }
+}
+
+void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
+{
+    const struct sparse *bonds = &stiffness->bonds;
+    struct average fields = fields_of(stiffness, row, i);
+    int64_t touched = 0;
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = fields.phi[k];
+    }
+    for (int64_t k = 0; k < fields.length; k++) {
+        add_cells(stiffness, fields.idx[k], i, row, &touched);
+    }
+    for (int64_t k = bonds->ptr[i]; k < bonds->ptr[i + 1]; k++) {
+        int64_t bond = bonds->idx[k];
+        put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, i, row,
+            &touched);
+    }
+    for (int64_t k = 0; k < fields.length; k++) {
+        row->at_field[fields.idx[k]] = 0.0;
+    }
+    spread(stiffness, touched, i, row);
+}

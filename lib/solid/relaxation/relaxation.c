@@ -1,0 +1,335 @@
+#include "solid/relaxation/relaxation_private.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static const int64_t keep_interval = 50;                /* steps between states to go back to */
+static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
+static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
+static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
+/* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
+static const double bulk_limit = 50.0;
+/* An error that stays below this is accepted where contacts act: points that go to and fro between facets
+ * leave one. */
+static const double most_hovering = 1e-3;
+/* Sizes of the body: one that moves farther does not come to rest. */
+static const double most_sizes = 10.0;
+static const int64_t calm_steps = 20; /* after that was mended, before the next look */
+/* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
+static const int iterations = 1, iterations_loading = 2;
+
+/* The residual by its norm r . M^-1 r, the acceleration being in r->scratch: of a stable run it follows the
+ * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to
+ * step, for many steps before points invert. `usual_residual2` follows the norm by less than that. */
+static bool residual_grows(struct relaxation *r)
+{
+    double now2 = 0.0, usual2 = r->usual_residual2;
+    for (int64_t i = 0; i < r->size; i++) {
+        now2 += r->residual[i] * r->scratch[i];
+    }
+    bool grows =
+        usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
+    r->usual_residual2 = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
+    r->usual_residual2 = fmax(r->usual_residual2, usual_fall * usual2);
+    return grows;
+}
+
+/* After the evaluation of a step: let multipliers, the nodal pressures held and those of contacts, take over
+ * what penalties carry. The next step is a check, whose error counts what that leaves. */
+static void augment(struct relaxation *r)
+{
+    int64_t pause = r->report->steps - r->augmented_step;
+    bool pressures = body_is_limited(&r->system->body);
+    if ((r->report->steps + 1) % CHECK_INTERVAL != 0 || pause < 2 * CHECK_INTERVAL ||
+        r->damping * (double)pause * r->time_step < RELAXATION_PAUSE) {
+        return;
+    }
+    bool contacts = r->system->contact_count > 0 && relaxation_contacts_lack(r);
+    if (pressures) {
+        r->steady_augmentations = r->at_full_load > pause ? r->steady_augmentations + 1 : 0;
+        r->pressures_lack =
+            body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
+    }
+    if (contacts) {
+        system_augment_contacts(r->system, r->at_full_load > pause);
+        r->augmentations += r->at_full_load > 0;
+    }
+    if (pressures || contacts) {
+        r->augmented_step = r->report->steps;
+        r->usual_residual2 = 0.0;
+    }
+}
+
+/* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
+static bool step(struct relaxation *r, double *u, bool measure)
+{
+    struct solid_system *system = r->system;
+    double dt = r->time_step, grow = 2.0 + r->damping * dt, keep = (2.0 - r->damping * dt) / grow;
+    struct deformation deformation = system_residual(system, u, r->residual);
+    r->report->force_evaluations++;
+    r->report->least_jacobian = deformation.least_jacobian;
+    if (!(deformation.least_jacobian > 0.0)) {
+        r->report->inverted_point = deformation.point;
+        return false;
+    }
+    system_accept(system);
+    memcpy(r->before, u, (size_t)r->size * sizeof *u);
+    if (preconditioner_follow(&r->preconditioner, system, measure, r->velocity, r->scratch)) {
+        relaxation_note_new_mass(r);
+    }
+    if (measure) { /* an impact is no acceleration */
+        memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
+    }
+    preconditioner_apply(&r->preconditioner, r->residual, r->scratch);
+    r->unstable = residual_grows(r);
+    augment(r);
+    double *move = r->velocity, push = 2.0 * dt / grow;
+    for (int64_t i = 0; i < r->size; i++) {
+        move[i] = dt * (keep * r->velocity[i] + push * r->scratch[i]);
+    }
+    /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
+    double started = clock_seconds();
+    constraint_project(&r->preconditioner.constraint, r->factor_change, move);
+    system->cost.constraints += clock_seconds() - started;
+    for (int64_t i = 0; i < r->size; i++) {
+        u[i] += move[i];
+        r->velocity[i] = move[i] / dt;
+    }
+    if (measure) {
+        /* (2 + c dt) v_new = (2 - c dt) v_old + 2 dt a */
+        for (int64_t i = 0; i < r->size; i++) {
+            r->acceleration[i] =
+                (grow * r->velocity[i] - (2.0 - r->damping * dt) * r->acceleration[i]) / (2.0 * dt);
+        }
+    }
+    return true;
+}
+
+/* After an equilibrium on the way the load goes on: what was known of the held load is no longer so. */
+static void let_go(struct relaxation *r)
+{
+    r->at_full_load = r->converged_checks = 0;
+    r->spectrum2 = INFINITY;
+    r->spectrum_known = false;
+    r->augmentations = 0;
+    r->steady_augmentations = 0;
+}
+
+/* Set the load factors, and by how much they change. */
+static void change_load(struct relaxation *r, double s)
+{
+    struct solid_system *system = r->system;
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        r->factor_change[i] = -system->factor[i];
+    }
+    system_load_factors(system, s);
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        r->factor_change[i] += system->factor[i];
+    }
+}
+
+/* The load is held, and the error has not halved for long: at a contact that opens and closes a mode beyond
+ * the critical step does not grow, but stays. */
+static bool hovers(const struct relaxation *r)
+{
+    int64_t since = r->best_step > r->calmed_step ? r->best_step : r->calmed_step;
+    return r->at_full_load > hover_steps && r->report->steps - since > hover_steps;
+}
+
+/* After a measured step: the error, and what follows the state: mass, time step. False on failure. */
+static bool follow(struct relaxation *r, struct error *error)
+{
+    double *u = r->u;
+    relaxation_estimate(r);
+    relaxation_control_load(r);
+    if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
+        constraint_project(&r->preconditioner.constraint, r->system->factor, u);
+    }
+    if (r->report->steps % keep_interval == 0) {
+        relaxation_keep_state(r);
+    }
+    relaxation_keep_check(r);
+    r->residual_at = r->before;
+    if (system_stiffen_contacts(r->system)) {
+        r->next_mass_check = r->checks;
+    }
+    if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
+        return false;
+    }
+    relaxation_follow_time_step(r, r->residual_at, r->at_full_load == 0 ? iterations_loading : iterations);
+    if (hovers(r)) {
+        relaxation_calm(r, r->acceleration);
+    }
+    return relaxation_update_preconditioner(r, error);
+}
+
+/* Whether multipliers carry what they must, of contacts and of nodal pressures. */
+static bool multipliers_hold(struct relaxation *r)
+{
+    bool pressures = !body_is_limited(&r->system->body) || r->pressures_lack <= NODAL_PRESSURE_LACK;
+    return pressures && relaxation_contacts_hold(r);
+}
+
+/* Whether the run ends at this check, and how. A failure ends it, too. */
+static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
+{
+    const double *error_now = &r->report->error, tolerance = r->options->tolerance;
+    bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
+    bool small = whole && *error_now <= tolerance;
+    bool augmented = r->augmented_step == r->report->steps - 1;
+    if (!small) {
+        r->converged_checks = 0;
+    } else if (augmented || !body_is_limited(&r->system->body)) {
+        r->converged_checks++; /* the error counts what the multipliers have yet to make up for */
+    }
+    *outcome = RELAXATION_STOPPED;
+    if (r->converged_checks >= 2 && !r->spectrum_known &&
+        !relaxation_find_lowest_mode(r, r->residual_at, error)) {
+        return true;
+    }
+    *outcome = RELAXATION_CONVERGED;
+    if (r->converged_checks >= 2 && *error_now <= tolerance) {
+        if (multipliers_hold(r)) {
+            return true;
+        }
+        r->converged_checks = 0;
+    }
+    relaxation_note_best(r);
+    double own_way =
+        r->largest_move - most_sizes * r->body_size; /* beyond what is prescribed, if that is far */
+    if (own_way > 0.0 && own_way > system_longest_way(r->system)) {
+        *outcome = RELAXATION_AWAY;
+        return true;
+    }
+    bool round_off = *error_now <= relaxation_round_off(r) && relaxation_stays(r, 2.0, 200);
+    bool hovering =
+        r->system->contact_count > 0 && *error_now <= most_hovering && relaxation_stays(r, 20.0, 1000);
+    if (whole && (round_off || hovering) && multipliers_hold(r)) {
+        return true;
+    }
+    *outcome = RELAXATION_STALLED;
+    bool folded = r->options->folded != NULL && *r->options->folded;
+    return relaxation_stays(r, 20.0, folded ? 1000 : 5000);
+}
+
+static bool is_interrupted(const struct relaxation *r)
+{
+    return r->options->interrupted != NULL &&
+           ranks_most(r->system->body.share.ranks, *r->options->interrupted) != 0;
+}
+
+static enum relaxation_outcome iterate(struct relaxation *r, struct error *error)
+{
+    double ramp = (double)r->report->ramp_steps;
+    int64_t most = r->options->most_steps > 0 ? r->options->most_steps : 1000000;
+    enum relaxation_outcome outcome;
+    while (r->report->steps < most) {
+        bool measure = ++r->report->steps % CHECK_INTERVAL == 0;
+        double hold = relaxation_load_to_hold(r);
+        r->load = fmin(hold, r->load + r->load_rate);
+        r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
+        r->report->loading_steps += r->at_full_load == 0;
+        change_load(r, r->load / ramp);
+        if (!step(r, r->u, measure)) {
+            measure = false;
+            if (!relaxation_step_back(r, error)) {
+                return RELAXATION_INVERTED;
+            }
+        }
+        if (r->unstable) {
+            relaxation_calm(r, r->scratch);
+        }
+        if (measure && !follow(r, error)) {
+            return RELAXATION_STOPPED;
+        }
+        if (measure && ends(r, &outcome, error)) {
+            if (outcome != RELAXATION_CONVERGED || hold == ramp) {
+                return outcome;
+            }
+            if (!relaxation_give_frame(r, error)) {
+                return RELAXATION_STOPPED;
+            }
+            let_go(r);
+        }
+        if ((measure || is_interrupted(r)) && !relaxation_tell(r)) {
+            return RELAXATION_STOPPED;
+        }
+    }
+    return RELAXATION_TOO_MANY_STEPS;
+}
+
+/* From u at rest, brought onto the conditions: without load, or from a start as it is (system_start). */
+static enum status begin(struct relaxation *r, struct error *error)
+{
+    struct solid_system *system = r->system;
+    system_load_factors(system, 0.0);
+    (void)system_residual(system, r->u, r->residual);
+    if (relaxation_gives_frames(r)) {
+        r->options->frame(r->options->context, 0, 0.0, r->u);
+    }
+    system_relaxation_mass(system, false, r->scratch);
+    RETURN_IF_ERROR(preconditioner_set_mass(&r->preconditioner, system, r->scratch, error));
+    constraint_project(&r->preconditioner.constraint, system->factor, r->u);
+    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u);
+    r->residual_at = r->u;
+    r->low2 = r->pressures_lack = INFINITY;
+    for (int i = 0; i < WINDOWS; i++) {
+        r->window[i] = INFINITY;
+    }
+    RETURN_IF_ERROR(relaxation_measure_preconditioner(r, error));
+    for (int i = 0; i < 2; i++) {
+        relaxation_keep_state(r);
+        relaxation_keep_check(r);
+    }
+    r->report->ramp_steps = r->options->ramp_steps > 0 ? r->options->ramp_steps : relaxation_choose_ramp(r);
+    return STATUS_OK;
+}
+
+/* From where another run was. */
+static enum status resume(struct relaxation *r, struct error *error)
+{
+    RETURN_IF_ERROR(relaxation_visit(r, r->options->restored, error));
+    RETURN_IF_ERROR(preconditioner_restore(&r->preconditioner, r->system, error));
+    return STATUS_OK;
+}
+
+enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,
+                           double *row_force, struct relaxation_report *report, struct error *error)
+{
+    FREED_BY(relaxation_release)
+    struct relaxation r = {.system = system,
+                           .options = options,
+                           .report = report,
+                           .size = system->node_count * system->dim,
+                           .u = u,
+                           .row_force = row_force,
+                           .load_rate = 1.0,
+                           .top_rate = 1.0,
+                           .step_safety = 1.0,
+                           .spectrum2 = INFINITY};
+    *report = (struct relaxation_report){.least_jacobian = 1.0};
+    body_limit_bulk(&system->body, bulk_limit);
+    RETURN_IF_ERROR(relaxation_allocate(&r, error));
+    r.spacing = system_node_spacing(system);
+    r.body_size = relaxation_body_size(system);
+    r.thickness = relaxation_thickness(system);
+    RETURN_IF_ERROR(options->restored != NULL ? resume(&r, error) : begin(&r, error));
+    report->outcome = iterate(&r, error);
+    RETURN_IF_ERROR(r.failure);
+    report->largest_frequency = r.frequency;
+    report->largest_move = r.largest_move;
+    if (report->outcome == RELAXATION_INVERTED) {
+        r.load = r.older.load;
+        memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
+    }
+    report->load = relaxation_load_share(&r);
+    if (report->outcome == RELAXATION_CONVERGED && relaxation_gives_frames(&r)) {
+        (void)relaxation_give_frame(&r, error);
+    } else {
+        r.failure = relaxation_row_forces(&r, r.u, row_force, error);
+    }
+    return r.failure;
+}

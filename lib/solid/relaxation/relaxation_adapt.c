@@ -1,0 +1,270 @@
+/* Load, mass, time step and contacts that follow a relaxation. */
+#include "base/box.h"
+#include "base/memory.h"
+#include "solid/relaxation/relaxation_private.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Steps in which the load moves something by as much as a cell, or as the body is long; and at least, of a
+ * run from rest and of one that begins near its result. */
+static const double steps_per_spacing = 20.0, steps_per_size = 400.0, least_ramp = 75.0,
+                    least_of_start = 20.0;
+/* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
+ * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
+ */
+static const double most_moved = 1.4, most_raised = 1.25;
+/* The load waits when something moves by more than this part of the body's size in a step, a little more than
+ * a ramp makes. */
+static const double most_move_per_step = 1.0 / 320.0;
+/* Lowest eigenvalue by what so few iterations find, which is up to some seven times as much. */
+static const double first_low2 = 0.15;
+static const double least_low2 =
+    1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
+static const int64_t most_backtracks = 8;                        /* from inverted points */
+static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
+static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
+static const double most_mass_checks = 5.0; /* between checks of the mass */
+
+/* What contacts may give way by at an equilibrium: by the largest motion; and by the work that their forces
+ * would do along it, by the energy of the body: so many tolerances, or that. And augmentations until they do.
+ */
+static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
+static const int64_t most_augmentations = 100;
+
+double relaxation_body_size(const struct solid_system *system)
+{
+    struct box box = box_of(system->dim, system->node_count, system->X);
+    return box_diagonal(&box);
+}
+
+double relaxation_thickness(const struct solid_system *system)
+{
+    return pow(body_volume(&system->body) / relaxation_body_size(system), 1.0 / (system->dim - 1));
+}
+
+int64_t relaxation_choose_ramp(const struct relaxation *r)
+{
+    double largest = system_longest_change(r->system);
+    double steps = fmax(steps_per_spacing * largest / r->spacing, steps_per_size * largest / r->body_size);
+    steps = fmax(steps, r->system->rows.start != NULL ? least_of_start : least_ramp);
+    return steps > 1e7 ? 10000000 : (int64_t)steps;
+}
+
+void relaxation_control_load(struct relaxation *r)
+{
+    double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
+           factor = fmax(0.3, allowed / r->moved);
+    r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
+}
+
+/* Of the critical step, in use. */
+static double step_share(const struct relaxation *r)
+{
+    return r->step_safety * r->options->time_step_margin;
+}
+
+void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
+{
+    double frequency = system_largest_frequency(r->system, &r->preconditioner, u, r->residual, iterations,
+                                                r->mode, r->scratch);
+    r->report->force_evaluations += iterations;
+    /* The estimate is from below and wanders: follow rises at once, falls slowly. */
+    r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
+    r->time_step = step_share(r) * 2.0 / r->frequency;
+}
+
+void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations)
+{
+    double before = r->frequency;
+    relaxation_update_time_step(r, u, iterations);
+    if (r->at_full_load == 0) {
+        r->time_step *= fmin(1.0, before / r->frequency);
+    }
+}
+
+/* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
+ * come half the way to that: a look costs as much as some evaluations. */
+static bool note_mass_change(struct relaxation *r, double change)
+{
+    double a_check = fabs(change - r->mass_change) / (double)(r->checks - r->last_mass_check);
+    r->mass_change = change > 1.0 ? 0.0 : change;
+    r->last_mass_check = r->checks;
+    r->next_mass_check =
+        r->checks + (int64_t)fmin(most_mass_checks, fmax(1.0, 0.5 * (1.0 - r->mass_change) / a_check));
+    return change > 1.0;
+}
+
+bool relaxation_update_mass(struct relaxation *r, struct error *error)
+{
+    double *mass = r->scratch, highest = 1.0, lowest = 1.0;
+    system_relaxation_mass(r->system, false, mass);
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        highest = fmax(highest, mass[n] / r->preconditioner.stiffness[n]);
+        lowest = fmin(lowest, mass[n] / r->preconditioner.stiffness[n]);
+    }
+    if (!note_mass_change(r, fmax(log(highest) / log(most_stiffening), log(lowest) / log(most_softening)))) {
+        return true;
+    }
+    r->failure = preconditioner_set_mass(&r->preconditioner, r->system, mass, error);
+    relaxation_note_new_mass(r);
+    return r->failure == STATUS_OK;
+}
+
+bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
+{
+    bool moved = r->largest_move > r->measured_move + most_moved * r->thickness;
+    bool stiffened = r->frequency > most_raised * r->measured_frequency;
+    if (r->preconditioner.size == 0 || !(moved || stiffened || preconditioner_is_stale(&r->preconditioner))) {
+        return true;
+    }
+    r->failure = relaxation_measure_preconditioner(r, error);
+    return r->failure == STATUS_OK;
+}
+
+void relaxation_note_new_mass(struct relaxation *r)
+{
+    r->spectrum2 = INFINITY;
+    r->spectrum_known = false;
+}
+
+enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error)
+{
+    struct spectrum spectrum;
+    r->report->force_evaluations += r->preconditioner.size + 1;
+    enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
+    (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
+    (void)preconditioner_follow(&r->preconditioner, r->system, true, NULL, NULL);
+    relaxation_note_new_mass(r);
+    RETURN_IF_ERROR(status);
+    if (!relaxation_find_spectrum(r, r->residual_at, FIRST_ITERATIONS, &spectrum, error)) {
+        return r->failure;
+    }
+    r->frequency = sqrt(fmax(spectrum.largest, 0.0));
+    relaxation_update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
+    relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_low2 * spectrum.lowest
+                                                     : least_low2 * spectrum.largest);
+    r->measured_frequency = r->frequency;
+    r->measured_move = r->largest_move;
+    return STATUS_OK;
+}
+
+/* *older becomes what *newer was, and that the state now. */
+static void keep(const struct relaxation *r, struct kept_state *newer, struct kept_state *older)
+{
+    double *spare = older->u;
+    *older = *newer;
+    newer->u = spare;
+    newer->load = r->load;
+    memcpy(newer->u, r->u, (size_t)r->size * sizeof *r->u);
+    memcpy(newer->u + r->size, r->velocity, (size_t)r->size * sizeof *r->velocity);
+}
+
+void relaxation_keep_state(struct relaxation *r)
+{
+    keep(r, &r->newer, &r->older);
+}
+
+void relaxation_keep_check(struct relaxation *r)
+{
+    keep(r, &r->check_now, &r->check_before);
+}
+
+/* Go back to a state that was kept. */
+static void go_back(struct relaxation *r, const struct kept_state *kept)
+{
+    r->load = kept->load;
+    r->back_step = r->report->steps;
+    memcpy(r->u, kept->u, (size_t)r->size * sizeof *r->u);
+    memcpy(r->velocity, kept->u + r->size, (size_t)r->size * sizeof *r->velocity);
+    system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));
+}
+
+bool relaxation_step_back(struct relaxation *r, struct error *error)
+{
+    if (r->backtracks == most_backtracks) {
+        return false;
+    }
+    r->backtracks++;
+    r->step_safety *= 0.8;
+    r->top_rate *= 0.5;
+    r->load_rate = r->top_rate;
+    go_back(r, &r->older);
+    memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
+    for (int i = 0; i < 2; i++) { /* what was kept since that state leads to the inversion */
+        relaxation_keep_state(r);
+        relaxation_keep_check(r);
+    }
+    memset(r->mode, 0, (size_t)r->size * sizeof *r->mode);
+    r->residual_at = r->u;
+    if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
+        return false;
+    }
+    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u); /* the way back is no move of the body */
+    memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
+    system_relaxation_mass(r->system, false, r->scratch);
+    r->mass_change = 0.0;
+    r->last_mass_check = r->next_mass_check = r->checks;
+    r->failure = preconditioner_set_mass(&r->preconditioner, r->system, r->scratch, error);
+    if (r->failure == STATUS_OK) {
+        r->failure = relaxation_measure_preconditioner(r, error);
+    }
+    return r->failure == STATUS_OK;
+}
+
+/* Whether the mode that the acceleration shows is beyond the critical step. */
+static bool is_unstable(struct relaxation *r, const double *acceleration)
+{
+    memcpy(r->mode, acceleration, (size_t)r->size * sizeof *r->mode);
+    (void)system_residual(r->system, r->u, r->residual);
+    double frequency = system_largest_frequency(r->system, &r->preconditioner, r->u, r->residual,
+                                                calm_iterations, r->mode, r->scratch);
+    r->report->force_evaluations += calm_iterations + 1;
+    return !(frequency * r->time_step < 2.0);
+}
+
+void relaxation_calm(struct relaxation *r, const double *acceleration)
+{
+    r->calmed_step = r->report->steps;
+    r->usual_residual2 = 0.0;
+    if (!is_unstable(r, acceleration)) {
+        (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
+        r->report->force_evaluations++;
+        return;
+    }
+    go_back(r, &r->check_before);
+    relaxation_keep_check(r);
+    r->residual_at = r->u;
+    (void)system_residual(r->system, r->residual_at, r->residual);
+    r->report->force_evaluations++;
+    relaxation_update_time_step(r, r->residual_at, calm_iterations);
+}
+
+static double penetration_allowed(const struct relaxation *r)
+{
+    return penetration_share * r->largest_move;
+}
+
+/* Whether contacts give way by more than displacements or forces allow. What is within the tolerance of
+ * displacements cannot be told from their error. */
+static bool give_way(const struct relaxation *r)
+{
+    double miss = system_contact_miss(r->system), tolerance = r->options->tolerance;
+    double missing_share = fmax(least_missing, missing_tolerances * tolerance);
+    return miss > penetration_allowed(r) ||
+           (miss > tolerance * r->largest_move &&
+            system_missing_work(r->system) > missing_share * body_energy(&r->system->body, r->residual_at));
+}
+
+bool relaxation_contacts_lack(const struct relaxation *r)
+{
+    return r->at_full_load == 0 || (r->augmentations < most_augmentations && give_way(r));
+}
+
+bool relaxation_contacts_hold(struct relaxation *r)
+{
+    system_measure_contacts(r->system, r->residual_at, false);
+    r->report->penetration = system_contact_miss(r->system);
+    r->report->penetration_allowed = penetration_allowed(r);
+    return !relaxation_contacts_lack(r);
+}

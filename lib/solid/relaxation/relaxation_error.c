@@ -1,0 +1,156 @@
+/* How far a relaxation is from equilibrium, and its damping. */
+#include "solid/preconditioner/frequency.h"
+#include "solid/relaxation/relaxation_private.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979324;
+static const double most_growth = 2.0; /* of the damping's square, from check to check */
+/* On the estimate: several modes may be left, and the norms are not the mass's own. Costs a few steps. */
+static const double safety = 2.0;
+static const int most_spectrum_iterations = 1000;
+static const double spectrum_share = 0.8; /* of its estimate from above */
+
+/* Length of the longest of the nodes' vectors. */
+static double largest_of_nodes(const struct relaxation *r, const double *x)
+{
+    int dim = r->system->dim;
+    double largest2 = 0.0;
+    for (int64_t n = 0; n < r->system->node_count; n++) {
+        double length2 = vector_dot(dim, x + n * dim, x + n * dim);
+        largest2 = length2 > largest2 ? length2 : largest2;
+    }
+    return sqrt(largest2);
+}
+
+static double ratio(double part, double whole)
+{
+    return whole > 0.0 ? part / whole : part > 0.0 ? INFINITY : 0.0;
+}
+
+/* The lowest frequency that recent estimates have shown, squared. */
+static double least_of_window(const struct relaxation *r)
+{
+    double least2 = INFINITY;
+    for (int i = 0; i < WINDOWS; i++) {
+        least2 = fmin(least2, r->window[i]);
+    }
+    return least2;
+}
+
+void relaxation_estimate(struct relaxation *r)
+{
+    double *du = r->scratch, along = 0.0; /* the change of the residual along du */
+    for (int64_t i = 0; i < r->size; i++) {
+        du[i] = r->before[i] - r->last_u[i];
+    }
+    r->moved = largest_of_nodes(r, du);
+    memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
+    constraint_project(&r->preconditioner.constraint, NULL, du);
+    for (int64_t i = 0; i < r->size; i++) {
+        along += du[i] * (r->last_residual[i] - r->residual[i]);
+    }
+    memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
+    double bottom = preconditioner_product(&r->preconditioner, du, du);
+    double quotient = bottom > 0.0 ? along / bottom : 0.0;
+    bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
+    if (quotient > 0.0 && r->checks > 0 && !augmented) {
+        quotient = fmin(quotient, r->frequency * r->frequency);
+        r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
+        r->low2 = fmin(r->low2, r->spectrum2);
+        r->damping = 2.0 * sqrt(r->low2);
+        r->window[r->checks % WINDOWS] = r->low2;
+    }
+    r->checks++;
+    double least2 = least_of_window(r);
+    r->largest_displacement =
+        fmax(r->largest_displacement,
+             sqrt(preconditioner_product_diagonal(&r->preconditioner, r->before, r->before)));
+    r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
+    /* Of the largest so far: a scene may end at rest. */
+    double on_the_whole = ratio(
+        sqrt(preconditioner_product_diagonal(&r->preconditioner, r->acceleration, r->acceleration)) / least2,
+        r->largest_displacement);
+    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
+    /* Moves below the round-off of positions are none. */
+    bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
+    r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);
+    r->report->lowest_frequency = sqrt(least2);
+}
+
+bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
+                              struct spectrum *spectrum, struct error *error)
+{
+    r->failure = system_spectrum(r->system, &r->preconditioner, u, r->residual, most_iterations, r->velocity,
+                                 r->scratch, spectrum, error);
+    r->report->force_evaluations += spectrum->iterations;
+    return r->failure == STATUS_OK;
+}
+
+void relaxation_damp_at_most(struct relaxation *r, double low2)
+{
+    r->low2 = fmin(r->low2, low2);
+    r->damping = 2.0 * sqrt(r->low2);
+    for (int i = 0; i < WINDOWS; i++) {
+        r->window[i] = fmin(r->window[i], r->low2);
+    }
+}
+
+/* Whether the state u, of which that is the spectrum, is stable. Stiffness is known to about the error of the
+ * state, by the largest. False on failure. */
+static bool note_stability(struct relaxation *r, const double *u, const struct spectrum *spectrum,
+                           struct error *error)
+{
+    struct stability *stability = &r->system->stability;
+    r->failure = system_unstable_mode(r->system, &r->preconditioner, u, r->residual, spectrum, r->velocity,
+                                      r->scratch, stability, error);
+    if (stability->least > -r->report->error) {
+        stability->least = fmax(stability->least, 0.0);
+    }
+    return r->failure == STATUS_OK;
+}
+
+bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error)
+{
+    struct spectrum spectrum;
+    if (!relaxation_find_spectrum(r, u, most_spectrum_iterations, &spectrum, error) ||
+        !note_stability(r, u, &spectrum, error)) {
+        return false;
+    }
+    r->spectrum2 = INFINITY;
+    if (spectrum.lowest > 0.0 && isfinite(spectrum.lowest)) {
+        r->spectrum2 = spectrum_share * spectrum.lowest;
+        relaxation_damp_at_most(r, r->spectrum2);
+        double least2 = least_of_window(r);
+        r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least2;
+        r->report->lowest_frequency = sqrt(least2);
+    }
+    r->spectrum_known = true;
+    return true;
+}
+
+bool relaxation_stays(const struct relaxation *r, double periods, int64_t steps)
+{
+    double period = 2.0 * pi / (r->report->lowest_frequency * r->time_step);
+    return (double)(r->report->steps - r->best_step) > periods * period + (double)steps;
+}
+
+double relaxation_round_off(const struct relaxation *r)
+{
+    double low = r->report->lowest_frequency;
+    return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->largest_move);
+}
+
+void relaxation_note_best(struct relaxation *r)
+{
+    if (r->at_full_load <= CHECK_INTERVAL || r->report->error < 0.5 * r->best_error) {
+        r->best_error = r->report->error;
+        r->best_step = r->report->steps;
+    }
+}

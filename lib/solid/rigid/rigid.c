@@ -1,0 +1,146 @@
+/* Building rigid surfaces: vertices and normals; see rigid.h. */
+#include "solid/rigid/rigid.h"
+
+#include "base/box.h"
+#include "base/lists.h"
+#include "base/memory.h"
+#include "solid/rigid/rigid_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Corners closer than this, relative to the extent, are one vertex. */
+static const double merge_tolerance = 1e-9;
+
+/* Triangles whose area is less than this part of their longest edge squared have no normal. */
+static const double least_slenderness = 1e-12;
+
+static enum status check_corners(const struct rigid_surface *surface, const double *corners,
+                                 struct error *error)
+{
+    int64_t per_facet = (int64_t)surface->dim * surface->dim;
+    for (int64_t i = 0; i < surface->facet_count * per_facet; i++) {
+        if (!isfinite(corners[i])) {
+            return fail(error, STATUS_INPUT, "rigid surface: facet %lld: coordinate is not finite",
+                        (long long)(i / per_facet + 1));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* same[corner]: the first corner, along the direction, of those that coincide with it. */
+static enum status find_coincident(const struct rigid_surface *surface, const double *corners, int64_t *same,
+                                   struct error *error)
+{
+    static const double direction[3] = {0.5377, 0.6180, 0.5734};
+    int dim = surface->dim;
+    int64_t count = surface->facet_count * dim;
+    double near = merge_tolerance * surface->extent;
+    SCRATCH struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
+    RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
+    for (int64_t c = 0; c < count; c++) {
+        placed[c] = (struct placed){vector_dot(dim, direction, corners + c * dim), c};
+    }
+    qsort(placed, (size_t)count, sizeof *placed, compare_placed);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t c = placed[i].item;
+        same[c] = c;
+        for (int64_t k = i - 1; k >= 0 && placed[i].place - placed[k].place <= near; k--) {
+            int64_t other = same[placed[k].item];
+            if (vector_distance2(dim, corners + c * dim, corners + other * dim) <= near * near) {
+                same[c] = other;
+                break;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Vertices in the order of their first corner, and the facets' indices into them. */
+static enum status number_vertices(struct rigid_surface *surface, const double *corners, struct error *error)
+{
+    int dim = surface->dim;
+    int64_t count = surface->facet_count * dim;
+    SCRATCH int64_t *same = NULL;
+    SCRATCH int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&same, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&number, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, count, error));
+    RETURN_IF_ERROR(find_coincident(surface, corners, same, error));
+    for (int64_t c = 0; c < count; c++) {
+        if (number[same[c]] == 0) {
+            memcpy(surface->vertex + surface->vertex_count * dim, corners + c * dim,
+                   (size_t)dim * sizeof *corners);
+            number[same[c]] = (int32_t)++surface->vertex_count;
+        }
+        surface->facet[c] = number[same[c]] - 1;
+    }
+    return STATUS_OK;
+}
+
+/* Normal, not unit, of facet f; *size2 is the square of its longest edge. */
+static void facet_normal(const struct rigid_surface *surface, int64_t f, double *normal, double *size2)
+{
+    int dim = surface->dim;
+    const int32_t *corner = surface->facet + f * dim;
+    const double *x0 = surface->vertex + (int64_t)corner[0] * dim;
+    const double *x1 = surface->vertex + (int64_t)corner[1] * dim;
+    *size2 = vector_distance2(dim, x0, x1);
+    if (dim == 2) {
+        normal[0] = x1[1] - x0[1];
+        normal[1] = x0[0] - x1[0];
+    } else {
+        const double *x2 = surface->vertex + (int64_t)corner[2] * dim;
+        *size2 = fmax(*size2, fmax(vector_distance2(3, x0, x2), vector_distance2(3, x1, x2)));
+        double first[3], second[3];
+        vector_subtract(3, x1, x0, first);
+        vector_subtract(3, x2, x0, second);
+        vector_cross(first, second, normal);
+    }
+}
+
+static enum status make_normals(struct rigid_surface *surface, bool flip, struct error *error)
+{
+    int dim = surface->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
+    for (int64_t f = 0; f < surface->facet_count; f++) {
+        double *normal = surface->normal + f * dim, size2;
+        facet_normal(surface, f, normal, &size2);
+        double least = dim == 2 ? 0.0 : least_slenderness * size2;
+        if (!(vector_length(dim, normal) > least)) {
+            return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
+                        (long long)(f + 1));
+        }
+        normalise(dim, normal);
+        for (int a = 0; a < dim && flip; a++) {
+            normal[a] = -normal[a];
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
+                        struct rigid_surface *surface, struct error *error)
+{
+    *surface = (struct rigid_surface){.dim = dim, .facet_count = facet_count};
+    if (facet_count < 1 || facet_count > INT32_MAX / 3) {
+        return fail(error, STATUS_INPUT, "rigid surface: %lld facets: none, or too many",
+                    (long long)facet_count);
+    }
+    RETURN_IF_ERROR(check_corners(surface, corners, error));
+    struct box box = box_of(dim, facet_count * dim, corners);
+    surface->extent = box_diagonal(&box);
+    RETURN_IF_ERROR(number_vertices(surface, corners, error));
+    RETURN_IF_ERROR(make_normals(surface, flip, error));
+    RETURN_IF_ERROR(rigid_make_pseudo_normals(surface, error));
+    return rigid_grow_tree(surface, error);
+}
+
+void rigid_free(struct rigid_surface *surface)
+{
+    FREE_ALL(surface->vertex, surface->facet, surface->normal, surface->vertex_normal, surface->edge_normal,
+             surface->is_rim, surface->edge_is_rim, surface->turn, surface->branch, surface->in_order);
+    *surface = (struct rigid_surface){0};
+}

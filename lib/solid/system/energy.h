@@ -1,0 +1,51 @@
+/* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + energy at
+ * the begin. */
+#pragma once
+
+#include "solid/system/system.h"
+
+/* Energies at one time: J, in 2D J/m. A row of ENERGY_COLUMNS numbers. */
+struct energy {
+    double time;       /* s */
+    double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
+    double internal;   /* elastic, of the body and the constraint penalties */
+    double contact;    /* of the contacts' penalties */
+    double work;       /* of loads and prescribed motion, since the begin */
+    double dissipated; /* by damping, since the begin */
+    double error;      /* of the balance, relative to the largest energy so far */
+};
+enum { ENERGY_COLUMNS = 7 };
+
+struct energy_log {
+    int64_t count, capacity;
+    struct energy *rows; /* count, in order of time */
+};
+
+MUST_CHECK enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error);
+void energy_log_free(struct energy_log *log);
+MUST_CHECK enum status energy_log_state(struct energy_log *log, const struct state *state,
+                                        struct error *error);
+
+/* The balance of a run by central differences. Works are summed by the trapezium rule over each step's
+ * displacement; with the kinetic energy 1/2 v- M v+ the balance of a linear system then holds to round-off,
+ * and its error otherwise is that of the step. */
+struct energy_balance {
+    double start;            /* energy at the begin */
+    double work, dissipated; /* since then */
+    double largest;          /* energy so far; at first a floor below which energies are round-off */
+    double worst;            /* largest |error| so far */
+};
+
+struct energy_balance energy_balance_begin(const struct solid_system *system);
+
+/* Complete a row whose time, kinetic, internal and contact are known; the first one is the begin. */
+void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row);
+
+/* 1/2 v M w */
+double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
+
+/* Energy of the body at u, and of the constraint penalties at system->factor. */
+double energy_internal(struct solid_system *system, const double *u);
+
+/* Sum over all contacts at their last evaluation. */
+double energy_contact(const struct solid_system *system);

@@ -1,0 +1,341 @@
+#include "solid/system/system.h"
+
+#include "approx/cells/cells.h"
+#include "approx/support/support.h"
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include "solid/system/condition.h"
+#include "solid/contact/contact_between.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void system_free(struct solid_system *system)
+{
+    for (int64_t i = 0; i < system->load_count; i++) {
+        free(system->loads[i].force);
+    }
+    for (int64_t i = 0; i < system->pressure_count; i++) {
+        free(system->pressures[i].corner);
+        boundary_averages_free(&system->pressures[i].corners);
+        boundary_averages_free(&system->pressures[i].points);
+    }
+    system_free_contacts(system);
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        curve_free(&system->curves[i]);
+    }
+    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
+    constraint_rows_free(&system->rows);
+    constraint_rows_free(&system->penalties);
+    constraint_nodes_free(&system->penalty_nodes);
+    FREE_ALL(system->penalty_stiffness, system->penalty_force);
+    body_free(&system->body);
+    *system = (struct solid_system){0};
+}
+
+enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
+{
+    const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
+    const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
+                                            {"node", STATE_COUNTS, &system->stability.node, 1}};
+    RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
+    RETURN_IF_ERROR(state_visit(state, "stability", stability, 2, error));
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        char prefix[32];
+        snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
+        RETURN_IF_ERROR(contact_state(&system->contacts[c], prefix, state, error));
+    }
+    return STATUS_OK;
+}
+
+/* Constraints found linearly dependent are dropped. The solution is accepted only if each of them holds to
+ * this share of the largest prescribed displacement. */
+static const double most_missed = 1e-4;
+
+/* The row of another section that acts nearest to row r in much the same direction, or -1. */
+static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
+{
+    const struct constraint_rows *rows = &system->rows;
+    int64_t nearest = -1;
+    int dim = system->dim;
+    double least = INFINITY;
+    for (int64_t s = 0; s < rows->count; s++) {
+        double cosine = vector_dot(dim, rows->direction + s * dim, rows->direction + r * dim);
+        double distance2 = vector_distance2(dim, system->X + (int64_t)rows->node[s] * dim,
+                                            system->X + (int64_t)rows->node[r] * dim);
+        if (rows->section[s] != rows->section[r] && fabs(cosine) > 0.5 && distance2 < least) {
+            least = distance2;
+            nearest = s;
+        }
+    }
+    return nearest;
+}
+
+/* The message that row r conflicts with others. */
+static enum status fail_at_row(const struct solid_system *system, int64_t r, double missed,
+                               struct error *error)
+{
+    const struct constraint_rows *rows = &system->rows;
+    const struct condition *conditions = system->conditions;
+    int64_t other = nearest_of_others(system, r);
+    char place[96], with[160] = "others";
+    point_text(system->dim, system->X + (int64_t)rows->node[r] * system->dim, place);
+    if (conditions != NULL && other >= 0) {
+        snprintf(with, sizeof with, "those of [displacement %.100s] and others",
+                 conditions[rows->section[other]].name);
+    }
+    return fail(
+        error, STATUS_VERDICT,
+        "[displacement %.100s]: the conditions at node %d at %s disagree with %s by %.2g m: prescribe its "
+        "displacement once, as by components = free in one section, or refine the cloud there",
+        conditions != NULL ? conditions[rows->section[r]].name : "?", rows->node[r], place, with, missed);
+}
+
+/* Check whether the dropped constraints are consistent with the others for all loads. */
+static enum status check_dropped(const struct solid_system *system, struct constraint *constraint,
+                                 struct error *error)
+{
+    const struct constraint_rows *rows = &system->rows;
+    SCRATCH double *u = NULL, *factor = NULL;
+    double largest = 0.0, worst = 0.0;
+    int64_t size = system->node_count * system->dim, row = 0, worst_row = -1;
+    enum { TIMES = 5 };
+    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&factor, system->curve_count, error));
+    for (int64_t r = 0; r < rows->count; r++) {
+        largest = fmax(largest, fabs(rows->target[r]));
+    }
+    for (int k = 0; k < TIMES; k++) {
+        double most = 0.0;
+        for (int64_t i = 0; i < system->curve_count; i++) {
+            factor[i] = curve_value(&system->curves[i], (double)k / (TIMES - 1));
+            most = fmax(most, fabs(factor[i]));
+        }
+        memset(u, 0, (size_t)size * sizeof *u);
+        for (int i = 0; i < 3; i++) { /* more than once: rows may be close to dependent */
+            constraint_project(constraint, factor, u);
+        }
+        double missed = constraint_violation(constraint, factor, u, &row);
+        if (!(missed <= most_missed * largest * fmax(most, 1.0)) && !(missed <= worst)) {
+            worst = missed;
+            worst_row = row;
+        }
+    }
+    if (worst_row >= 0) {
+        return fail_at_row(system, worst_row, worst, error);
+    }
+    return STATUS_OK;
+}
+
+enum status system_constrain(const struct solid_system *system, const double *mass,
+                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
+                             struct constraint *constraint, struct error *error)
+{
+    enum status status =
+        constraint_build(&system->rows, system->node_count, mass, inverse, inverse_rows, constraint, error);
+    if (status == STATUS_OK && constraint->factor.dropped > 0) {
+        status = check_dropped(system, constraint, error);
+    }
+    return status;
+}
+
+void system_load_factors(struct solid_system *system, double s)
+{
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        system->factor[i] = curve_value(&system->curves[i], s);
+    }
+}
+
+/* Deformed position of a corner: X + the average's displacement. */
+static void corner_position(const struct solid_system *system, const struct boundary_averages *averages,
+                            int64_t a, const double *u, double *x)
+{
+    int dim = system->dim;
+    struct average average = average_of_boundary(averages, a);
+    average_place(&average, dim, system->X + (int64_t)averages->node[a] * dim, u, x);
+}
+
+/* The pressure at quadrature point p of the deformed facets. */
+static double pressure_at(const struct solid_system *system, const struct pressure_load *load, int64_t p,
+                          const double *u)
+{
+    double x[3], depth = 0.0;
+    struct average average = average_of_boundary(&load->points, p);
+    if (!load->is_fluid) {
+        return load->pressure;
+    }
+    average_take(&average, system->dim, u, x);
+    for (int a = 0; a < system->dim; a++) {
+        depth += load->weight[a] * (load->points.position[p * system->dim + a] + x[a] - load->level[a]);
+    }
+    bool presses = load->part == FLUID_ALL || (depth > 0.0) == (load->part == FLUID_BELOW);
+    return presses ? depth : 0.0;
+}
+
+/* Forces of a following pressure: the force on a deformed facet is divided among its quadrature points like
+ * its area at rest. */
+static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
+                         const double *u, double *residual)
+{
+    int dim = system->dim;
+    static const int32_t in_order[3] = {0, 1, 2};
+    int64_t each = load->points.count / (load->facet_count > 0 ? load->facet_count : 1);
+    for (int64_t f = 0; f < load->facet_count; f++) {
+        double x[9], area[3], at_rest = 0.0;
+        for (int k = 0; k < dim; k++) {
+            corner_position(system, &load->corners, load->corner[f * dim + k], u, x + k * dim);
+        }
+        face_area_vector(dim, x, in_order, area);
+        for (int64_t p = f * each; p < (f + 1) * each; p++) {
+            at_rest += load->points.area[p];
+        }
+        for (int64_t p = f * each; p < (f + 1) * each; p++) {
+            double share[3], pressure = factor * pressure_at(system, load, p, u);
+            for (int a = 0; a < dim; a++) {
+                share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
+            }
+            struct average average = average_of_boundary(&load->points, p);
+            average_spread(&average, dim, share, residual);
+        }
+    }
+}
+
+void system_add_loads(const struct solid_system *system, const double *u, double *force)
+{
+    int64_t size = system->node_count * system->dim;
+    for (int64_t l = 0; l < system->load_count; l++) {
+        double factor = system->factor[system->loads[l].curve];
+        const double *load = system->loads[l].force;
+        for (int64_t i = 0; i < size; i++) {
+            force[i] += factor * load[i];
+        }
+    }
+    for (int64_t l = 0; l < system->pressure_count; l++) {
+        const struct pressure_load *load = &system->pressures[l];
+        add_pressure(system, load, system->factor[load->curve], u, force);
+    }
+}
+
+static void negate(const struct solid_system *system, double *force)
+{
+    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
+        force[i] = -force[i];
+    }
+}
+
+void system_resist(struct solid_system *system, const double *u, double *force)
+{
+    double started = clock_seconds();
+    (void)body_own_force(&system->body, u, force);
+    system->cost.force += clock_seconds() - started;
+    negate(system, force);
+    system_add_penalties(system, u, force);
+    negate(system, force);
+    body_gather(&system->body, force);
+}
+
+struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
+{
+    double started = clock_seconds();
+    struct deformation deformation = body_own_force(&system->body, u, residual);
+    double forced = clock_seconds();
+    negate(system, residual);
+    system_add_loads(system, u, residual);
+    double loaded = clock_seconds();
+    system_add_penalties(system, u, residual);
+    double held = clock_seconds();
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_move(&system->contacts[c], system->factor);
+        contact_force(&system->contacts[c], u, residual);
+    }
+    double touched = clock_seconds();
+    body_gather(&system->body, residual);
+    system->cost.force += forced - started + clock_seconds() - touched;
+    system->cost.loads += loaded - forced;
+    system->cost.constraints += held - loaded;
+    system->cost.contact += touched - held;
+    return deformation;
+}
+
+double system_longest_way(const struct solid_system *system)
+{
+    double longest = 0.0;
+    for (int64_t r = 0; r < system->rows.count; r++) {
+        longest = fmax(longest, fabs(system->rows.target[r]));
+    }
+    for (int64_t r = system->penalties.count - system->spring_count; r < system->penalties.count; r++) {
+        longest = fmax(longest, fabs(system->penalties.target[r]));
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        for (int64_t a = 0; a < contact->count; a++) {
+            double length = rigid_motion_path(&contact->motion, system->dim, contact->rest + a * system->dim);
+            longest = fmax(longest, length);
+        }
+    }
+    return longest;
+}
+
+double system_longest_change(const struct solid_system *system)
+{
+    const struct constraint_rows *rows = &system->rows;
+    double longest = 0.0;
+    if (rows->start == NULL) {
+        return system_longest_way(system);
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        longest = fmax(longest, fabs(rows->start[r]));
+    }
+    return longest;
+}
+
+bool system_has_inverse(const struct solid_system *system)
+{
+    return system->dim == 3 && system->body.smoothed && system->node_lists != NULL;
+}
+
+/* The stiffness that a constraint penalty on an average adds to its nodes. */
+static void add_to_bound(const struct average *average, double stiffness, double *mass)
+{
+    for (int64_t i = 0; i < average->length; i++) {
+        mass[average->idx[i]] += stiffness * average->phi[i] * average->phi[i];
+    }
+}
+
+static void add_penalties_to_bound(const struct solid_system *system, double *mass)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_add_to_bound(&system->contacts[c], mass);
+    }
+    for (int64_t r = 0; r < system->penalties.count; r++) {
+        struct average average = constraint_rows_average(&system->penalties, r);
+        add_to_bound(&average, system->penalty_stiffness[r], mass);
+    }
+}
+
+void system_relaxation_mass(struct solid_system *system, bool rest, double *mass)
+{
+    double sum = 0.0;
+    if (system_has_inverse(system)) {
+        body_nodal_diagonal(&system->body, rest, mass);
+    } else {
+        body_diagonal(&system->body, mass);
+        add_penalties_to_bound(system, mass);
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        sum += mass[n];
+    }
+    /* A node without stiffness needs some mass; no force acts on it. */
+    double least = 1e-6 * sum / (double)system->node_count;
+    for (int64_t n = 0; n < system->node_count; n++) {
+        mass[n] = fmax(mass[n], least);
+    }
+}
+
+double system_node_spacing(const struct solid_system *system)
+{
+    return pow(body_volume(&system->body) / (double)system->node_count, 1.0 / system->dim);
+}

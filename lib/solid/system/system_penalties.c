@@ -1,0 +1,75 @@
+/* Constraint penalties of a system, and springs of measured points, which are kept among them. */
+#include "solid/system/system.h"
+
+#include "base/chunks.h"
+#include "base/memory.h"
+
+#include <stdlib.h>
+
+enum status system_append_penalty(struct solid_system *system, const struct average *average,
+                                  const double *direction, double target, int32_t curve, int32_t section,
+                                  int32_t node, double stiffness, struct error *error)
+{
+    struct constraint_rows *penalties = &system->penalties;
+    RETURN_IF_ERROR(constraint_rows_add(penalties, average->length, average->idx, average->phi, direction,
+                                        target, curve, section, node, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_stiffness, penalties->count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_force, penalties->count, error));
+    system->penalty_stiffness[penalties->count - 1] = stiffness;
+    return STATUS_OK;
+}
+
+enum status system_share_penalties(struct solid_system *system, struct error *error)
+{
+    const struct body *body = &system->body;
+    SCRATCH bool *own = NULL;
+    if (body->share.ranks != NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&own, body->node_count, error));
+        for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
+            own[body->node_order[p]] = true;
+        }
+    }
+    return constraint_nodes_build(&system->penalties, body->node_count, NULL, own, &system->penalty_nodes,
+                                  error);
+}
+
+double system_penalty_force(const struct solid_system *system, int64_t r, const double *u)
+{
+    const struct constraint_rows *penalties = &system->penalties;
+    return system->penalty_stiffness[r] * (penalties->target[r] * system->factor[penalties->curve[r]] -
+                                           constraint_rows_value(penalties, r, u));
+}
+
+void system_add_penalties(struct solid_system *system, const double *u, double *force)
+{
+    const struct constraint_rows *penalties = &system->penalties;
+    double *pull = system->penalty_force;
+    if (penalties->count == 0) {
+        return;
+    }
+    struct chunks chunks = chunks_for_threads(penalties->list_count, penalties->list_count, LISTS_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        for (int64_t l = chunks_begin(&chunks, c); l < chunks_begin(&chunks, c + 1); l++) {
+            if (!system->penalty_nodes.used[l]) {
+                continue;
+            }
+            constraint_rows_take(penalties, l, l + 1, u, pull);
+            for (int64_t r = penalties->first[l]; r < penalties->first[l + 1]; r++) {
+                double target = penalties->target[r] * system->factor[penalties->curve[r]];
+                pull[r] = system->penalty_stiffness[r] * (target - pull[r]);
+            }
+        }
+    }
+    constraint_nodes_spread(&system->penalty_nodes, pull, force);
+}
+
+double system_penalty_energy(const struct solid_system *system, const double *u)
+{
+    double energy = 0.0;
+    for (int64_t r = 0; r < system->penalties.count; r++) {
+        double pull = system_penalty_force(system, r, u);
+        energy += 0.5 * pull * pull / system->penalty_stiffness[r];
+    }
+    return energy;
+}

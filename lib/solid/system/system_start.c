@@ -1,0 +1,41 @@
+/* A run that begins near its result. */
+#include "base/memory.h"
+#include "solid/system/system.h"
+
+/* Each curve becomes a constant, the value at its end. */
+static enum status hold_curves(struct solid_system *system, struct error *error)
+{
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        double end = curve_value(&system->curves[i], 1.0);
+        const double held[] = {0.0, end, 1.0, end};
+        curve_free(&system->curves[i]);
+        RETURN_IF_ERROR(curve_tabulate(&system->curves[i], 2, held, 1.0, error));
+    }
+    return STATUS_OK;
+}
+
+/* One more curve, which falls from 1 to 0. */
+static enum status add_falling_curve(struct solid_system *system, struct error *error)
+{
+    static const double falling[] = {0.0, 1.0, 1.0, 0.0};
+    int64_t added = system->curve_count;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->factor, added + 1, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->curves, added + 1, error));
+    RETURN_IF_ERROR(curve_tabulate(&system->curves[added], 2, falling, 1.0, error));
+    system->curve_count++;
+    return STATUS_OK;
+}
+
+enum status system_start(struct solid_system *system, const double *u, struct error *error)
+{
+    struct constraint_rows *rows = &system->rows;
+    RETURN_IF_ERROR(hold_curves(system, error));
+    rows->start_curve = (int32_t)system->curve_count;
+    RETURN_IF_ERROR(add_falling_curve(system, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->start, rows->count, error));
+    system_load_factors(system, 1.0);
+    for (int64_t r = 0; r < rows->count; r++) {
+        rows->start[r] = constraint_rows_value(rows, r, u) - constraint_rows_target(rows, r, system->factor);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,56 @@
+#include "images/images.h"
+
+#include "output.h"
+
+#include <string.h>
+#include <unistd.h>
+
+void tool_read_image(const struct tool *tool, const char *file, struct image *image)
+{
+    const char *name;
+    int descriptor = tool_open(tool, file, &name);
+    TOOL_TRY(tool, image_read_from(image, descriptor, name, &error));
+    if (descriptor != STDIN_FILENO) {
+        close(descriptor);
+    }
+    if (image->note[0] != '\0') {
+        tool_note(tool, "%s: %s", name, image->note);
+    }
+}
+
+enum image_method tool_image_method(const struct tool *tool)
+{
+    return (enum image_method)tool_choice(tool, "interpolation", image_method_names, IMAGE_METHOD_COUNT,
+                                          IMAGE_LINEAR);
+}
+
+void tool_check_image_output(const struct tool *tool)
+{
+    if (tool->output == NULL && isatty(STDOUT_FILENO)) {
+        tool_fail(tool, STATUS_INPUT, "no image to a terminal: redirect it, or name a file with -o");
+    }
+    if (tool->output != NULL && !text_ends(tool->output, ".nii") && !text_ends(tool->output, ".nii.gz") &&
+        strchr(tool->output, '.') != NULL && strncmp(tool->output, "/dev/", 5) != 0) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii or .nii.gz", tool->output);
+    }
+}
+
+void tool_write_image(const struct tool *tool, const struct image *image)
+{
+    struct output output;
+    if (tool->output == NULL) {
+        TOOL_TRY(tool, fail_in(&error, image_write(image, STDOUT_FILENO, true, &error), "standard output"));
+        return;
+    }
+    bool gzip = !text_ends(tool->output, ".nii");
+    TOOL_TRY(tool, output_open(&output, tool->output, &error));
+    TOOL_TRY(tool, output_end(&output, image_write(image, output.descriptor, gzip, &error), &error));
+}
+
+const char *image_text(const struct image *image, char text[128])
+{
+    snprintf(text, 128, "%zu x %zu x %zu voxels of %.4g x %.4g x %.4g mm", image->size[0], image->size[1],
+             image->size[2], 1e3 * image_step(image, 0), 1e3 * image_step(image, 1),
+             1e3 * image_step(image, 2));
+    return text;
+}

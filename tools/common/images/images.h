@@ -1,0 +1,23 @@
+/* Reading and writing images by tools. */
+#pragma once
+
+#include "tool.h"
+
+#include "io/image/image_sample.h"
+
+/* Read an image from a file ("-": standard input), tell what was assumed; exits on failure. */
+void tool_read_image(const struct tool *tool, const char *file, struct image *image);
+
+/* The value of the option -i, or linear. Exits on another name. */
+enum image_method tool_image_method(const struct tool *tool);
+
+/* Exits when the name of tool->output ends neither in .nii nor in .nii.gz, or standard output is a terminal:
+ * to be called before long work. */
+void tool_check_image_output(const struct tool *tool);
+
+/* Write an image to tool->output, compressed unless its name ends in .nii, or compressed to standard output;
+ * exits on failure. */
+void tool_write_image(const struct tool *tool, const struct image *image);
+
+/* "181 x 217 x 181 voxels of 1 x 1 x 1 mm" into text[128]; returns it. */
+const char *image_text(const struct image *image, char text[128]);

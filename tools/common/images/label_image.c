@@ -1,0 +1,362 @@
+#include "images/label_image.h"
+
+#include "base/box.h"
+#include "images/images.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Labels of an image without a table. */
+enum { MOST_UNNAMED = 256, MOST_VALUES = 32767 };
+static const double largest_diagonal = 10, smallest_diagonal = 1e-3;
+
+int32_t label_image_find(const struct label_image *image, const char *name)
+{
+    for (int32_t l = 1; l <= image->table.name_count; l++) {
+        if (strcmp(label_image_name(image, l), name) == 0) {
+            return l;
+        }
+    }
+    return -1;
+}
+
+const char *label_image_name(const struct label_image *image, int32_t label)
+{
+    int32_t region = label > image->table.name_count ? image->region[label] : label;
+    return region == 0 ? "outside" : image->table.name[region - 1].text;
+}
+
+/* ---- values ---- */
+
+/* The different values of an image, ascending. */
+struct values {
+    int32_t count;
+    double value[MOST_VALUES];
+    int64_t voxels[MOST_VALUES];
+    uint16_t label[MOST_VALUES];
+};
+
+/* Where a value stands, or where it would. */
+static int32_t find_value(const struct values *values, double value)
+{
+    int32_t low = 0, high = values->count;
+    while (low < high) {
+        int32_t middle = low + (high - low) / 2;
+        if (values->value[middle] < value) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static void collect_values(const struct tool *tool, const struct image *image, struct values *values)
+{
+    int64_t count = (int64_t)image_voxels(image);
+    int32_t at = -1;
+    for (int64_t i = 0; i < count; i++) {
+        double value = image->values[i];
+        if (at >= 0 && values->value[at] == value) {
+            values->voxels[at]++;
+            continue;
+        }
+        if (!(value >= 0 && value <= INT32_MAX && floor(value) == value)) {
+            int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
+            tool_fail(tool, STATUS_INPUT,
+                      "voxel %lld %lld %lld is %g: labels are whole numbers from 0: is it a scan or a "
+                      "probability map?",
+                      (long long)(i % nx), (long long)(i / nx % ny), (long long)(i / nx / ny), value);
+        }
+        at = find_value(values, value);
+        if (at == values->count || values->value[at] != value) {
+            if (values->count == MOST_VALUES) {
+                tool_fail(tool, STATUS_INPUT, "more than %d different values: is it a scan?", MOST_VALUES);
+            }
+            memmove(values->value + at + 1, values->value + at,
+                    (size_t)(values->count - at) * sizeof *values->value);
+            memmove(values->voxels + at + 1, values->voxels + at,
+                    (size_t)(values->count - at) * sizeof *values->voxels);
+            values->value[at] = value;
+            values->voxels[at] = 0;
+            values->count++;
+        }
+        values->voxels[at]++;
+    }
+}
+
+/* Names label_1, label_2, ... for an image without a table. */
+static void name_values(const struct tool *tool, const struct values *values, struct label_table *table)
+{
+    for (int32_t v = 0; v < values->count; v++) {
+        struct label_range range = {.first = (int64_t)values->value[v], .last = (int64_t)values->value[v]};
+        char name[32];
+        if (range.first == 0) {
+            continue;
+        }
+        if (values->count > MOST_UNNAMED) {
+            tool_fail(tool, STATUS_INPUT,
+                      "%d different labels: is it a scan? Otherwise name and merge them by -l TABLE",
+                      values->count);
+        }
+        snprintf(name, sizeof name, "label_%lld", (long long)range.first);
+        TOOL_TRY(tool, label_table_name(table, name, true, &range.name, &error));
+        TOOL_TRY(tool, label_table_add(table, &range, &error));
+    }
+}
+
+/* The label of each value, by the table. */
+static void label_values(const struct tool *tool, struct values *values, struct label_image *image,
+                         const char *table)
+{
+    bool kept = false;
+    for (int32_t v = 0; v < values->count; v++) {
+        int32_t name = -1;
+        if (!label_table_find(&image->table, (int64_t)values->value[v], &name)) {
+            tool_fail(tool, STATUS_INPUT,
+                      "%s: no row for label %.0f, of %lld voxels: name it, or write '%.0f -'", table,
+                      values->value[v], (long long)values->voxels[v], values->value[v]);
+        }
+        values->label[v] = (uint16_t)(name + 1);
+        image->volume[name + 1] += (double)values->voxels[v] * image->voxel_volume;
+    }
+    for (int32_t l = 1; l < image->labels.count; l++) {
+        image->keep[l] = image->table.name[l - 1].kept;
+        kept = kept || image->keep[l];
+        if (image->volume[l] == 0 && image->keep[l]) {
+            tool_fail(tool, STATUS_INPUT, "'%s' is empty: no voxel has a label of that name",
+                      label_image_name(image, l));
+        }
+    }
+    if (!kept) {
+        tool_fail(tool, STATUS_INPUT, "%s",
+                  table != NULL ? "the table keeps no label" : "all voxels are 0: no label");
+    }
+}
+
+static void set_labels(const struct tool *tool, const struct image *source, struct label_image *image,
+                       const char *table)
+{
+    int64_t count = (int64_t)image_voxels(source);
+    SCRATCH struct values *values = NULL;
+    TOOL_TRY(tool, NEW_ARRAY(&values, 1, &error));
+    collect_values(tool, source, values);
+    if (table == NULL) {
+        name_values(tool, values, &image->table);
+    }
+    image->labels.count = image->table.name_count + 1;
+    TOOL_TRY(tool, NEW_ARRAY(&image->keep, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->region, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&image->ball, image->labels.count, &error));
+    for (int32_t l = 0; l < image->labels.count; l++) {
+        image->region[l] = l;
+        image->part_of[l] = -1;
+    }
+    TOOL_TRY(tool, NEW_ARRAY(&image->voxel, count, &error));
+    label_values(tool, values, image, table);
+    int32_t at = 0;
+    for (int64_t i = 0; i < count; i++) {
+        at = values->value[at] == source->values[i] ? at : find_value(values, source->values[i]);
+        image->voxel[i] = values->label[at];
+    }
+    image->labels.label = image->voxel;
+}
+
+/* ---- space ---- */
+
+/* The axis of the grid that runs along a world axis, the two others across it. Exits when there is none. */
+static int grid_axis(const struct tool *tool, const struct image *image, int world)
+{
+    int found = 3;
+    bool oblique = false;
+    for (int e = 0; e < 3; e++) {
+        double length = sqrt(image->to_world[0][e] * image->to_world[0][e] +
+                             image->to_world[1][e] * image->to_world[1][e] +
+                             image->to_world[2][e] * image->to_world[2][e]);
+        double along = fabs(image->to_world[world][e]) / length;
+        if (along > 1 - 1e-6) {
+            found = e;
+        }
+        oblique = oblique || (along > 1e-3 && along <= 1 - 1e-6);
+    }
+    if (oblique || found == 3) {
+        tool_fail(tool, STATUS_INPUT, "-s: the image's slices are oblique to the axis %c: resample it first",
+                  'x' + world);
+    }
+    return found;
+}
+
+/* Keep one slice of the image. */
+static void take_slice(struct image *image, int axis, size_t slice)
+{
+    size_t nx = image->size[0], ny = image->size[1], count = 0;
+    for (size_t i = 0; i < image_voxels(image); i++) {
+        const size_t at[3] = {i % nx, i / nx % ny, i / nx / ny};
+        if (at[axis] == slice) {
+            image->values[count++] = image->values[i];
+        }
+    }
+    for (int d = 0; d < 3; d++) {
+        image->to_world[d][3] += (double)slice * image->to_world[d][axis];
+    }
+    image->size[axis] = 1;
+}
+
+/* "z=12mm" */
+static void parse_slice(const struct tool *tool, const char *text, int *axis, double *place)
+{
+    double unit = 1;
+    char number[64] = "";
+    size_t length = text[0] != '\0' && text[1] == '=' ? strspn(text + 2, "+-.0123456789eE") : 0;
+    *axis = text[0] - 'x';
+    if (*axis < 0 || *axis > 2 || length == 0 || length >= sizeof number) {
+        tool_fail(tool, STATUS_INPUT, "-s: '%s' is not a place on an axis, as z=12mm", text);
+    }
+    memcpy(number, text + 2, length);
+    TOOL_TRY(tool, parse_double(number, "-s", -1e6, 1e6, place, &error));
+    if (text[2 + length] != '\0') {
+        TOOL_TRY(tool, parse_length_unit(text + 2 + length, "-s", &unit, &error));
+    }
+    *place *= unit;
+}
+
+static void choose_slice(const struct tool *tool, struct image *image, const char *slice)
+{
+    int world;
+    double place;
+    parse_slice(tool, slice, &world, &place);
+    int axis = grid_axis(tool, image, world);
+    double index = (place - image->to_world[world][3]) / image->to_world[world][axis];
+    if (!(index > -0.5 && index < (double)image->size[axis] - 0.5)) {
+        double first = image->to_world[world][3];
+        double last = first + (double)(image->size[axis] - 1) * image->to_world[world][axis];
+        tool_fail(tool, STATUS_INPUT, "-s %s: the slices lie from %g to %g m", slice, fmin(first, last),
+                  fmax(first, last));
+    }
+    take_slice(image, axis, (size_t)fmax(0, floor(index + 0.5)));
+}
+
+/* An image of one slice lies in a plane across a world axis. */
+static void set_plane(const struct tool *tool, const struct image *image, struct labels *labels)
+{
+    int flat = -1, flats = 0, count = 0, world = 0;
+    for (int d = 0; d < 3; d++) {
+        if (image->size[d] == 1) {
+            flat = d;
+            flats++;
+        }
+    }
+    if (flats > 1) {
+        tool_fail(tool, STATUS_INPUT, "the image is one line of voxels");
+    }
+    labels->dim = flats == 1 ? 2 : 3;
+    if (labels->dim == 3) {
+        return;
+    }
+    for (int d = 0; d < 3; d++) {
+        world = fabs(labels->to_voxel[flat][d]) > fabs(labels->to_voxel[flat][world]) ? d : world;
+    }
+    for (int e = 0; e < 3; e++) {
+        if (e != flat && fabs(image->to_world[world][e]) > 1e-3 * labels_voxel(labels)) {
+            tool_fail(tool, STATUS_INPUT, "the slice is oblique to the world's axes: resample it first");
+        }
+    }
+    for (int d = 0; d < 3; d++) {
+        if (d != world) {
+            labels->axis[count++] = d;
+        }
+    }
+    labels->across = image->to_world[world][3];
+}
+
+static void set_space(const struct tool *tool, const struct image *image, struct label_image *result)
+{
+    struct labels *labels = &result->labels;
+    for (int d = 0; d < 3; d++) {
+        labels->size[d] = (int64_t)image->size[d];
+    }
+    image_to_voxel(image, labels->to_voxel);
+    memcpy(result->to_world, image->to_world, sizeof result->to_world);
+    labels->dim = 3;
+    set_plane(tool, image, labels);
+    const double(*m)[4] = image->to_world;
+    double volume = 0;
+    for (int d = 0; d < 3; d++) {
+        volume += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);
+    }
+    for (int e = 0; e < 3 && labels->dim == 2; e++) {
+        const double *row = labels->to_voxel[e];
+        if (labels->size[e] == 1) {
+            volume *= sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+        }
+    }
+    result->voxel_volume = fabs(volume);
+}
+
+static void check_size(const struct tool *tool, const struct label_image *image, bool unit_given)
+{
+    struct box box = {.dim = image->labels.dim};
+    labels_box(&image->labels, box.low, box.high);
+    double diagonal = box_diagonal(&box);
+    if (!(diagonal < largest_diagonal && diagonal > smallest_diagonal) && !unit_given) {
+        tool_fail(tool, STATUS_INPUT,
+                  "the labels are %.3g m across: give the unit of the file's lengths, as -u mm", diagonal);
+    }
+}
+
+/* Tell what is kept and reaches the border of the image, where the body is cut off. */
+static void note_border(const struct tool *tool, const struct label_image *image)
+{
+    const int64_t *size = image->labels.size;
+    int32_t label = 0;
+    for (int64_t v = 0; v < size[0] * size[1] * size[2] && label == 0; v++) {
+        const int64_t at[3] = {v % size[0], v / size[0] % size[1], v / size[0] / size[1]};
+        bool border = false;
+        for (int d = 0; d < 3; d++) {
+            border = border || (size[d] > 1 && (at[d] == 0 || at[d] == size[d] - 1));
+        }
+        label = border && image->keep[image->voxel[v]] ? image->voxel[v] : 0;
+    }
+    if (label != 0) {
+        tool_note(tool, "%s reaches the border of the image: the body ends there",
+                  label_image_name(image, label));
+    }
+}
+
+void label_image_read(const struct tool *tool, const char *file, const struct label_image_options *options,
+                      struct label_image *image)
+{
+    FREED_BY(image_free) struct image source = {0};
+    *image = (struct label_image){0};
+    if (options->table != NULL) {
+        TOOL_TRY(tool, label_table_read(options->table, &image->table, &error));
+    }
+    tool_read_image(tool, file == NULL ? "-" : file, &source);
+    if (source.components > 1) {
+        tool_fail(tool, STATUS_INPUT, "%zu values at each voxel: not a label image", source.components);
+    }
+    for (int i = 0; i < 12 && options->unit > 0; i++) {
+        source.to_world[i / 4][i % 4] *= options->unit / source.unit;
+    }
+    if (options->slice != NULL) {
+        choose_slice(tool, &source, options->slice);
+    }
+    set_space(tool, &source, image);
+    set_labels(tool, &source, image, options->table);
+    check_size(tool, image, options->unit > 0);
+    note_border(tool, image);
+}
+
+void label_image_free(struct label_image *image)
+{
+    FREE_ALL(image->voxel, image->keep, image->volume, image->region, image->part_of, image->ball);
+    for (int32_t p = 0; p < image->part_count; p++) {
+        free(image->part[p]);
+    }
+    free(image->part);
+    label_table_free(&image->table);
+    *image = (struct label_image){0};
+}

@@ -1,0 +1,167 @@
+#include "images/label_mesh.h"
+
+#include "approx/cells/cells.h"
+#include "base/lists.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* An item, a facet or node, of the interface of two labels. */
+struct member {
+    int32_t inner, outer, item;
+};
+
+static int compare_members(const void *left, const void *right)
+{
+    return compare_numbers(3, left, right);
+}
+
+static bool same_group(const struct member *a, const struct member *b)
+{
+    return a->inner == b->inner && a->outer == b->outer;
+}
+
+static enum status add_name(struct mesh_names *names, const char *first, const char *second,
+                            struct error *error)
+{
+    SCRATCH char *joined = NULL;
+    if (second == NULL) {
+        return mesh_add_name(names, first, error);
+    }
+    if (asprintf(&joined, "%s|%s", first, second) < 0) {
+        return fail_memory(error, "a name");
+    }
+    return mesh_add_name(names, joined, error);
+}
+
+static enum status make_regions(const struct label_image *image, const struct label_cells *result,
+                                struct mesh *mesh, struct error *error)
+{
+    SCRATCH int32_t *region = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&region, image->labels.count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, result->cell_count, error));
+    for (int64_t c = 0; c < result->cell_count; c++) {
+        region[image->region[result->label[c]]] = 1;
+    }
+    for (int32_t l = 1; l <= image->table.name_count; l++) {
+        if (region[l] != 0) {
+            region[l] = mesh->regions.count;
+            RETURN_IF_ERROR(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
+        }
+    }
+    for (int64_t c = 0; c < result->cell_count; c++) {
+        mesh->cell_region[c] = region[image->region[result->label[c]]];
+    }
+    return STATUS_OK;
+}
+
+static enum status make_facets(const struct label_image *image, const struct label_cells *result,
+                               struct mesh *mesh, struct error *error)
+{
+    int dim = result->dim;
+    SCRATCH struct member *member = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&member, result->facet_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, result->facet_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, result->facet_count, error));
+    for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
+        int32_t inner = result->side[2 * f], part = image->part_of[inner];
+        member[f] = (struct member){inner, result->side[2 * f + 1], f};
+        if (part >= 0 && result->side[2 * f + 1] == 0) {
+            member[f] = (struct member){image->labels.count + part, 0, f};
+        }
+    }
+    qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
+    for (int64_t f = 0; f < result->facet_count; f++) {
+        if (f == 0 || !same_group(&member[f], &member[f - 1])) {
+            int32_t part = member[f].inner - image->labels.count;
+            RETURN_IF_ERROR(add_name(&mesh->facet_sets,
+                                     part >= 0 ? image->part[part] : label_image_name(image, member[f].inner),
+                                     part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
+        }
+        mesh->facet_set[f] = mesh->facet_sets.count - 1;
+        memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
+               (size_t)dim * sizeof *mesh->facets);
+    }
+    mesh->facet_count = result->facet_count;
+    return STATUS_OK;
+}
+
+/* Nodes of faces between two regions, a face once for each of its nodes: counted or, where there is room,
+ * stored. */
+static int64_t find_interfaces(const struct cells *cells, const int32_t *region, const int32_t *across,
+                               struct member *member)
+{
+    int corners = cells->dim + 1;
+    int64_t count = 0;
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        int64_t c = i / corners;
+        if (across[i] < 0 || region[across[i]] <= region[c]) {
+            continue;
+        }
+        for (int k = 0; k < corners; k++) {
+            if (k == i % corners) {
+                continue;
+            }
+            if (member != NULL) {
+                member[count] = (struct member){region[c], region[across[i]], cells->node[c * corners + k]};
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+static enum status make_sets(const struct label_image *image, const struct label_cells *result,
+                             struct mesh *mesh, struct error *error)
+{
+    struct cells cells = label_cells_view(result);
+    SCRATCH int32_t *across = NULL;
+    SCRATCH struct member *member = NULL;
+    SCRATCH int32_t *region = NULL;
+    int64_t kept = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
+    RETURN_IF_ERROR(cells_across(&cells, across, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&region, cells.count, error));
+    for (int64_t c = 0; c < cells.count; c++) {
+        region[c] = image->region[result->label[c]];
+    }
+    int64_t count = find_interfaces(&cells, region, across, NULL);
+    RETURN_IF_ERROR(NEW_ARRAY(&member, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
+    find_interfaces(&cells, region, across, member);
+    qsort(member, (size_t)count, sizeof *member, compare_members);
+    for (int64_t i = 0; i < count; i++) {
+        if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {
+            continue;
+        }
+        if (i == 0 || !same_group(&member[i], &member[i - 1])) {
+            mesh->set_ptr[mesh->node_sets.count] = kept;
+            RETURN_IF_ERROR(add_name(&mesh->node_sets, label_image_name(image, member[i].inner),
+                                     label_image_name(image, member[i].outer), error));
+        }
+        mesh->set_idx[kept++] = member[i].item;
+    }
+    mesh->set_ptr[mesh->node_sets.count] = kept;
+    return STATUS_OK;
+}
+
+enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,
+                            struct mesh *mesh, struct error *error)
+{
+    *mesh = (struct mesh){.dim = result->dim,
+                          .node_count = result->node_count,
+                          .x = result->x,
+                          .cell_count = result->cell_count,
+                          .cells = result->cell};
+    RETURN_IF_ERROR(make_regions(image, result, mesh, error));
+    RETURN_IF_ERROR(make_facets(image, result, mesh, error));
+    return make_sets(image, result, mesh, error);
+}
+
+void label_mesh_free(struct mesh *mesh)
+{
+    mesh->x = NULL; /* borrowed, as are the cells */
+    mesh->cells = NULL;
+    mesh_free(mesh);
+}

@@ -1,0 +1,67 @@
+#include "images/label_sizes.h"
+
+#include "stages/views.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                       double spacing, double *finest)
+{
+    bool *fine = NULL;
+    char *copy = tool_memory(tool, strdup(text)), *names = copy;
+    const char *length = strsep(&names, ":");
+    TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
+    if (*finest >= spacing) {
+        tool_fail(tool, STATUS_INPUT, "--fine: %s is not less than the spacing of -h", length);
+    }
+    if (names != NULL) {
+        TOOL_TRY(tool, NEW_ARRAY(&fine, image->labels.count, &error));
+    }
+    while (names != NULL) {
+        const char *name = strsep(&names, ",");
+        int32_t label = label_image_find(image, name);
+        if (label < 0) {
+            tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
+        }
+        for (int32_t l = 0; l < image->labels.count; l++) {
+            fine[l] = fine[l] || image->region[l] == label;
+        }
+    }
+    free(copy);
+    return fine;
+}
+
+void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
+                      struct label_sizes *sizes)
+{
+    const struct section *section;
+    *sizes = (struct label_sizes){0};
+    if (file == NULL) {
+        return;
+    }
+    tool_read(tool, file, &sizes->stream);
+    TOOL_TRY(tool, stream_cells(&sizes->stream, true, &sizes->cells, &error));
+    TOOL_TRY(tool, stream_need(&sizes->stream, "size", TYPE_F8, 1, "sizefield -b", &section, &error));
+    if (sizes->cells.dim != image->labels.dim) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: cells in %dD, the image is of a body in %dD",
+                  sizes->cells.dim, image->labels.dim);
+    }
+    if (section->rows != sizes->cells.node_count) {
+        tool_fail(tool, STATUS_INPUT, "--sizes: size: %lld rows for %lld nodes", (long long)section->rows,
+                  (long long)sizes->cells.node_count);
+    }
+    sizes->size = section->data;
+    for (int64_t n = 0; n < section->rows; n++) {
+        if (!(sizes->size[n] > 0) || !isfinite(sizes->size[n])) {
+            tool_fail(tool, STATUS_INPUT, "--sizes: size: row %lld: %g is not a positive length, m",
+                      (long long)n, sizes->size[n]);
+        }
+    }
+}
+
+void label_sizes_free(struct label_sizes *sizes)
+{
+    stream_free(&sizes->stream);
+}

@@ -1,0 +1,157 @@
+#include "images/label_surface.h"
+
+#include "output.h"
+
+#include "approx/cells/cells.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */
+static const double most_stretch = 2;
+
+void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                         struct label_surface_options *options)
+{
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *outer = copy;
+    const char *inner = strsep(&outer, "|");
+    options->inner = label_image_find(image, inner);
+    options->outer = outer == NULL ? -1 : strcmp(outer, "outside") == 0 ? 0 : label_image_find(image, outer);
+    if (options->inner < 0 || (outer != NULL && options->outer < 0)) {
+        tool_fail(tool, STATUS_INPUT, "--surface: no label '%.60s'", options->inner < 0 ? inner : outer);
+    }
+}
+
+static bool is_chosen(const struct label_cells *mesh, const struct label_surface_options *options,
+                      int64_t facet)
+{
+    const int32_t *side = mesh->side + 2 * facet;
+    return side[0] == options->inner && (options->outer < 0 || side[1] == options->outer);
+}
+
+/* Unit outward normal of a facet. */
+static void unit_normal(const struct label_cells *mesh, int64_t facet, double normal[3])
+{
+    int dim = mesh->dim;
+    face_area_vector(dim, mesh->x, mesh->facet + facet * dim, normal);
+    double area = vector_length(dim, normal);
+    for (int d = 0; d < dim; d++) {
+        normal[d] /= area;
+    }
+}
+
+/* Nodes of the facets moved outward along the mean normal of the facets there, so far that each of these
+ * facets is off by the gap. place[node_count * dim]. */
+static void move_outward(const struct label_cells *mesh, const struct label_surface_options *options,
+                         double *mean, double *least, double *place)
+{
+    int dim = mesh->dim;
+    double normal[3];
+    for (int64_t i = 0; i < mesh->facet_count * dim; i++) {
+        if (is_chosen(mesh, options, i / dim)) {
+            unit_normal(mesh, i / dim, normal);
+            add_scaled(dim, 1.0, normal, mean + (int64_t)mesh->facet[i] * dim);
+        }
+    }
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        double length = vector_length(dim, mean + n * dim);
+        for (int d = 0; d < dim && length > 0; d++) {
+            mean[n * dim + d] /= length;
+        }
+        least[n] = 1;
+    }
+    for (int64_t i = 0; i < mesh->facet_count * dim; i++) {
+        int64_t n = mesh->facet[i];
+        if (is_chosen(mesh, options, i / dim)) {
+            unit_normal(mesh, i / dim, normal);
+            double cosine = vector_dot(dim, normal, mean + n * dim);
+            least[n] = fmax(fmin(least[n], cosine), 1 / most_stretch);
+        }
+    }
+    for (int64_t i = 0; i < mesh->node_count * dim; i++) {
+        place[i] = mesh->x[i] + options->gap / least[i / dim] * mean[i];
+    }
+}
+
+static void print_triangles(FILE *file, const struct label_cells *mesh,
+                            const struct label_surface_options *options, const double *place)
+{
+    for (int64_t f = 0; f < mesh->facet_count; f++) {
+        for (int k = 0; k < 9 && is_chosen(mesh, options, f); k++) {
+            fprintf(file, "%.9g%c", place[3 * (int64_t)mesh->facet[3 * f + k / 3] + k % 3],
+                    k < 8 ? ' ' : '\n');
+        }
+    }
+}
+
+/* Curves: from the first edge not yet walked on along next[], by the node that an edge begins at. */
+static void print_curves(FILE *file, const struct label_cells *mesh,
+                         const struct label_surface_options *options, const double *place, int64_t *next)
+{
+    bool first = true;
+    for (int64_t n = 0; n < mesh->node_count; n++) {
+        next[n] = -1;
+    }
+    for (int64_t f = 0; f < mesh->facet_count; f++) {
+        if (is_chosen(mesh, options, f)) {
+            next[mesh->facet[2 * f]] = f;
+        }
+    }
+    /* Curves that end, between two junctions of three labels, are begun at their begin. */
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t f = 0; f < mesh->facet_count && pass == 0; f++) {
+            if (is_chosen(mesh, options, f) && next[mesh->facet[2 * f + 1]] >= 0) {
+                next[mesh->facet[2 * f + 1]] += mesh->facet_count; /* has one before it */
+            }
+        }
+        for (int64_t n = 0; n < mesh->node_count; n++) {
+            if (next[n] < 0 || (pass == 0 && next[n] >= mesh->facet_count)) {
+                continue;
+            }
+            fprintf(file, "%s%.9g %.9g\n", first ? "" : "\n", place[2 * n], place[2 * n + 1]);
+            first = false;
+            for (int64_t at = n; next[at] >= 0;) {
+                int64_t facet = next[at] % mesh->facet_count;
+                next[at] = -1;
+                at = mesh->facet[2 * facet + 1];
+                fprintf(file, "%.9g %.9g\n", place[2 * at], place[2 * at + 1]);
+            }
+        }
+    }
+}
+
+static void print_surface(const struct tool *tool, FILE *file, const struct label_cells *mesh,
+                          const struct label_surface_options *options)
+{
+    int dim = mesh->dim;
+    SCRATCH int64_t *next = NULL;
+    SCRATCH double *mean = NULL, *least = NULL, *place = NULL;
+    TOOL_TRY(tool, NEW_ARRAY(&mean, mesh->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&least, mesh->node_count, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&place, mesh->node_count * dim, &error));
+    TOOL_TRY(tool, NEW_ARRAY(&next, mesh->node_count, &error));
+    move_outward(mesh, options, mean, least, place);
+    if (dim == 3) {
+        print_triangles(file, mesh, options, place);
+    } else {
+        print_curves(file, mesh, options, place, next);
+    }
+}
+
+void label_surface_write(const struct tool *tool, const struct label_cells *mesh,
+                         const struct label_surface_options *options)
+{
+    struct target target;
+    int64_t count = 0;
+    for (int64_t f = 0; f < mesh->facet_count; f++) {
+        count += is_chosen(mesh, options, f);
+    }
+    if (count == 0) {
+        tool_fail(tool, STATUS_INPUT, "--surface: these labels do not touch");
+    }
+    target_open(tool, &target, tool->output);
+    print_surface(tool, target.file, mesh, options);
+    target_end(tool, &target);
+}

@@ -1,0 +1,39 @@
+/* The loop over the voxels of a moved image, or of the field as an image. */
+#pragma once
+
+#include "images/image_body.h"
+
+#include "approx/field/motion.h"
+#include "io/image/image_sample.h"
+
+/* What was asked for. */
+struct warp_request {
+    enum image_method method;
+    bool fills, marks_vacated, field, inverse, verbose;
+    double fill, vacated;
+    char section[32]; /* u, u.frame.K */
+};
+
+/* What has come of it. */
+struct warp_report {
+    int64_t moved, vacated,
+        beyond;              /* voxels: in the moved body; uncovered; whose place is outside of the image */
+    int64_t doubly, inexact; /* in two cells; whose place was not found */
+    double farthest;         /* displacement, m */
+    double inconsistency;    /* |place(X) - x|, m */
+};
+
+/* Everything that the loop over voxels reads. */
+struct warp_job {
+    const struct warp_request *request;
+    const struct image *source; /* NULL: the field is written */
+    double source_voxel[3][4];
+    const struct motion *motion;
+    const int32_t *owner, *other; /* the body where the voxels see it; and in its other state, or NULL */
+    double tolerance;             /* m */
+    const struct image_axes *axes;
+    struct image *result;
+};
+
+/* Find the value of each voxel of the result, and count. */
+void warp_voxels(const struct warp_job *job, struct warp_report *report);

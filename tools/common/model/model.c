@@ -1,0 +1,81 @@
+#include "model/model.h"
+
+#include "process.h"
+
+#include "base/box.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double farthest_moments = 1e6; /* of the body's size */
+
+/* Moments about a point that far away are differences of huge numbers: a unit or a sign is wrong. */
+static enum status check_moments(const struct model *model, struct error *error)
+{
+    const struct scene_output *output = &model->scene->output;
+    const struct cells *cells = &model->assembly.cells;
+    struct box box = box_of(cells->dim, cells->node_count, cells->x);
+    for (int a = 0; a < cells->dim && output->moments; a++) {
+        double away = fmax(box.low[a] - output->about[a], output->about[a] - box.high[a]);
+        if (!(away <= farthest_moments * model->assembly.extent)) {
+            return fail(
+                error, STATUS_INPUT,
+                "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",
+                model->scene->path, away, model->assembly.extent);
+        }
+    }
+    return STATUS_OK;
+}
+
+static void drop_copied(void *stream)
+{
+    static const char *const names[] = {"face.ptr", "face.idx", "face.phi"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        stream_remove(stream, names[i]);
+    }
+}
+
+enum status model_build(struct stream *stream, const int32_t *face_reader, const struct scene *scene,
+                        struct model *model, struct error *error)
+{
+    struct assembly *input = &model->assembly;
+    *model = (struct model){.stream = stream, .scene = scene};
+    RETURN_IF_ERROR(stream_cells(stream, true, &input->cells, error));
+    if (scene->dim != input->cells.dim) {
+        return fail(error, STATUS_INPUT, "%s: dim = %d, but the nodes have %d coordinates", scene->path,
+                    scene->dim, input->cells.dim);
+    }
+    RETURN_IF_ERROR(stage_tables(stream, input, error));
+    RETURN_IF_ERROR(model_materials(model, error));
+    RETURN_IF_ERROR(model_interfaces(model, error));
+    RETURN_IF_ERROR(check_moments(model, error));
+    RETURN_IF_ERROR(model_conditions(model, error));
+    input->ranks = process_ranks();
+    input->face_reader = face_reader;
+    input->copied = drop_copied;
+    input->context = stream;
+    RETURN_IF_ERROR(assembly_build(input, &model->system, &model->note, error));
+    return NEW_ARRAY(&model->row_force, model->system.rows.count, error);
+}
+
+void model_free(struct model *model)
+{
+    for (int64_t i = 0; i < model->assembly.curve_count; i++) {
+        curve_free(&model->assembly.curves[i]);
+    }
+    free(model->assembly.curves);
+    owned_free(&model->owned);
+    material_list_free(&model->assembly.materials);
+    system_free(&model->system);
+    free(model->row_force);
+    *model = (struct model){0};
+}
+
+double model_away(const struct model *model, const double *row, double unit, const double *x)
+{
+    double away = 0.0;
+    for (int a = 0; a < model->assembly.cells.dim; a++) {
+        away = fmax(away, fabs(row[a] * unit - x[a]));
+    }
+    return away / model->assembly.extent;
+}

@@ -1,0 +1,80 @@
+/* Contact of the body with itself: the facets that a section names. */
+#include "model/model.h"
+
+#include "base/vector.h"
+
+#include <string.h>
+
+/* Mean width of a list's facets, m. */
+static double mean_width(const struct model *model, const struct facet_set *set)
+{
+    const struct cells *cells = &model->assembly.cells;
+    double sum = 0.0;
+    for (int64_t f = 0; f < set->count; f++) {
+        double area[3];
+        face_area_vector(cells->dim, cells->x, set->facet + f * cells->dim, area);
+        double size = vector_length(cells->dim, area);
+        sum += cells->dim == 2 ? size : sqrt(size);
+    }
+    return sum / (double)set->count;
+}
+
+/* Append to `kept` the facets of a list, each once: the faces of the boundary that they are have the bit of
+ * the list from then on. Returns how many there are. */
+static int64_t keep_facets(int dim, const struct facet_set *set, const int64_t *face, uint8_t bit,
+                           uint8_t *listed, int32_t *kept)
+{
+    int64_t count = 0;
+    for (int64_t f = 0; f < set->count; f++) {
+        if (face[f] >= 0 && (listed[face[f]] & bit) != 0) {
+            continue;
+        }
+        if (face[f] >= 0) {
+            listed[face[f]] |= bit;
+        }
+        memcpy(kept + count++ * dim, set->facet + f * dim, (size_t)dim * sizeof *kept);
+    }
+    return count;
+}
+
+enum status model_between(struct model *model, const struct scene_contact *section,
+                          struct contact_condition *contact, struct error *error)
+{
+    const struct faces *boundary = &model->assembly.boundary;
+    struct facet_set sets[2] = {{0}}, lists[2];
+    int dim = model->assembly.cells.dim;
+    int64_t common = 0;
+    SCRATCH int64_t *face = NULL;
+    SCRATCH uint8_t *listed = NULL;
+    int32_t *kept;
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &sets[0], error));
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->against, &sets[1], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&listed, boundary->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error));
+    for (int list = 0; list < 2; list++) {
+        RETURN_IF_ERROR(MODEL_ARRAY(model, &kept, sets[list].count * dim, error));
+        RETURN_IF_ERROR(faces_find(boundary, sets[list].count, sets[list].facet, face, error));
+        lists[list] =
+            (struct facet_set){keep_facets(dim, &sets[list], face, (uint8_t)(1 << list), listed, kept), kept};
+    }
+    for (int64_t f = 0; f < boundary->count; f++) {
+        common += listed[f] == 3;
+    }
+    if (common > 0 && (common != lists[0].count || common != lists[1].count)) {
+        return fail(
+            error, STATUS_INPUT,
+            "%s: facets and against have %lld facets in common: name the same groups in both, of what "
+            "may touch itself, or groups without common facets",
+            section->label.where, (long long)common);
+    }
+    if (common > 0) {
+        lists[1] = lists[0];
+    }
+    /* Points of the finer ones press on the others. */
+    bool finer = common > 0 || mean_width(model, &lists[0]) <= mean_width(model, &lists[1]);
+    contact->facets = lists[finer ? 0 : 1];
+    contact->opposite = lists[finer ? 1 : 0];
+    contact->sign = finer ? 1 : -1;
+    contact->whole = model_is_whole(&section->facets) && model_is_whole(&section->against);
+    return STATUS_OK;
+}

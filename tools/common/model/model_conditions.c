@@ -1,0 +1,265 @@
+/* Displacements, loads and contacts of a scene, as the assembly takes them. */
+#include "model/model.h"
+
+#include "io/files/surface.h"
+#include "io/files/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Append a curve; *index receives its number. */
+static enum status add_curve(struct model *model, const struct scene_label *label,
+                             const struct scene_curve *curve, int32_t *index, struct error *error)
+{
+    static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
+                                            [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
+                                            [SCENE_CURVE_STEP] = CURVE_STEP,
+                                            [SCENE_CURVE_FILE] = CURVE_TABLE};
+    struct assembly *input = &model->assembly;
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(RESIZE_ARRAY(&input->curves, input->curve_count + 1, error));
+    struct load_curve *added = &input->curves[input->curve_count];
+    if (curve->kind != SCENE_CURVE_FILE) {
+        *added = curve_of_kind(kinds[curve->kind]);
+    } else {
+        double end = input->in_time ? model->scene->solver.end_time : 1.0;
+        RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
+                                "%s: curve: not smooth, linear or step, and as a file", label->where));
+        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error),
+                                "%s: curve %s", label->where, curve->file));
+    }
+    *index = (int32_t)input->curve_count++;
+    return STATUS_OK;
+}
+
+static enum status add_displacement(struct model *model, const struct scene_displacement *section,
+                                    struct condition *condition, struct error *error)
+{
+    static const enum condition_kind kinds[] = {[SCENE_COMPONENTS] = CONDITION_COMPONENTS,
+                                                [SCENE_NORMAL] = CONDITION_NORMAL,
+                                                [SCENE_TABLE] = CONDITION_TABLE,
+                                                [SCENE_POINTS] = CONDITION_POINTS};
+    int dim = model->assembly.cells.dim;
+    FREED_BY(table_free) struct table table = {0};
+    *condition = (struct condition){.name = section->label.name,
+                                    .where = section->label.where,
+                                    .kind = kinds[section->kind],
+                                    .normal = section->normal,
+                                    .unit = section->table_unit,
+                                    .table = section->table};
+    for (int a = 0; a < dim; a++) {
+        condition->components[a] = section->components[a];
+        condition->is_free[a] = section->is_free[a];
+    }
+    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    if (section->kind == SCENE_POINTS) {
+        return model_points(model, section, condition, error);
+    }
+    if (section->kind == SCENE_TABLE) {
+        RETURN_IF_ERROR(table_read(section->table, 2 * dim, 2 * dim, &table, error));
+        condition->row_count = table.rows;
+        condition->rows = table.values;
+        table.values = NULL;
+        RETURN_IF_ERROR(model_own(model, (void *)condition->rows, error));
+    }
+    if (section->facets.count > 0) {
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &condition->facets, error));
+    } else {
+        RETURN_IF_ERROR(model_nodes(model, &section->label, &section->nodes, &condition->nodes,
+                                    &condition->node_count, error));
+    }
+    return STATUS_OK;
+}
+
+/* The fluid of a section that has one. */
+static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
+                             struct error *error)
+{
+    static const enum fluid_part parts[] = {
+        [SCENE_BELOW] = FLUID_BELOW, [SCENE_ABOVE] = FLUID_ABOVE, [SCENE_BELOW_AND_ABOVE] = FLUID_ALL};
+    double length = hypot(hypot(section->gravity[0], section->gravity[1]), section->gravity[2]);
+    const double *gravity = length > 0.0 ? section->gravity : model->scene->gravity;
+    if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: density: a fluid without weight: give gravity here or in [scene]",
+                    section->label.where);
+    }
+    for (int a = 0; a < 3; a++) {
+        load->weight[a] = section->density * gravity[a];
+        load->level[a] = section->level[a];
+    }
+    load->is_fluid = true;
+    load->part = parts[section->level_side];
+    return STATUS_OK;
+}
+
+static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
+                            struct load *load, struct error *error)
+{
+    *load =
+        (struct load){.kind = kind,
+                      .pressure = section->pressure,
+                      .components = {section->components[0], section->components[1], section->components[2]}};
+    if (kind == LOAD_FORCE) {
+        RETURN_IF_ERROR(
+            model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
+    } else {
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &load->facets, error));
+    }
+    if (section->density > 0.0) {
+        RETURN_IF_ERROR(set_fluid(model, section, load, error));
+    }
+    return add_curve(model, &section->label, &section->curve, &load->curve, error);
+}
+
+static enum status add_loads(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    const struct {
+        const struct scene_load *sections;
+        int64_t count;
+        enum load_kind kind;
+    } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
+                 {scene->forces, scene->force_count, LOAD_FORCE},
+                 {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
+    /* In dynamics gravity acts from the begin; in a quasi-static scene it grows smoothly. */
+    const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
+    struct load *loads;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
+                                scene->traction_count + scene->force_count + scene->pressure_count, error));
+    input->loads = loads;
+    memcpy(input->gravity, scene->gravity, sizeof input->gravity);
+    if (assembly_has_gravity(input)) {
+        RETURN_IF_ERROR(add_curve(model, NULL, &curve, &input->gravity_curve, error));
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int64_t i = 0; i < kinds[k].count; i++) {
+            RETURN_IF_ERROR(
+                add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
+static enum status read_surface(struct model *model, const struct scene_contact *section,
+                                struct contact_condition *contact, struct error *error)
+{
+    FREED_BY(table_free) struct table table = {0};
+    double *corners;
+    int dim = model->assembly.cells.dim;
+    int64_t count = 0;
+    RETURN_IF_ERROR(surface_read(section->rigid, dim, &table, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &corners, table.rows * (dim == 2 ? 4 : 9), error));
+    for (int64_t b = 0; b < table.block_count && dim == 2; b++) {
+        for (int64_t r = table.block_ptr[b]; r + 1 < table.block_ptr[b + 1]; r++) {
+            for (int i = 0; i < 4; i++) {
+                corners[count * 4 + i] = table.values[r * 2 + i] * section->rigid_unit;
+            }
+            count++;
+        }
+    }
+    for (int64_t i = 0; i < table.rows * 9 && dim == 3; i++) {
+        corners[i] = table.values[i] * section->rigid_unit;
+    }
+    contact->corners = corners;
+    contact->rigid_count = dim == 3 ? table.rows : count;
+    contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
+    return STATUS_OK;
+}
+
+static enum status add_contact(struct model *model, const struct scene_contact *section,
+                               struct contact_condition *contact, struct error *error)
+{
+    struct rigid_motion *motion = &contact->motion;
+    *contact = (struct contact_condition){.where = section->label.where, .stiffness = section->stiffness};
+    if (section->against.count > 0) {
+        return model_between(model, section, contact, error);
+    }
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &contact->facets, error));
+    RETURN_IF_ERROR(read_surface(model, section, contact, error));
+    motion->moves = section->moves;
+    if (!section->moves) {
+        return STATUS_OK;
+    }
+    motion->angle = section->angle * (M_PI / 180.0);
+    for (int i = 0; i < 3; i++) {
+        motion->translation[i] = section->translation[i];
+        motion->point[i] = section->axis_point[i];
+        motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
+    }
+    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
+    return add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
+}
+
+/* The contacts that the scene has more of: what was added stays, as its curves belong to the system. */
+static enum status add_contacts(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct contact_condition *contacts;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
+    for (int64_t c = 0; c < input->contact_count; c++) {
+        contacts[c] = input->contacts[c];
+    }
+    input->contacts = contacts;
+    for (; input->contact_count < scene->contact_count; input->contact_count++) {
+        int64_t c = input->contact_count;
+        RETURN_IF_ERROR(add_contact(model, &scene->contacts[c], &contacts[c], error));
+    }
+    return STATUS_OK;
+}
+
+enum status model_conditions(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct condition *conditions;
+    input->in_time = scene->analysis == SCENE_DYNAMIC;
+    input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
+    input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
+    input->direct = scene->solver.constraints == SCENE_DIRECT;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
+    input->conditions = conditions;
+    for (; input->condition_count < scene->displacement_count; input->condition_count++) {
+        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[input->condition_count],
+                                         &conditions[input->condition_count], error));
+    }
+    RETURN_IF_ERROR(add_loads(model, error));
+    return add_contacts(model, error);
+}
+
+enum status model_renew_contacts(struct model *model, struct error *error)
+{
+    RETURN_IF_ERROR(add_contacts(model, error));
+    return assembly_renew_contacts(&model->assembly, &model->system, error);
+}
+
+enum status model_initial(const struct model *model, double *u, double *v, struct error *error)
+{
+    const struct scene_initial *initial = &model->scene->initial;
+    const struct cells *cells = &model->assembly.cells;
+    int dim = cells->dim;
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
+    if (table.rows != cells->node_count) {
+        return fail(error, STATUS_INPUT,
+                    "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
+                    model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count);
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        const double *row = table.values + n * table.cols;
+        if (!(model_away(model, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
+            return fail(error, STATUS_INPUT,
+                        "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
+                        initial->table, (long long)table.line[n], (long long)n);
+        }
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] = row[dim + a] * initial->table_unit;
+            v[n * dim + a] = row[2 * dim + a] * initial->table_unit;
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,132 @@
+/* Measured points of a section: what the table says of them, and the field there. */
+#include "model/model.h"
+
+#include "stages/stages.h"
+
+#include "approx/field/field.h"
+#include "io/files/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* One section of measured points. */
+struct point_section {
+    struct model *model;
+    const struct scene_displacement *section;
+    struct condition *condition;
+    struct table table;
+};
+
+/* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
+static enum status fail_at(const struct point_section *p, int64_t row, struct error *error, const char *what)
+{
+    const struct measured *measured = &p->condition->measured;
+    char place[96];
+    point_text(measured->dim, measured->x + row * measured->dim, place);
+    return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->section->label.where,
+                p->section->table, (long long)p->table.line[row], place, what);
+}
+
+static enum status read_section(struct point_section *p, struct error *error)
+{
+    int dim = p->model->assembly.cells.dim;
+    double *values;
+    double unit = p->section->table_unit;
+    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
+    int64_t rows = p->table.rows, cols = p->table.cols;
+    RETURN_IF_ERROR(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
+    double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
+    p->condition->measured = (struct measured){dim, rows, x, u, deviation};
+    for (int64_t i = 0; i < rows; i++) {
+        const double *row = p->table.values + i * cols;
+        int open = 0;
+        for (int a = 0; a < dim; a++) {
+            x[i * dim + a] = unit * row[a];
+            u[i * dim + a] = unit * row[dim + a];
+            open += isnan(row[dim + a]);
+        }
+        deviation[i] = cols > 2 * dim ? unit * row[2 * dim] : 0.0;
+        if (open == dim) {
+            return fail_at(p, i, error, "no component is given: leave the row out");
+        }
+        if (deviation[i] < 0.0) {
+            return fail_at(p, i, error,
+                           "its standard deviation is negative: give a length, 0 for an exact point");
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The model owns the arrays that the condition points to. */
+static enum status keep_field(struct point_section *p, struct field_table *field, struct error *error)
+{
+    enum status status = STATUS_OK;
+    void *arrays[] = {field->lists.ptr, field->lists.idx, field->phi};
+    p->condition->field =
+        (struct neighbours){.count = field->lists.count, .ptr = field->lists.ptr, .idx = field->lists.idx};
+    p->condition->field_phi = field->phi;
+    field->lists.ptr = NULL;
+    field->lists.idx = NULL;
+    field->phi = NULL;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        if (status == STATUS_OK) {
+            status = model_own(p->model, arrays[i], error);
+        } else {
+            free(arrays[i]);
+        }
+    }
+    field_table_free(field);
+    return status;
+}
+
+/* Points that are too far from the body, and the field at the others. */
+static enum status find_field(struct point_section *p, struct error *error)
+{
+    const struct cells *cells = &p->model->assembly.cells;
+    const struct measured *measured = &p->condition->measured;
+    const struct section *radius;
+    struct recorded recorded;
+    SCRATCH double *reach = NULL;
+    double given = p->section->reach;
+    SCRATCH bool *outside = NULL;
+    struct field_table field = {0};
+    RETURN_IF_ERROR(NEW_ARRAY(&reach, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&outside, measured->count, error));
+    RETURN_IF_ERROR(field_spacing(cells, reach, error));
+    for (int64_t n = 0; n < cells->node_count && given > 0.0; n++) {
+        reach[n] = given;
+    }
+    RETURN_IF_ERROR(field_outside(cells, reach, FIELD_MARGIN, measured->count, measured->x, outside, error));
+    for (int64_t i = 0; i < measured->count; i++) {
+        if (outside[i]) {
+            return fail_at(p, i, error,
+                           given > 0.0 ? "farther from the body than its reach: wrong unit or wrong place?"
+                                       : "farther from the body than the spacing of its nodes: wrong unit or "
+                                         "wrong place?");
+        }
+    }
+    RETURN_IF_ERROR(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
+    if (radius->rows != cells->node_count) {
+        return fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
+    }
+    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data,
+                                      measured->count, measured->x, p->section->table, &field, error));
+    return keep_field(p, &field, error);
+}
+
+enum status model_points(struct model *model, const struct scene_displacement *section,
+                         struct condition *condition, struct error *error)
+{
+    enum status status;
+    struct point_section p = {model, section, condition, {0}};
+    condition->model_error = section->model_error;
+    TRY(read_section(&p, error));
+    TRY(find_field(&p, error));
+    condition->line = p.table.line;
+    p.table.line = NULL;
+    TRY(model_own(model, (void *)condition->line, error));
+done:
+    table_free(&p.table);
+    return status;
+}

@@ -1,0 +1,259 @@
+#include "run/run.h"
+
+#include "base/processor.h"
+
+#include <string.h>
+
+/* ---- signals: a run that is asked to end finishes its step ---- */
+
+static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+static volatile sig_atomic_t caught;
+
+static void on_signal(int number)
+{
+    caught = number;
+}
+
+/* From now on SIGINT, SIGTERM and SIGHUP, unless ignored, only set the flag returned: their number, 0 before.
+ * The second one of a kind ends the process at once. */
+static const volatile sig_atomic_t *catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler != SIG_IGN) {
+            sigaction(numbers[i], &action, NULL);
+        }
+    }
+    return &caught;
+}
+
+/* Give the signals their default actions back. */
+static void release_signals(void)
+{
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
+            signal(numbers[i], SIG_DFL);
+        }
+    }
+}
+
+/* ---- checkpoints ---- */
+
+/* Put a section of another stream, which outlives this one. */
+static void share(const struct run *run, struct stream *stream, const struct section *section)
+{
+    TOOL_TRY(run->tool, stream_put(stream, section->name, section->type, section->rows, section->cols,
+                                   section->attributes, section->data, false, &error));
+}
+
+/* The frames that the run had given. */
+static void take_frames(struct run *run)
+{
+    const struct stream *restored = &run->checkpoint.restored;
+    for (int64_t i = 0; i < restored->section_count; i++) {
+        const struct section *section = &restored->sections[i];
+        if (run_is_of_frames(section->name) && section->type == TYPE_F8) {
+            share(run, run->stream, section);
+        }
+    }
+}
+
+/* Whether all processes have the same number. */
+static bool agree(int64_t number)
+{
+    const struct ranks *ranks = process_ranks();
+    return ranks_most(ranks, number) == number && ranks_most(ranks, -number) == -number;
+}
+
+/* Exits where several processes do not have the same before them: they would not do the same. */
+static void compare_processes(const struct run *run)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int64_t set = 0;
+    for (const char *letter = processor_best_set(); *letter != '\0'; letter++) {
+        set = 256 * set + *letter;
+    }
+    bool same[] = {agree(checkpoint->identity.scene), agree(checkpoint->identity.input),
+                   agree(checkpoint->file != NULL), agree(set)};
+    if (!same[0] || !same[1] || !same[2]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes do not read the same: give all the same scene, tables, stream and options");
+    }
+    if (!same[3]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes run on processors with different instructions: take machines of one kind");
+    }
+}
+
+static void resume(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    enum checkpoint_source source;
+    int64_t step = 0;
+    TOOL_TRY(run->tool, checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored,
+                                        &source, &step, &error));
+    if (!agree(step) || !agree((int64_t)source)) {
+        tool_fail(run->tool, STATUS_INPUT, "%s: not the same file for all processes: put it where all see it",
+                  checkpoint->file);
+    }
+    if (source == CHECKPOINT_NONE) {
+        return;
+    }
+    tool_note(run->tool, "going on from step %lld, kept in %s%s", (long long)step, checkpoint->file,
+              source == CHECKPOINT_OLD ? ".old" : "");
+    checkpoint->state = checkpoint_state(&checkpoint->restored);
+    checkpoint->is_restored = true;
+    checkpoint->is_ours = source == CHECKPOINT_NEWEST;
+    take_frames(run);
+    bool touches_itself = false;
+    const struct state_value value = {"touches_itself", STATE_FLAGS, &touches_itself, 1};
+    TOOL_TRY(run->tool, state_visit(&checkpoint->state, NULL, &value, 1, &error));
+    if (touches_itself) {
+        run_touch_itself(run);
+    }
+}
+
+void run_checkpoint_begin(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    if (checkpoint->file != NULL || process_ranks() != NULL) {
+        TOOL_TRY(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error));
+        if (run->parts->given) {
+            checkpoint->identity.input = run->parts->identity;
+        }
+        checkpoint->identity.input += run_start_identity(run);
+        compare_processes(run);
+    }
+    if (checkpoint->file != NULL) {
+        resume(run);
+    }
+    checkpoint->last = clock_seconds();
+    checkpoint->interrupted = catch_signals();
+}
+
+const struct state *run_checkpoint_state(const struct run *run)
+{
+    return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
+}
+
+/* What to see where the run is: the cloud, the frames so far, and the field at this step. */
+static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
+{
+    static const char *const names[] = {"nodes.x", "cells", "cells.region"};
+    int64_t nodes = run->model->system.node_count, dim = run->scene->dim;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const struct section *section = stream_find(run->stream, names[i]);
+        if (section != NULL) {
+            share(run, stream, section);
+        }
+    }
+    for (int64_t i = 0; i < run->stream->section_count; i++) {
+        if (run_is_of_frames(run->stream->sections[i].name)) {
+            share(run, stream, &run->stream->sections[i]);
+        }
+    }
+    double *field = run_new_values(run, nodes * dim);
+    assembly_nodal_field(&run->model->assembly, progress->u, field);
+    TOOL_TRY(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error));
+}
+
+/* The state of the run and of what this program saw of it. */
+struct whole_state {
+    struct run *run;
+    const struct progress *progress;
+};
+
+static enum status visit_whole(void *owner, const struct state *state, struct error *error)
+{
+    const struct whole_state *whole = owner;
+    const struct state_value value = {"touches_itself", STATE_FLAGS, &whole->run->touches_itself, 1};
+    RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
+    RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
+    RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
+    return state_visit(state, NULL, &value, 1, error);
+}
+
+static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    struct stream stream = {0};
+    enum status status;
+    put_view(run, progress, &stream);
+    struct whole_state whole = {run, progress};
+    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
+    TRY(checkpoint_write(checkpoint->file, checkpoint->is_ours, &stream, error));
+    checkpoint->is_ours = true;
+done:
+    stream_free(&stream);
+    checkpoint->last = clock_seconds();
+    return status;
+}
+
+/* The first process writes, when it is time. A failure that is to end the run. */
+static enum status keep(struct run *run, const struct progress *progress, bool interrupted)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    bool is_first = !checkpoint->is_ours;
+    if (!process_speaks() ||
+        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && !is_first)) {
+        return STATUS_OK;
+    }
+    checkpoint->status = write_now(run, progress, &checkpoint->error);
+    if (checkpoint->status != STATUS_OK && !interrupted) {
+        run_clear_progress(&run->display);
+        if (is_first) { /* better now than when it is needed */
+            return checkpoint->status;
+        }
+        tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",
+                  (long long)progress->step, checkpoint->error.text);
+    }
+    return STATUS_OK;
+}
+
+bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    const struct ranks *ranks = process_ranks();
+    bool interrupted = ranks_most(ranks, *checkpoint->interrupted) != 0;
+    if (checkpoint->file != NULL) {
+        enum status status = keep(run, progress, interrupted);
+        tool_check(run->tool, ranks_agree(ranks, status, &checkpoint->error), &checkpoint->error);
+    }
+    return !interrupted;
+}
+
+void run_checkpoint_end(struct run *run)
+{
+    (void)run;
+    release_signals();
+}
+
+void run_checkpoint_stop(struct run *run, int64_t steps)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int number = (int)ranks_most(process_ranks(), *checkpoint->interrupted);
+    const char *name = sigabbrev_np(number);
+    enum status status = (enum status)(128 + number);
+    if (checkpoint->file == NULL) {
+        run_fail(run, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
+                 (long long)steps);
+    }
+    if (checkpoint->status != STATUS_OK) {
+        run_fail(run, status, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
+                 checkpoint->error.text);
+    }
+    run_fail(run, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
+             (long long)steps, checkpoint->file);
+}
+
+void run_checkpoint_remove(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    stream_free(&checkpoint->restored);
+    if (checkpoint->file != NULL && process_speaks()) {
+        TOOL_TRY(run->tool, checkpoint_remove(checkpoint->file, &error));
+    }
+}

@@ -1,0 +1,356 @@
+/* Notes and verdicts on contacts: penetration, and contacts and prescribed displacements for which the body's
+ * facets are too large. */
+#include "run/run.h"
+
+#include "approx/field/field_compare.h"
+#include "solid/contact/contact_patch.h"
+#include "solid/system/energy.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More than this part of a contact's force, or of the facets held, on patches less than three nodes across.
+ */
+static const double most_thin = 0.5;
+
+/* More than this part of the forces that is missing because contacts still give way. */
+static const double most_missing = 0.01;
+
+/* Positions of the nodes. */
+static double *deformed(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    double *x = run_new_values(run, system->node_count * system->dim);
+    assembly_nodal_field(&run->model->assembly, run->u, x);
+    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
+        x[i] += system->X[i];
+    }
+    return x;
+}
+
+/* How far the rows of conditions move the body at most, m. */
+static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
+{
+    double most = 0.0;
+    for (int64_t r = 0; r < rows->count; r++) {
+        most = fmax(most, fabs(rows->target[r]) * curve_largest(&system->curves[rows->curve[r]]));
+    }
+    return most;
+}
+
+/* How far the surface moves at most at `count` places, m. */
+static double own_motion(const struct solid_system *system, const struct contact *contact,
+                         const double *place, int64_t count)
+{
+    const struct rigid_motion *motion = &contact->motion;
+    double length = 0.0;
+    if (!motion->moves) {
+        return 0.0;
+    }
+    for (int64_t v = 0; v < count; v++) {
+        length = fmax(length, rigid_motion_path(motion, contact->dim, place + v * contact->dim));
+    }
+    return length * fmax(curve_largest(&system->curves[motion->translation_curve]),
+                         curve_largest(&system->curves[motion->rotation_curve]));
+}
+
+/* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and
+ * by the points, which in front of an open rim tell less, until one is within `enough`. */
+static double distance_at_rest(const struct contact *contact, double enough)
+{
+    const struct rigid_branch *box = contact->surface.branch;
+    double between2 = 0.0, nearest = INFINITY;
+    for (int a = 0; a < contact->dim; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t p = 0; p < contact->count; p++) {
+            low = fmin(low, contact->rest[p * contact->dim + a]);
+            high = fmax(high, contact->rest[p * contact->dim + a]);
+        }
+        double gap = fmax(0.0, fmax(box->low[a] - high, low - box->high[a]));
+        between2 += gap * gap;
+    }
+    for (int64_t p = 0; p < contact->count && nearest > enough; p++) {
+        double distance =
+            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY).distance;
+        nearest = fmin(nearest, distance);
+    }
+    return fmax(sqrt(between2), nearest);
+}
+
+/* A body that is moved by more than so many times its size may be one of mm whose scene has m for mm; by more
+ * than so many, no scene means it. */
+static const double many_sizes = 10.0, most_sizes = 1e4;
+
+static void check_motion(const struct run *run, const char *where, const char *what, double way)
+{
+    static const char text[] = "%s: a %s of %.3g m is prescribed, %.3g times the size of the body: "
+                               "lengths without a unit are in m";
+    double sizes = way / run->model->assembly.extent;
+    if (sizes > most_sizes) {
+        tool_fail(run->tool, STATUS_INPUT, text, where, what, way, sizes);
+    }
+    if (sizes > many_sizes) {
+        tool_note(run->tool, text, where, what, way, sizes);
+    }
+}
+
+/* How far the surface goes beside the body and beyond it, m: a wide surface that turns moves far at its rim
+ * alone, and one that begins far away has a way to go. */
+static double motion_at_body(const struct run *run, const struct contact *contact)
+{
+    double motion = own_motion(&run->model->system, contact, contact->rest, contact->count);
+    double extent = run->model->assembly.extent;
+    return motion > many_sizes * extent ? motion - distance_at_rest(contact, extent) : motion;
+}
+
+void run_contacts_begin(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *input = &run->model->assembly;
+    /* What is thrown or pushed in time may go anywhere. */
+    bool anywhere = input->in_time && (input->load_count > 0 || assembly_has_gravity(input) ||
+                                       run->scene->initial.table != NULL);
+    double prescribed =
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
+    check_motion(run, run->scene->path, "displacement", prescribed);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct rigid_surface *surface = &contact->surface;
+        const char *where = input->contacts[contact->section].where;
+        if (surface->facet_count == 0) {
+            continue;
+        }
+        check_motion(run, where, "motion", motion_at_body(run, contact));
+        double motion = own_motion(system, contact, surface->vertex, surface->vertex_count);
+        double most = input->extent + motion + prescribed;
+        double distance = anywhere ? 0.0 : distance_at_rest(contact, most);
+        if (distance > most) {
+            tool_fail(
+                run->tool, STATUS_INPUT,
+                "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
+                "and all motion of the scene, %.3g m: wrong unit or wrong place?",
+                where, distance, input->extent, motion + prescribed);
+        }
+    }
+}
+
+/* Whether the scene requests results that are inaccurate on such patches. */
+static bool wants_forces(const struct scene_output *output)
+{
+    return output->reactions || output->moments || output->gaps;
+}
+
+/* A result whose penetration is more than this share of the motion is refused. */
+static const double most_share = 0.1;
+
+/* The displacement that moves a facet of a contact, or NULL. */
+static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
+{
+    size_t size = (size_t)input->cells.dim * sizeof *set->facet;
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct facet_set *other = &input->conditions[i].facets;
+        for (int64_t f = 0; f < other->count * set->count; f++) {
+            if (memcmp(other->facet + f / set->count * input->cells.dim,
+                       set->facet + f % set->count * input->cells.dim, size) == 0) {
+                return &input->conditions[i];
+            }
+        }
+    }
+    return NULL;
+}
+
+void run_contacts_give_way(struct run *run, double miss, double allowed, double motion)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *input = &run->model->assembly;
+    const struct contact *worst = system->contacts;
+    const char *remedy = "a finer cloud there may help";
+    char text[256];
+    if (!(miss > allowed)) {
+        return;
+    }
+    for (int64_t c = 1; c < system->contact_count; c++) {
+        worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
+    }
+    if (worst->surface.facet_count > 0) {
+        const struct contact_condition *contact = &input->contacts[worst->section];
+        const struct condition *mover = moved_by(input, &contact->facets);
+        if (mover != NULL) {
+            snprintf(text, sizeof text,
+                     "[displacement %s] moves facets of [contact %s]: leave them out of one", mover->name,
+                     run->scene->contacts[worst->section].label.name);
+            remedy = text;
+        } else if (contact->stiffness > 0.0) {
+            snprintf(text, sizeof text, "[contact %s] sets its stiffness: %s",
+                     run->scene->contacts[worst->section].label.name,
+                     input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
+            remedy = text;
+        } else if (input->in_time) {
+            remedy = "a larger stiffness, with shorter steps, or a finer cloud there helps";
+        }
+    }
+    if (!input->in_time && miss > most_share * motion) {
+        run->last_good = -1.0; /* the frames are all there */
+        run_fail(run, STATUS_VERDICT, "%s: contacts give way by %.2g m, where the body moves %.2g m: %s",
+                 run->scene->path, miss, motion, remedy);
+    }
+    tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: %s", run->scene->path, miss, allowed,
+              remedy);
+}
+
+/* To first order the energy of the contacts is the work of their forces along the penetration. The stored
+ * energy is less by this amount. It is proportional to the square of the prescribed motion, the forces to the
+ * motion itself; so half of that relative amount is missing in the forces. */
+void run_contacts_missing(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    const struct scene_output *output = &run->scene->output;
+    system_measure_contacts(system, run->u, false);
+    double stored = energy_internal(system, run->u);
+    double missing = stored > 0.0 ? energy_contact(system) / (2.0 * stored) : 0.0;
+    /* A share of more than half is round-off of a body at rest. */
+    if (missing > most_missing && missing < 0.5 &&
+        (wants_forces(output) || output->stress || output->pressure)) {
+        tool_note(
+            run->tool,
+            "%s: forces and pressures may be %.2g %% too small, as contacts still give way a little: where "
+            "these close in a body that is hardly compressible, prescribe `normal` on sides that stay in "
+            "contact",
+            run->scene->path, 100.0 * missing);
+    }
+}
+
+/* Exits where a surface has gone into the body between its nodes. */
+static void judge_patch(struct run *run, const struct contact *contact, const struct contact_patch *patch,
+                        double slack)
+{
+    const struct solid_system *system = &run->model->system;
+    const char *name = run->scene->contacts[contact->section].label.name;
+    char place[96];
+    if (patch->inside > slack) {
+        point_text(system->dim, patch->place, place);
+        run->last_good = -1.0; /* the frames are all there */
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and "
+            "nothing presses: begin with the surface outside, and refine the body there until its facets are "
+            "smaller than the contact",
+            run->scene->path, name, patch->inside, place);
+    }
+    if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
+        tool_note(run->tool,
+                  "%s: [contact %s]: the body never touches the rigid surface: has that the right unit and "
+                  "place?",
+                  run->scene->path, name);
+    }
+    /* Bodies that stand against each other at rest press a little also where they are pulled apart. */
+    double unknown = run->scene->solver.tolerance * field_largest(system->node_count, system->dim, run->u);
+    if (contact->deepest > unknown && patch->force == 0.0 && !run->model->assembly.in_time &&
+        wants_forces(&run->scene->output)) {
+        tool_note(
+            run->tool,
+            "%s: [contact %s]: pressed on the way, and does not in the end: did the body slip off it? frames "
+            "([output]) show when",
+            run->scene->path, name);
+    }
+    if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
+        point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
+        tool_note(run->tool,
+                  "%s: [contact %s]: presses on %.0lld%s, most of it about %s, where that is less than three "
+                  "across: the force may be off by tens of percent: refine the body there to a third of the "
+                  "contact's radius",
+                  run->scene->path, name, (long long)patch->pressing,
+                  patch->pressing == 0   ? "less than a node"
+                  : patch->pressing == 1 ? " node"
+                                         : " nodes",
+                  place);
+    }
+}
+
+void run_contacts_judge(struct run *run, double slack, double share)
+{
+    struct solid_system *system = &run->model->system;
+    SCRATCH double *x = system->contact_count > 0 ? deformed(run) : NULL;
+    struct cells cells = run->model->assembly.cells;
+    cells.x = x;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
+        struct contact_patch patch;
+        TOOL_TRY(run->tool, contact_patch_find(contact, set, &cells, &patch, &error));
+        judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
+    }
+}
+
+/* core[node_count]: nodes inside what is held, all of whose faces on the boundary are; in 3D, those of facets
+ * with all nodes inside. */
+static enum status find_core(const struct run *run, bool **core, struct error *error)
+{
+    const struct assembly *input = &run->model->assembly;
+    const struct faces *boundary = &input->boundary;
+    int dim = run->scene->dim;
+    int64_t node_count = input->cells.node_count;
+    SCRATCH bool *held = NULL, *inside = NULL;
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&inside, node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(core, node_count, error));
+    memset(inside, true, (size_t)node_count * sizeof *inside);
+    for (int64_t i = 0; i < boundary->count * dim; i++) {
+        inside[boundary->node[i]] = inside[boundary->node[i]] && held[i / dim];
+    }
+    for (int64_t f = 0; f < boundary->count; f++) {
+        const int32_t *node = boundary->node + f * dim;
+        bool all = dim == 2 || (inside[node[0]] && inside[node[1]] && inside[node[2]]);
+        for (int k = 0; k < dim; k++) {
+            (*core)[node[k]] = (*core)[node[k]] || (all && inside[node[k]]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* A condition most of whose facets are on patches that are too narrow to have such nodes. */
+static void note_narrow(const struct run *run, const struct condition *condition, const bool *core)
+{
+    const struct facet_set *set = &condition->facets;
+    int dim = run->scene->dim;
+    int64_t narrow = 0, at = 0;
+    char place[96];
+    for (int64_t f = 0; f < set->count; f++) {
+        bool any = false;
+        for (int k = 0; k < dim; k++) {
+            any = any || core[set->facet[f * dim + k]];
+        }
+        narrow += !any;
+        at = narrow == 1 && !any ? f : at;
+    }
+    if ((double)narrow > most_thin * (double)set->count) {
+        point_text(dim, run->model->assembly.cells.x + (int64_t)set->facet[at * dim] * dim, place);
+        tool_note(
+            run->tool,
+            "%s: [displacement %s]: %lld of its %lld facets, such as that at %s, are on patches of less than "
+            "%s facets across: the force may be %s too large: refine the body there",
+            run->scene->path, condition->name, (long long)narrow, (long long)set->count, place,
+            dim == 2 ? "two" : "three", dim == 2 ? "several percent" : "tens of percent");
+    }
+}
+
+void run_displacements_judge(const struct run *run)
+{
+    const struct assembly *input = &run->model->assembly;
+    SCRATCH bool *core = NULL;
+    if (!wants_forces(&run->scene->output)) {
+        return;
+    }
+    TOOL_TRY(run->tool, find_core(run, &core, &error));
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct condition *condition = &input->conditions[i];
+        bool whole = condition->kind == CONDITION_TABLE || condition->kind == CONDITION_COMPONENTS;
+        for (int k = 0; k < input->cells.dim; k++) {
+            whole = whole && !condition->is_free[k];
+        }
+        if (whole) {
+            note_narrow(run, condition, core);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+#include "run/run.h"
+
+#include "solid/relaxation/relaxation.h"
+
+static const char beyond_limit[] =
+    "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
+    "a dynamic scene, or refine there; frames show up to which load it stands";
+
+/* A verdict other than converged ends the run: nothing half-done passes for a result. */
+static void judge(struct run *run, const struct relaxation_report *report)
+{
+    const struct scene *scene = run->scene;
+    char place[96] = "", load[48] = "";
+    if (report->outcome != RELAXATION_STOPPED && run_folds_let_touch(run)) {
+        return;
+    }
+    if (report->load < 1.0) {
+        snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
+    }
+    if (report->outcome == RELAXATION_CONVERGED) {
+        if (report->error > scene->solver.tolerance) {
+            tool_note(run->tool, "%s: estimated error %.2g, not %.2g: %s less", scene->path, report->error,
+                      scene->solver.tolerance,
+                      run->model->system.contact_count > 0
+                          ? "contacts, whose points go from facet to facet, admit no"
+                          : "round-off admits no");
+        }
+        run_contacts_give_way(run, report->penetration, report->penetration_allowed, report->largest_move);
+        if (run->model->system.contact_count > 0) {
+            run_contacts_missing(run);
+        }
+        run_folds_judge(run);
+        run_contacts_judge(run, report->penetration_allowed, 0.0);
+        run_displacements_judge(run);
+        return;
+    }
+    if (report->outcome == RELAXATION_STALLED) {
+        const char *remedy = run_folds_touch_in_part(run) ? "" /* it is named with the fold */
+                             : run_touches_in_part(run)
+                                 ? ": to let all of it touch (facets = *, against = *), a larger tolerance, "
+                                   "a finer cloud at the contacts, or supports against rigid motion may help"
+                                 : ": a larger tolerance, a finer cloud at the contacts, or supports against "
+                                   "rigid motion may help";
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s", scene->path,
+                 (long long)report->steps, load, report->error, remedy);
+    }
+    if (report->outcome == RELAXATION_STOPPED) {
+        run_checkpoint_stop(run, report->steps);
+    }
+    if (report->outcome == RELAXATION_INVERTED) {
+        const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
+        point_text(scene->dim, x, place);
+        /* The relaxation has gone back several times, and let the load grow more slowly each time. */
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: step %lld%s: integration point %lld at %s is inverted (J = %.3g), however slowly the load "
+            "grows: %s",
+            scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
+            report->least_jacobian, beyond_limit);
+    }
+    if (report->outcome == RELAXATION_AWAY) {
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
+                 scene->path, (long long)report->steps, load, report->largest_move, beyond_limit);
+    }
+    run_fail(run, STATUS_VERDICT,
+             "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
+             "allow more (max_steps), or hold the body against rigid motion%s",
+             scene->path, (long long)report->steps, load, report->error,
+             run->model->interfaces.text[0] != '\0' ? ", or stop supports at interfaces (support -i)" : "");
+}
+
+/* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
+ * still give way. */
+static double error_left(const struct relaxation_report *report)
+{
+    return report->error * report->largest_move + report->penetration;
+}
+
+static void put_error(const struct run *run, const struct relaxation_report *report)
+{
+    double *error = run_new_values(run, 1);
+    *error = error_left(report);
+    run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
+}
+
+void run_quasi_static(struct run *run)
+{
+    const struct scene_solver *solver = &run->scene->solver;
+    const struct body *body = &run->model->system.body;
+    struct relaxation_options options = {
+        .tolerance = solver->tolerance,
+        .time_step_margin = solver->time_step_margin,
+        .ramp_steps = solver->ramp_steps,
+        .most_steps = solver->max_steps,
+        .frames = run->scene->output.frames,
+        .frame = run_put_equilibrium,
+        .progress = run_tell,
+        .context = run,
+        .interrupted = run->checkpoint.interrupted,
+        .folded = run->scene->output.folds_allowed ? NULL : &run->folds.now[FOLDED].seen,
+        .restored = run_checkpoint_state(run)};
+    struct relaxation_report report;
+    struct error error;
+    run_check_rigid_modes(run);
+    double started = clock_seconds();
+    enum status status =
+        relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
+    run->solve_seconds += clock_seconds() - started;
+    run_clear_progress(&run->display);
+    tool_check(run->tool, status, &error);
+    run->last_good = report.load;
+    run->evaluations = report.force_evaluations;
+    run_folds_look(run, run->u, report.load, true);
+    run_stability_look(run, report.load);
+    judge(run, &report);
+    if (run->again) {
+        if (run->verbose) {
+            fprintf(stderr, "steps without contact of the body with itself\t%lld\n", (long long)report.steps);
+        }
+        return;
+    }
+    put_error(run, &report);
+    if (run->verbose) {
+        fprintf(stderr,
+                "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce "
+                "evaluations\t%lld\n",
+                (long long)body->point_count, (long long)body->cells.merged_count,
+                (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
+                (long long)report.force_evaluations);
+        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
+                error_left(&report));
+        fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
+                report.largest_frequency / report.lowest_frequency, report.least_jacobian);
+        run_report_springs(run);
+    }
+}

@@ -1,0 +1,243 @@
+/* The sections that a run adds to its stream. */
+#include "io/stream/sections.h"
+#include "run/run.h"
+
+#include "solid/system/energy.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Add section `name` of a state. */
+static void put(const struct run *run, const struct moment *moment, const char *name, int64_t rows,
+                int64_t cols, const char *attributes, double *values)
+{
+    char full[64], timed[192];
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, name, rows, cols, attributes, values);
+        return;
+    }
+    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)moment->frame);
+    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, moment->time);
+    run_put(run, full, rows, cols, timed, values);
+}
+
+/* The field at the nodes, and its parameters. */
+static void put_field(const struct run *run, const struct moment *moment, const double *u)
+{
+    int dim = run->scene->dim;
+    int64_t nodes = run->model->system.node_count;
+    char vector[64];
+    double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
+    assembly_nodal_field(&run->model->assembly, u, field);
+    memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
+    put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
+    put(run, moment, "parameters", nodes, dim, vector, parameters);
+}
+
+void run_put_supports(const struct run *run)
+{
+    const struct section *radius = stream_find(run->stream, "support.radius"),
+                         *nodes = stream_find(run->stream, "nodes.x"),
+                         *side = stream_find(run->stream, "support.side");
+    if (radius == NULL || nodes == NULL || radius->rows != nodes->rows) {
+        return;
+    }
+    TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.radius", TYPE_F8, radius->rows, 1,
+                                        radius->attributes, radius->data, &error));
+    if (side != NULL) {
+        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "",
+                                            side->data, &error));
+    }
+}
+
+void run_put_frame(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    put_field(run, &(struct moment){number, time}, u);
+    run_folds_look(run, u, time, true);
+}
+
+bool run_is_of_frames(const char *name)
+{
+    size_t length;
+    return frame_of(name, &length) != FRAME_NONE || strcmp(name, "reactions.frames") == 0 ||
+           strcmp(name, "moments.frames") == 0 || strcmp(name, "energy.frames") == 0;
+}
+
+void run_drop_frames(struct stream *stream)
+{
+    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
+        if (run_is_of_frames(stream->sections[i].name)) {
+            stream_remove(stream, stream->sections[i].name);
+        }
+    }
+}
+
+/* P F^T / J */
+static void cauchy_stress(const double F[9], const double P[9], double stress[9])
+{
+    double J = determinant(F);
+    for (int k = 0; k < 9; k++) {
+        const double *p = P + k / 3 * 3, *f = F + k % 3 * 3;
+        stress[k] = (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
+    }
+}
+
+/* (F^T F - 1) / 2 */
+static void green_lagrange_strain(const double F[9], double strain[9])
+{
+    for (int k = 0; k < 9; k++) {
+        int i = k / 3, j = k % 3;
+        strain[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
+    }
+}
+
+/* tensors[points * 9]: their symmetric components, as section `name`. */
+static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *kind, const double *tensors)
+{
+    static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
+    static const char *const cols[2] = {"xx,yy,zz,xy", "xx,yy,zz,xy,xz,yz"};
+    int dim = run->scene->dim, count = dim == 2 ? 4 : 6;
+    int64_t points = run->model->system.body.point_count;
+    char attributes[96];
+    double *values = run_new_values(run, points * count);
+    for (int64_t i = 0; i < points * count; i++) {
+        values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
+    }
+    snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
+    put(run, moment, name, points, count, attributes, values);
+}
+
+/* What the scene asks for at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
+ * ratio. */
+static void put_point_fields(struct run *run, const struct moment *moment)
+{
+    struct body *body = &run->model->system.body;
+    const struct scene_output *output = &run->scene->output;
+    int64_t points = body->point_count;
+    if (output->volume_ratio) {
+        double *ratio = run_new_values(run, points);
+        body_volume_ratio(body, ratio);
+        put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
+    }
+    if (!output->stress && !output->strain && !output->pressure) {
+        return;
+    }
+    double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
+    double *pressure = run_new_values(run, points);
+    body_gradient(body, F);
+    body_stress(body, P);
+    for (int64_t q = 0; q < points; q++) {
+        double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
+        cauchy_stress(f, p, stress);
+        green_lagrange_strain(f, strain);
+        memcpy(f, strain, sizeof strain);
+        memcpy(p, stress, sizeof stress);
+        pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
+    }
+    if (output->stress) {
+        put_tensors(run, moment, "stress", "unit=Pa measure=cauchy", P);
+    }
+    if (output->strain) {
+        put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
+    }
+    FREE_ALL(F, P);
+    if (output->pressure) {
+        put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
+    } else {
+        free(pressure);
+    }
+}
+
+void run_append_row(const struct run *run, const char *name, double time, const double *values, int64_t count,
+                    const char *attributes)
+{
+    const struct section *before = stream_find(run->stream, name);
+    bool fits = before != NULL && before->type == TYPE_F8 && before->cols == count + 1;
+    int64_t rows = fits ? before->rows : 0;
+    double *table = run_new_values(run, (rows + 1) * (count + 1)), *row = table + rows * (count + 1);
+    if (fits) {
+        memcpy(table, before->data, (size_t)(rows * (count + 1)) * sizeof *table);
+    }
+    row[0] = time;
+    memcpy(row + 1, values, (size_t)count * sizeof *row);
+    run_put(run, name, rows + 1, count + 1, attributes, table);
+}
+
+/* Gap, pressure and place of every contact node of every contact. */
+static void put_gaps(const struct run *run, const struct moment *moment)
+{
+    const struct solid_system *system = &run->model->system;
+    int dim = run->scene->dim, cols = dim + 2;
+    int64_t rows = 0, at = 0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        rows += contact_nodes(&system->contacts[c])->count;
+    }
+    double *values = run_new_values(run, rows * cols);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *nodes = contact_nodes(contact);
+        for (int64_t a = 0; a < nodes->count; a++, at++) {
+            struct contact_node node = contact_node(contact, a);
+            memcpy(values + at * cols, nodes->position + a * dim, (size_t)dim * sizeof *values);
+            values[at * cols + dim] = node.gap;
+            values[at * cols + dim + 1] = node.pressure;
+        }
+    }
+    put(run, moment, "gaps", rows, cols,
+        dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure", values);
+}
+
+/* Of the state of rest. What the loads did on the way there means nothing: relaxation is no motion. */
+static void put_energy(struct run *run, const struct moment *moment)
+{
+    struct solid_system *system = &run->model->system;
+    bool is_plane = run->scene->dim == 2;
+    double values[2] = {energy_internal(system, run->u), energy_contact(system)};
+    if (moment->frame != FRAME_NONE) {
+        run_append_row(run, "energy.frames", moment->time, values, 2,
+                       is_plane ? "unit=1,J/m,J/m cols=time,internal,contact"
+                                : "unit=1,J,J cols=time,internal,contact");
+        return;
+    }
+    double *row = run_new_values(run, 2);
+    memcpy(row, values, sizeof values);
+    run_put(run, "energy", 1, 2,
+            is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", row);
+}
+
+/* What the scene asks for besides u, of the state run->u at which the system was evaluated last. */
+static void put_state(struct run *run, const struct moment *moment)
+{
+    const struct scene_output *output = &run->scene->output;
+    put_point_fields(run, moment);
+    run_put_forces(run, moment);
+    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
+        put_energy(run, moment);
+    }
+    if (output->gaps && run->model->system.contact_count > 0) {
+        put_gaps(run, moment);
+    }
+}
+
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    run_put_frame(run, number, time, u);
+    run_stability_look(run, time);
+    put_state(run, &(struct moment){number, time});
+}
+
+void run_put_results(struct run *run)
+{
+    struct model *model = run->model;
+    double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
+    /* Bring F, stresses and gaps to the final state. */
+    (void)system_residual(&model->system, run->u, scratch);
+    system_measure_contacts(&model->system, run->u, true);
+    free(scratch);
+    put_state(run, &(struct moment){.frame = FRAME_NONE});
+    put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
+}

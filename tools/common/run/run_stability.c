@@ -1,0 +1,149 @@
+#include "run/run.h"
+
+#include "approx/field/field_compare.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Near a stable equilibrium, with damping, moves fall. Near one that is not stable they fall until the mode
+ * that leaves it has grown, and then rise exponentially. So a body has left an equilibrium when, under a load
+ * that is held, the largest of the last samples' moves has risen by this factor over what it was at an
+ * estimated error below `near_error`; moves below a share of the displacement are round-off. */
+static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
+
+static int64_t parameter_count(const struct run *run)
+{
+    return run->model->system.node_count * run->model->system.dim;
+}
+
+void run_stability_begin(struct run *run)
+{
+    struct run_stability *stability = &run->stability;
+    const struct state *restored = run_checkpoint_state(run);
+    *stability = (struct run_stability){.least = INFINITY};
+    stability->near = run_new_values(run, parameter_count(run));
+    if (restored != NULL) {
+        TOOL_TRY(run->tool, run_stability_state(run, restored, &error));
+    }
+}
+
+void run_stability_free(struct run *run)
+{
+    free(run->stability.near);
+}
+
+/* Whether some contact has pressed: its augmentations, and points that come and go, begin another problem. */
+static bool has_touched(const struct solid_system *system)
+{
+    bool touched = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        touched = touched || system->contacts[c].deepest > 0.0;
+    }
+    return touched;
+}
+
+void run_stability_follow(struct run *run, const struct progress *progress)
+{
+    struct run_stability *stability = &run->stability;
+    const struct solid_system *system = &run->model->system;
+    int64_t last = (stability->samples + RUN_STABILITY_SAMPLES - 1) % RUN_STABILITY_SAMPLES;
+    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || has_touched(system)) {
+        return;
+    }
+    if (progress->time != stability->load || !isfinite(progress->move)) {
+        stability->load = progress->time;
+        stability->least = INFINITY;
+        stability->samples = 0;
+    }
+    if (!isfinite(progress->move) || (stability->samples > 0 && progress->move == stability->move[last])) {
+        return; /* nothing new: an interruption comes between two samples */
+    }
+    stability->move[stability->samples++ % RUN_STABILITY_SAMPLES] = progress->move;
+    if (stability->samples < RUN_STABILITY_SAMPLES) {
+        return;
+    }
+    double move = 0.0;
+    for (int i = 0; i < RUN_STABILITY_SAMPLES; i++) {
+        move = fmax(move, stability->move[i]);
+    }
+    if (move < stability->least && progress->error < near_error) {
+        stability->least = move;
+        memcpy(stability->near, progress->u, (size_t)parameter_count(run) * sizeof *progress->u);
+    } else if (move > growth * stability->least &&
+               move > least_share * field_largest(system->node_count, system->dim, progress->u)) {
+        stability->left = true;
+        stability->since = stability->negative ? stability->since : progress->time;
+    }
+}
+
+void run_stability_look(struct run *run, double load)
+{
+    struct run_stability *stability = &run->stability;
+    const struct stability *found = &run->model->system.stability;
+    if (found->least < 0.0 && !stability->negative) {
+        stability->negative = true;
+        stability->since = stability->left ? stability->since : load;
+        stability->node = found->node;
+    }
+}
+
+enum status run_stability_state(struct run *run, const struct state *state, struct error *error)
+{
+    struct run_stability *s = &run->stability;
+    const struct state_value values[] = {
+        {"load", STATE_NUMBERS, &s->load, 1},       {"move", STATE_NUMBERS, s->move, RUN_STABILITY_SAMPLES},
+        {"least", STATE_NUMBERS, &s->least, 1},     {"near", STATE_NUMBERS, s->near, parameter_count(run)},
+        {"looks", STATE_COUNTS, &s->samples, 1},    {"left", STATE_FLAGS, &s->left, 1},
+        {"negative", STATE_FLAGS, &s->negative, 1}, {"since", STATE_NUMBERS, &s->since, 1},
+        {"node", STATE_COUNTS, &s->node, 1}};
+    return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
+}
+
+/* The largest move from the state that was left to the final one, m, and its node. */
+static double moved_since(const struct run *run, int64_t *node)
+{
+    const double *near = run->stability.near;
+    int dim = run->scene->dim;
+    double most = 0.0;
+    *node = 0;
+    for (int64_t n = 0; n < run->model->system.node_count; n++) {
+        double move2 = vector_distance2(dim, run->u + n * dim, near + n * dim);
+        if (move2 > most * most) {
+            most = sqrt(move2);
+            *node = n;
+        }
+    }
+    return most;
+}
+
+void run_stability_describe(const struct run *run, char *text, size_t size)
+{
+    const struct run_stability *stability = &run->stability;
+    const struct solid_system *system = &run->model->system;
+    char place[96], when[48];
+    int64_t node;
+    text[0] = '\0';
+    snprintf(when, sizeof when, stability->since < 1.0 ? "from %.4g of the load on" : "at the whole load",
+             stability->since);
+    if (stability->left) {
+        double moved = moved_since(run, &node);
+        if (moved > growth * stability->least) {
+            point_text(system->dim, system->X + node * system->dim, place);
+            snprintf(
+                text, size,
+                "the body folds %s: it buckles or wrinkles, away from an equilibrium that is not stable, "
+                "most of all, by %.2g m, at %s",
+                when, moved, place);
+            return;
+        }
+    }
+    if (stability->negative) {
+        point_text(system->dim, system->X + stability->node * system->dim, place);
+        snprintf(text, size,
+                 "the body folds %s: its equilibrium is not stable, and would buckle or wrinkle, most of all "
+                 "at %s",
+                 when, place);
+    }
+}

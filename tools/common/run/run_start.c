@@ -1,0 +1,63 @@
+/* A run that begins from the field of another one, near its result: of a coarser mesh, or of other materials
+ * or loads. */
+#include "run/run.h"
+
+#include "io/checkpoint/checkpoint.h"
+
+#include <math.h>
+#include <string.h>
+
+void run_start_read(struct run *run)
+{
+    const struct scene *scene = run->scene;
+    const char *file = run->start_file;
+    if (file == NULL) {
+        return;
+    }
+    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "--start: the run begins at the whole load: a scene that is dynamic, or asks for frames, "
+                  "has states before");
+    }
+    side_read(run->tool, file, "u", &run->start);
+    const struct nodal_field *field = &run->start.field;
+    if (field->cells.dim != scene->dim || field->cols != scene->dim) {
+        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has %lld columns in %dD, where the scene has %dD",
+                  file, (long long)field->cols, field->cells.dim, scene->dim);
+    }
+    if (field->cells.count == 0) {
+        tool_fail(run->tool, STATUS_INPUT, "--start: %s: has no cells, between which u is interpolated",
+                  file);
+    }
+}
+
+uint32_t run_start_identity(const struct run *run)
+{
+    return run->start_file != NULL ? checkpoint_identify_input(&run->start.stream) : 0;
+}
+
+void run_start(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    const struct nodal_field *field = &run->start.field;
+    if (run->start_file == NULL) {
+        return;
+    }
+    const double *values = field->parameters != NULL ? field->parameters : field->values;
+    TOOL_TRY(run->tool, fail_in(&error,
+                                field_linear(&field->cells, field->cols, values, system->node_count,
+                                             system->X, run->u, &error),
+                                "--start: %s", run->start.name));
+    if (!isfinite(field_largest(system->node_count, system->dim, run->u))) {
+        tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
+                  run->start.name);
+    }
+    if (system->rows.start == NULL) { /* once, where it is computed again */
+        TOOL_TRY(run->tool, system_start(system, run->u, &error));
+    }
+}
+
+void run_start_free(struct run *run)
+{
+    stream_free(&run->start.stream);
+}
