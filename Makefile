@@ -71,7 +71,7 @@ $(BUILD)/%.o: %.c Makefile
 .PRECIOUS: $(BUILD)/%.o
 
 # No fused multiplications there: neighbour lists, shape functions and sums along fields come out the same on every processor.
-$(BUILD)/lib/approx/%.o $(BUILD)/lib/solid/preconditioner/coarse_space.o: CFLAGS += -ffp-contract=off
+$(BUILD)/lib/approx/%.o $(BUILD)/lib/base/dense.o $(BUILD)/lib/solid/preconditioner/coarse_space.o: CFLAGS += -ffp-contract=off
 # The force loop may fuse: to round-off it is the same everywhere, and to the bit for any number of threads.
 $(BUILD)/lib/solid/body/kernel.o: CFLAGS += -ffp-contract=fast
 

@@ -1,19 +1,28 @@
 #include "base/dense.h"
 
+#include "base/processor.h"
+
 #include <math.h>
+
+/* y += a x */
+ALL_SETS static void add_row(int64_t n, double a, const double *x, double *restrict y)
+{
+    for (int64_t i = 0; i < n; i++) {
+        y[i] += a * x[i];
+    }
+}
 
 bool dense_factorise(int64_t n, double *matrix)
 {
-    for (int64_t i = 0; i < n; i++) {
-        for (int64_t k = 0; k <= i; k++) {
-            double sum = matrix[i * n + k];
-            for (int64_t l = 0; l < k; l++) {
-                sum -= matrix[i * n + l] * matrix[k * n + l];
-            }
-            if (k == i && !(sum > 0.0 && isfinite(sum))) {
-                return false;
-            }
-            matrix[i * n + k] = k == i ? sqrt(sum) : sum / matrix[k * n + k];
+    for (int64_t k = 0; k < n; k++) {
+        double *above = matrix + k * n, pivot = above[k]; /* the column of L beneath it, as a row */
+        if (!(pivot > 0.0 && isfinite(pivot))) {
+            return false;
+        }
+        above[k] = sqrt(pivot);
+        for (int64_t i = k + 1; i < n; i++) {
+            above[i] = matrix[i * n + k] /= above[k];
+            add_row(i - k, -above[i], above + k + 1, matrix + i * n + k + 1);
         }
     }
     return true;
@@ -29,7 +38,7 @@ void dense_solve(int64_t n, const double *factor, double *x)
     }
     for (int64_t i = n - 1; i >= 0; i--) {
         for (int64_t k = i + 1; k < n; k++) {
-            x[i] -= factor[k * n + i] * x[k];
+            x[i] -= factor[i * n + k] * x[k];
         }
         x[i] /= factor[i * n + i];
     }
@@ -38,23 +47,25 @@ void dense_solve(int64_t n, const double *factor, double *x)
 void dense_invert(int64_t n, double *factor)
 {
     for (int64_t i = 0; i < n; i++) { /* L^-1, in the place of L */
+        double *row = factor + i * n;
+        for (int64_t l = 0; l < i; l++) {
+            double entry = row[l];
+            row[l] = 0.0;
+            add_row(l + 1, entry, factor + l * n, row);
+        }
         for (int64_t k = 0; k < i; k++) {
-            double sum = 0.0;
-            for (int64_t l = k; l < i; l++) {
-                sum += factor[i * n + l] * factor[l * n + k];
-            }
-            factor[i * n + k] = -sum / factor[i * n + i];
+            row[k] = -row[k] / row[i];
         }
-        factor[i * n + i] = 1.0 / factor[i * n + i];
+        row[i] = 1.0 / row[i];
     }
-    for (int64_t i = 0; i < n; i++) { /* L^-T L^-1, in the upper triangle */
-        for (int64_t k = i; k < n; k++) {
-            double sum = 0.0;
-            for (int64_t l = k; l < n; l++) {
-                sum += factor[l * n + i] * factor[l * n + k];
-            }
-            factor[i * n + k] = sum;
+    for (int64_t l = 0; l < n; l++) { /* L^-T L^-1, in the upper triangle */
+        const double *row = factor + l * n;
+        double last = row[l];
+        for (int64_t i = 0; i < l; i++) {
+            add_row(l - i, row[i], row + i, factor + i * n + i);
+            factor[i * n + l] = row[i] * last;
         }
+        factor[l * n + l] = last * last;
     }
     for (int64_t i = 0; i < n; i++) {
         for (int64_t k = 0; k < i; k++) {

@@ -5,8 +5,7 @@
 #include <stdint.h>
 
 /* A = L L^T of the symmetric matrix[n * n], row-major, of which the lower triangle is read: it becomes L, the
- * upper triangle is unchanged. Returns false when A is not positive definite; the lower triangle is then
- * undefined. */
+ * upper triangle L^T. Returns false when A is not positive definite; the matrix is then undefined. */
 bool dense_factorise(int64_t n, double *matrix);
 
 /* x[n] := A^-1 x from the factor. */
