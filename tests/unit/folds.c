@@ -370,6 +370,46 @@ TEST(hollow)
     }
 }
 
+/* A unit square whose node beneath the middle of its upper side, at that depth, is moved up. */
+static void make_node_beneath(struct shape *shape, double depth)
+{
+    static const double x[] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.5};
+    *shape = (struct shape){.dim = 2, .nodes = 5};
+    memcpy(shape->x, x, sizeof x);
+    shape->x[9] = 1.0 - depth;
+    add_cell(shape, (int32_t[]){0, 1, 4});
+    add_cell(shape, (int32_t[]){1, 3, 4});
+    add_cell(shape, (int32_t[]){3, 2, 4});
+    add_cell(shape, (int32_t[]){2, 0, 4});
+    finish(shape, -1, 0.0);
+}
+
+/* A flat cell that turns over is listed, and no fold where it is marked; others are folds. */
+TEST(flat)
+{
+    static struct shape shape;
+    static const struct {
+        double depth, up;
+        int64_t listed;
+    } cases[] = {{0.05, 0.1, 0}, {0.05, 0.3, 1}, {0.19, 0.4, 1}, {0.21, 0.4, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double y[MOST_NODES * 3];
+        int32_t cell[4] = {-1};
+        bool deep = cases[i].up > cases[i].depth + 0.1;
+        make_node_beneath(&shape, cases[i].depth);
+        memcpy(y, shape.x, sizeof y);
+        y[9] += cases[i].up;
+        assert_int_equal(found(&shape, y).kind, deep ? FOLD_CELL : FOLD_FLAT);
+        assert_int_equal(folds_list_flat(&shape.folds, cell), cases[i].listed);
+        if (cases[i].listed > 0) {
+            assert_int_equal(cell[0], 2);
+            shape.folds.upright[2] = true;
+            assert_int_equal(found(&shape, y).kind, FOLD_FLAT);
+        }
+        folds_free(&shape.folds);
+    }
+}
+
 /* Turned by an angle; in 3D also tilted by twice that. Facets that slide on their plane may not be turned
  * there by more than 120 degrees; others may. */
 TEST(reversed)

@@ -3,6 +3,7 @@
 
 #include "approx/points/cloud.h"
 #include "approx/field/field.h"
+#include "approx/field/field_turning.h"
 #include "approx/support/support_space.h"
 
 /* A lattice over the unit square or cube, its cells on the sides x < .5 and x > .5 of an interface. */
@@ -52,6 +53,44 @@ static double *scatter_points(int dim, int64_t count)
         x[i] = i % (3 * dim) == 0 ? 0.5 : uniform(&random, 0.0, 1.0);
     }
     return x;
+}
+
+/* A field under which lengths along x become 1 - 1.5 x of what they were: the body is turned over from x =
+ * 2/3 on. The determinant is that of the outermost points within each cell. */
+TEST_IN_EACH_DIM(field_turns_cells_over)
+{
+    struct support_options options = support_defaults(dim);
+    options.mls.basis = BASIS_QUADRATIC;
+    options.factor = 2.8;
+    struct halves halves = make_halves(dim, &options);
+    const struct cells *cells = &halves.cells;
+    FREED_BY(support_space_free) struct support_space space = {0};
+    SCRATCH double *u = NULL, *least = NULL;
+    SCRATCH int32_t *cell = NULL;
+    ARRAY(u, cells->node_count * dim);
+    ARRAY(least, cells->count);
+    ARRAY(cell, cells->count);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        u[n * dim] = -0.75 * cells->x[n * dim] * cells->x[n * dim];
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        cell[c] = (int32_t)(cells->count - 1 - c);
+    }
+    GOOD(support_space_build(&options, cells, halves.radius, &space, &error));
+    GOOD(field_least_determinants(&options, NULL, &space, cells->count, cell, u, least, &error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        double sum = 0.0, most = 0.0;
+        for (int k = 0; k <= dim; k++) {
+            double x = cells->x[cells->node[cell[c] * (dim + 1) + k] * dim];
+            sum += x;
+            most = fmax(most, x);
+        }
+        NEAR_TO(least[c], 1.0 - 1.5 * (sum + (5 - dim) * most) / 6.0, 1e-9);
+    }
+    u[0] = (double)NAN;
+    GOOD(field_least_determinants(&options, NULL, &space, cells->count, cell, u, least, &error));
+    assert_true(isnan(least[cells->count - 1]) && !isnan(least[0]));
+    halves_free(&halves);
 }
 
 /* Each list holds nodes of its side only, those of the interface among them, and all that are within reach

@@ -221,6 +221,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     struct box box = box_of(input->dim, input->node_count, input->x);
     folds->extent = box_diagonal(&box);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->upright, input->cell_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
@@ -246,8 +247,8 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 
 void folds_free(struct folds *folds)
 {
-    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->flat_ring, folds->support,
-             folds->is_held, folds->part, folds->node_part, folds->bodies, folds->y, folds->boxes,
-             folds->plane, folds->found);
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->flat_ring, folds->upright,
+             folds->support, folds->is_held, folds->part, folds->node_part, folds->bodies, folds->y,
+             folds->boxes, folds->plane, folds->found);
     *folds = (struct folds){0};
 }

@@ -13,6 +13,10 @@
  * concave there, as beside a part that is held, the cell is inverted, and no fold: the body is what the other
  * cells fill.
  *
+ * The interpolant turns over in a flat cell also where the field only bends: a node just beneath a facet gets
+ * outside of its chord where the boundary bulges. There the field is asked (approx/field/field_turning.h),
+ * and such a cell is no fold where the field keeps its orientation.
+ *
  * A facet that slides on its plane turns by half a turn only with a body that goes through the plane.
  *
  * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
@@ -36,8 +40,8 @@ enum fold_kind {
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_FLAT,     /* cells are inverted: by less than that, as slivers within the error of the field, or
-                      between facets where the boundary has become concave */
+    FOLD_FLAT,     /* cells are inverted: by less than that, as slivers within the error of the field; or flat
+                      ones in which the field is not; or between facets where the boundary has become concave */
     FOLD_SUPPORT,  /* a free facet at the rim of a plane support has gone through its plane */
     FOLD_CLOSED,   /* a side has creased: facets that meet there face each other */
     FOLD_WRAPPED   /* a side of one body presses on both sides of a corner of another */
@@ -107,11 +111,12 @@ struct folds {
     int64_t rim_count;
     int32_t *flat_ring; /* cell_count: the ring in which two facets of the cell meet that continue each other
                            at rest, turning by less than 22.5 degrees; -1: none */
-    bool *is_held;      /* node_count: of a held facet */
-    int32_t *support;   /* facet_count: the first facet of the plane support that it is in; -1: free */
-    double extent;      /* diagonal of the box around the nodes, m */
-    int32_t *part;      /* cell_count: the connected body of each cell */
-    int32_t *node_part; /* node_count: of a cell of each node */
+    bool *upright; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
+    bool *is_held; /* node_count: of a held facet */
+    int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
+    double extent;            /* diagonal of the box around the nodes, m */
+    int32_t *part;            /* cell_count: the connected body of each cell */
+    int32_t *node_part;       /* node_count: of a cell of each node */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate
@@ -134,6 +139,11 @@ void folds_free(struct folds *folds);
  * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
  * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
+
+/* After that: the cells that are turned over and were flat at rest, of a height less than a fifth of the
+ * longest edge. Of others a node is so far beyond the opposite side that no field which the cells resolve
+ * bends so much. cell[cell_count] receives them, ascending; returns their number. */
+int64_t folds_list_flat(const struct folds *folds, int32_t *cell);
 
 /* Look for cells whose middle is within a cell that they share no node with: parts of the body that lie on
  * each other, also where their boundaries only touch. That costs more than folds_find, so it is for states

@@ -110,20 +110,19 @@ static bool is_in_contact(const struct folds *folds, int64_t f)
     return any;
 }
 
-/* Whether two facets that cross penetrate each other by more than a twentieth of the smaller one: the depth
- * is the distance by which one of them must be moved to separate them. A smaller depth is within the
- * uncertainty of the field at the nodes, as conditions and contacts act on averages. Where parts of the body
- * are in contact, a corner of one may penetrate the chord of the other, since the contact acts at points a
- * fifth of a facet away from its ends; contact acts up to half of the larger facet. */
+/* Whether two facets that cross penetrate each other by more than a twentieth of the larger one: the depth is
+ * the distance by which one of them must be moved to separate them. A smaller depth is within the uncertainty
+ * of the field at the nodes, as conditions and contacts act on averages: a node beside a long edge of the
+ * body gets beyond its chord. Where parts of the body are in contact, a corner of one may penetrate the chord
+ * of the other, since the contact acts at points a fifth of a facet away from its ends; contact acts up to
+ * half of the larger facet. */
 static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 {
     double width[2];
     double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
     depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
-    if (is_in_contact(folds, f) && is_in_contact(folds, g)) {
-        return depth > held_share * fmax(width[0], width[1]);
-    }
-    return depth > FOLD_BEYOND_FACET * fmin(width[0], width[1]);
+    bool in_contact = is_in_contact(folds, f) && is_in_contact(folds, g);
+    return depth > (in_contact ? held_share : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
 }
 
 /* Whether two boxes meet along the other axes than the first. */

@@ -12,6 +12,7 @@ enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
 static const double beyond_body = 1e-3; /* see folds_find_beyond */
 static const double turned_share = 0.1; /* see is_turned_over */
+static const double flat_share = 0.2;   /* see folds_list_flat */
 
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
 {
@@ -77,11 +78,10 @@ static double cell_size(const struct folds *folds, const int32_t *node)
                        fold_position(folds, node[2]), fold_position(folds, node[dim]));
 }
 
-/* Whether a cell of that volume < 0 is turned over: its least height is more than a tenth of its longest
- * edge. */
-static bool is_turned_over(const struct folds *folds, const int32_t *node, double volume)
+/* The least height of a cell by its longest edge, at positions y. */
+static double flatness(int dim, const double *y, const int32_t *node)
 {
-    int dim = folds->input.dim;
+    const double *corner[4];
     double longest2 = 0.0, largest2 = 0.0;
     for (int k = 0; k <= dim; k++) {
         int32_t side[3] = {0, 0, 0};
@@ -89,14 +89,21 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node, doubl
         for (int i = 0; i < dim; i++) {
             side[i] = node[(k + 1 + i) % (dim + 1)];
         }
-        fold_area_vector(dim, folds->y, side, area);
+        corner[k] = y + (int64_t)node[k] * dim;
+        fold_area_vector(dim, y, side, area);
         largest2 = fmax(largest2, vector_dot(dim, area, area));
         for (int m = k + 1; m <= dim; m++) {
-            longest2 = fmax(longest2, vector_distance2(dim, fold_position(folds, node[k]),
-                                                       fold_position(folds, node[m])));
+            longest2 = fmax(longest2, vector_distance2(dim, corner[k], y + (int64_t)node[m] * dim));
         }
     }
-    return !(volume * volume <= turned_share * turned_share * longest2 * largest2);
+    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) / sqrt(longest2 * largest2);
+}
+
+/* Whether a cell that is inverted is turned over: its least height is more than a tenth of its longest edge.
+ */
+static bool is_turned_over(const struct folds *folds, const int32_t *node)
+{
+    return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
 }
 
 /* Whether a cell is between facets that continue each other at rest, and do not face each other now. */
@@ -119,8 +126,9 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
             continue;
         }
-        enum fold_kind kind =
-            is_turned_over(folds, node, volume) && !is_in_hollow(folds, c) ? FOLD_CELL : FOLD_FLAT;
+        enum fold_kind kind = is_turned_over(folds, node) && !is_in_hollow(folds, c) && !folds->upright[c]
+                                  ? FOLD_CELL
+                                  : FOLD_FLAT;
         if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
             fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
             vector_middle(dim, input->x, corners, node, fold.place);
@@ -243,6 +251,20 @@ void folds_take_positions(struct folds *folds, const double *u)
         folds->y[i] = folds->input.x[i] + u[i];
         folds->largest = fmax(folds->largest, fabs(folds->y[i]));
     }
+}
+
+int64_t folds_list_flat(const struct folds *folds, int32_t *cell)
+{
+    const struct fold_input *input = &folds->input;
+    int64_t count = 0;
+    for (int64_t c = 0; c < input->cell_count; c++) {
+        const int32_t *node = input->cell + c * (input->dim + 1);
+        if (!(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) &&
+            flatness(input->dim, input->x, node) < flat_share) {
+            cell[count++] = (int32_t)c;
+        }
+    }
+    return count;
 }
 
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)

@@ -117,12 +117,14 @@ static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
     return false;
 }
 
-/* Poor cells do not follow the field between their nodes. */
-static bool is_poor(const struct folds *folds, int64_t cell)
+/* Poor cells do not follow the field between their nodes; nor do cells that are inverted, by little or
+ * because they are flat: the body is what the others fill. */
+static bool is_left_out(const struct folds *folds, int64_t cell)
 {
     const struct fold_input *input = &folds->input;
     const struct cells cells = {input->dim, input->node_count, input->x, input->cell_count, input->cell};
-    return cell_quality(&cells, cell) < POOR_QUALITY;
+    const struct cells now = {input->dim, input->node_count, folds->y, input->cell_count, input->cell};
+    return cell_quality(&cells, cell) < POOR_QUALITY || cell_volume(&now, cell) <= 0.0;
 }
 
 enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
@@ -148,8 +150,8 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
             int32_t other = near.index[i];
             bool apart =
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
-            if (apart && contains(folds, c, middle + (int64_t)other * dim, not_deep) && !is_poor(folds, c) &&
-                !is_poor(folds, other) && fold->count++ == 0) {
+            if (apart && contains(folds, c, middle + (int64_t)other * dim, not_deep) &&
+                !is_left_out(folds, c) && !is_left_out(folds, other) && fold->count++ == 0) {
                 fold->kind = FOLD_WITHIN;
                 fold->cell = other;
                 find_middle(folds, folds->input.x, other, fold->place);

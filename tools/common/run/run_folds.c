@@ -1,9 +1,11 @@
 #include "run/run.h"
 
 #include "stages/names.h"
+#include "stages/stages.h"
 
 #include "approx/cells/cells.h"
 #include "approx/field/field.h"
+#include "approx/field/field_turning.h"
 #include "solid/contact/contact_between.h"
 
 #include <math.h>
@@ -29,6 +31,7 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->turned, cells->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->flat, cells->count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     folds->folds.in_contact = folds->in_contact;
@@ -99,7 +102,8 @@ void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
     FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
-             run->folds.in_contact, run->folds.turned);
+             run->folds.in_contact, run->folds.turned, run->folds.flat);
+    support_space_free(&run->folds.space);
 }
 
 void run_folds_forget(struct run *run)
@@ -161,13 +165,54 @@ static void evaluate_field(const struct assembly *input, const double *u, struct
     ranks_gather(ranks, folds->field, (size_t)dim * sizeof *folds->field, folds->node_first);
 }
 
+/* Mark the cells, of the `count` in folds->flat, in which the field of the parameters u keeps its
+ * orientation; none without radii of supports, or where a support is unfit. */
+static enum status ask_field(struct run *run, int64_t count, const double *u, struct error *error)
+{
+    struct run_folds *folds = &run->folds;
+    const struct cells *cells = &run->model->assembly.cells;
+    const struct section *radius = stream_find(run->stream, "support.radius");
+    struct recorded recorded;
+    SCRATCH double *least = NULL;
+    if (radius == NULL || radius->rows != cells->node_count) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stage_recorded(run->stream, "support", cells->dim, &recorded, error));
+    if (!folds->has_space) {
+        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, radius->data, &folds->space, error));
+        folds->has_space = true;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&least, count, error));
+    enum status status = field_least_determinants(&recorded.support, &recorded.shapes, &folds->space, count,
+                                                  folds->flat, u, least, error);
+    for (int64_t i = 0; i < count && status == STATUS_OK; i++) {
+        folds->folds.upright[folds->flat[i]] = least[i] > 0.0;
+    }
+    return status == STATUS_VERDICT ? STATUS_OK : status;
+}
+
+/* Folds of the map between the nodes that are folds of the field. */
+static struct fold find(struct run *run, const double *u)
+{
+    struct run_folds *folds = &run->folds;
+    bool *upright = folds->folds.upright;
+    memset(upright, 0, (size_t)folds->folds.input.cell_count * sizeof *upright);
+    struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
+    int64_t count = fold.kind == FOLD_CELL ? folds_list_flat(&folds->folds, folds->flat) : 0;
+    if (count > 0) {
+        TOOL_TRY(run->tool, ask_field(run, count, u, &error));
+        fold = folds_find(&folds->folds, folds->field, folds->stopped);
+    }
+    return fold;
+}
+
 void run_folds_look(struct run *run, const double *u, double time, bool is_frame)
 {
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     evaluate_field(&run->model->assembly, u, folds);
     mark_stopped(run, folds->stopped, folds->in_contact, folds->turned);
-    struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
+    struct fold fold = find(run, u);
     if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
         struct fold overlap;
         TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error));
@@ -274,8 +319,8 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
     case FOLD_FLAT:
         snprintf(
             text, size,
-            "%s, cells are inverted between their nodes, by less than a tenth of their size or where the "
-            "boundary has become concave: %lld, the first one cell %lld at %s",
+            "%s, cells are inverted between their nodes, by less than a tenth of their size, or flat ones "
+            "across which the field bends: %lld, the first one cell %lld at %s",
             when, (long long)fold->count, (long long)fold->cell, place);
         return;
     case FOLD_SUPPORT:

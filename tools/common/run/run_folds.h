@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/state.h"
+#include "approx/support/support_space.h"
 #include "solid/folds/folds.h"
 
 struct run;
@@ -27,7 +28,10 @@ struct run_folds {
     double *field;       /* scratch: node_count * dim */
     int64_t *node_first; /* the nodes at which each process evaluates it */
     bool *stopped, *in_contact, *turned; /* scratch: node_count */
-    bool reported;                       /* in the message that ends the run */
+    int32_t *flat;                       /* scratch: cell_count */
+    bool has_space;
+    struct support_space space; /* for the field within cells, made when it is needed */
+    bool reported;              /* in the message that ends the run */
     struct fold_spell now[FOLD_SPELLS];
     struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
 };

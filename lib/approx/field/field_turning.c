@@ -1,0 +1,90 @@
+#include "approx/field/field_turning.h"
+
+#include "approx/shape/shape.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+
+/* Six times the barycentric coordinates of the points, all positive, in two and three dimensions. */
+static const double sixths[2][FIELD_TURNING_POINTS][4] = {{{4, 1, 1, 0},
+                                                           {3, 2, 1, 0},
+                                                           {3, 1, 2, 0},
+                                                           {2, 3, 1, 0},
+                                                           {2, 2, 2, 0},
+                                                           {2, 1, 3, 0},
+                                                           {1, 4, 1, 0},
+                                                           {1, 3, 2, 0},
+                                                           {1, 2, 3, 0},
+                                                           {1, 1, 4, 0}},
+                                                          {{3, 1, 1, 1},
+                                                           {2, 2, 1, 1},
+                                                           {2, 1, 2, 1},
+                                                           {2, 1, 1, 2},
+                                                           {1, 3, 1, 1},
+                                                           {1, 2, 2, 1},
+                                                           {1, 2, 1, 2},
+                                                           {1, 1, 3, 1},
+                                                           {1, 1, 2, 2},
+                                                           {1, 1, 1, 3}}};
+
+/* x[FIELD_TURNING_POINTS * dim]: the points within a cell. */
+static void place_points(const struct cells *cells, int64_t cell, double *x)
+{
+    int dim = cells->dim;
+    const double *corner[4];
+    cell_corners(cells, cell, corner);
+    for (int p = 0; p < FIELD_TURNING_POINTS; p++) {
+        for (int i = 0; i < dim; i++) {
+            x[p * dim + i] = 0.0;
+            for (int k = 0; k <= dim; k++) {
+                x[p * dim + i] += sixths[dim - 2][p][k] / 6.0 * corner[k][i];
+            }
+        }
+    }
+}
+
+/* det (I + grad u) at point p of a table of gradients. */
+static double determinant_at(int dim, const struct neighbours *lists, int64_t p, const double *dphi,
+                             const double *u)
+{
+    double F[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    for (int64_t j = lists->ptr[p]; j < lists->ptr[p + 1]; j++) {
+        for (int i = 0; i < dim; i++) {
+            for (int k = 0; k < dim; k++) {
+                F[i][k] += u[(int64_t)lists->idx[j] * dim + i] * dphi[j * dim + k];
+            }
+        }
+    }
+    return dim == 2 ? determinant2(F[0], F[1]) : determinant3(F[0], F[1], F[2]);
+}
+
+enum status field_least_determinants(const struct support_options *options, const struct mls *shapes,
+                                     const struct support_space *space, int64_t count, const int32_t *cell,
+                                     const double *u, double *least, struct error *error)
+{
+    static const char what[] = "points within cells";
+    const struct cells *cells = &space->cells;
+    int64_t points = count * FIELD_TURNING_POINTS;
+    struct visibility_places places = {.cell = cell, .points_per_row = FIELD_TURNING_POINTS};
+    FREED_BY(support_free) struct support_lists table = {0};
+    SCRATCH double *x = NULL, *phi = NULL, *dphi = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&x, points * cells->dim, error));
+    for (int64_t i = 0; i < count; i++) {
+        place_points(cells, cell[i], x + i * FIELD_TURNING_POINTS * cells->dim);
+    }
+    RETURN_IF_ERROR(support_space_lists(options, space, &places, points, x, what, &table, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, table.ptr[points], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&dphi, table.ptr[points] * cells->dim, error));
+    struct neighbours lists = support_view(&table);
+    RETURN_IF_ERROR(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, space->radius, &lists, x,
+                                what, phi, dphi, error));
+    for (int64_t p = 0; p < points; p++) {
+        double determinant = determinant_at(cells->dim, &lists, p, dphi, u);
+        double *lowest = &least[p / FIELD_TURNING_POINTS];
+        if (p % FIELD_TURNING_POINTS == 0 || determinant < *lowest || isnan(determinant)) {
+            *lowest = determinant;
+        }
+    }
+    return STATUS_OK;
+}
