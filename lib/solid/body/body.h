@@ -91,8 +91,6 @@ struct nodal_volumes {
     struct nodal_pressures pressures;
 };
 
-struct force_kernels;
-
 struct body {
     int dim;
     int64_t node_count, point_count;
@@ -117,12 +115,11 @@ struct body {
     double *J;         /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
     bool averaged;     /* nodal volumetric averaging */
     struct nodal_volumes volumes;
-    const struct force_kernels *kernels; /* for this processor */
-    int threads;                         /* worth using for so many pairs */
-    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                       /* node_count for each: scratch */
-    struct cell_functions *bound_work;   /* for each part */
-    int64_t *bound_first;                /* of each process: the parts whose sums end with it */
+    int threads;                       /* worth using for so many pairs */
+    struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;                     /* node_count for each: scratch */
+    struct cell_functions *bound_work; /* for each part */
+    int64_t *bound_first;              /* of each process: the parts whose sums end with it */
 };
 
 /* Lay out a body; the arrays are copied. STATUS_INPUT for a point without neighbours

@@ -95,7 +95,7 @@ static void add_functions(const struct body *body, const struct bound *bound, in
     double sum[64];
     for (int64_t i = 0; i < count; i += 64) {
         int64_t some = count - i < 64 ? count - i : 64;
-        body->kernels->bounds(gradient + i * body->dim, some, bound->A, bound->smoothing, sum);
+        force_bounds(body->dim, gradient + i * body->dim, some, bound->A, bound->smoothing, sum);
         for (int64_t k = 0; k < some; k++) {
             of_node[node[i + k]] += sum[k];
         }
