@@ -210,10 +210,8 @@ TEST(nodal_pressures)
         nodal_pressures_solve(&body);
         for (int64_t a = 0; a < volumes->count; a++) {
             double sum = -volumes->content[a];
-            int64_t slice = a / NODAL_PRESSURE_ROWS, i = a % NODAL_PRESSURE_ROWS;
-            for (int64_t e = pressures->ptr[slice]; e < pressures->ptr[slice + 1]; e++) {
-                int64_t at = e * NODAL_PRESSURE_ROWS + i;
-                sum += pressures->value[at] * volumes->pressure[pressures->idx[at]];
+            for (int64_t at = pressures->matrix.ptr[a]; at < pressures->matrix.ptr[a + 1]; at++) {
+                sum += pressures->matrix.value[at] * volumes->pressure[pressures->matrix.idx[at]];
             }
             missing2 += sum * sum;
             whole2 += volumes->content[a] * volumes->content[a];

@@ -53,13 +53,9 @@ struct block {
     double energy; /* at the last call of body_energy, J (2D: J/m) */
 };
 
-/* The matrix A of the nodal pressures by slices of rows, and how A^-1 is applied: see nodal_pressure.c. */
-#define NODAL_PRESSURE_ROWS 8
+/* The matrix A of the nodal pressures, m3/Pa (2D: m2/Pa), and how A^-1 is applied: see nodal_pressure.c. */
 struct nodal_pressures {
-    int64_t slices;
-    int64_t *ptr;    /* slices + 1: the rows of slice s have the entries ptr[s] to ptr[s + 1], */
-    int32_t *idx;    /* entry k of the row i of a slice at k * NODAL_PRESSURE_ROWS + i: its column, */
-    double *value;   /* and A there, m3/Pa (2D: m2/Pa) */
+    struct sparse matrix;
     double *inverse; /* of each row: S^-1; 0 where nothing carries pressure; */
     double *held;    /* pressure held since an augmentation, Pa; */
     double *change;  /* what the last augmentation changed it by, Pa; */
@@ -86,8 +82,8 @@ struct nodal_volumes {
     double *direct;  /* point_count: what s acts on: y, or near edges means of it; NULL: no edges, y itself */
     double *modulus; /* count: S of nodal volumes that have a cell at an edge, N m (2D: N); 0 of others; */
     double *mean;    /* and Y of these, 0 of others */
-    double *content; /* rows of the slices: b, m3 (2D: m2) */
-    double *pressure; /* likewise: pi, Pa */
+    double *content; /* count: b, m3 (2D: m2) */
+    double *pressure; /* count: pi, Pa */
     struct nodal_pressures pressures;
 };
 
