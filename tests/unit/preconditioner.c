@@ -2,8 +2,9 @@
  * followed. */
 #include "lattice_fixture.h"
 
+#include "base/dense.h"
 #include "solid/preconditioner/frequency.h"
-#include "solid/preconditioner/preconditioner.h"
+#include "solid/preconditioner/preconditioner_private.h"
 
 /* A slender bar, clamped at one end and strained, and its preconditioner measured there. */
 struct strained {
@@ -20,7 +21,9 @@ static void measure(struct strained *s, bool coarse)
     system_relaxation_mass(&s->l.system, false, mass);
     GOOD(preconditioner_build(&s->l.system, coarse, &s->preconditioner, &error));
     GOOD(preconditioner_set_mass(&s->preconditioner, &s->l.system, mass, &error));
-    GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &error));
+    int64_t evaluations = 0;
+    GOOD(preconditioner_measure(&s->preconditioner, &s->l.system, s->u, &evaluations, &error));
+    assert_int_equal(evaluations, s->preconditioner.size > 0);
     (void)system_residual(&s->l.system, s->u, s->residual);
 }
 
@@ -164,6 +167,78 @@ TEST(bulk_modulus_is_limited)
         print_message("%dD: ratio of the frequencies at nu .49 %g, .499999, limited %g\n", dim, ratio[0],
                       ratio[1]);
         AT_MOST(ratio[1], 1.05 * ratio[0]);
+    }
+}
+
+/* exact[size * size]: the stiffness along the coarse fields, by the change of the forces along each. */
+static double *stiffness_by_differences(struct strained *s)
+{
+    struct preconditioner *p = &s->preconditioner;
+    const double epsilon = 1e-7;
+    double *exact = zeros(p->size * p->size, sizeof *exact), *one = zeros(p->size, sizeof *one);
+    double *force[2], *field = lattice_vector(&s->l), *moved = lattice_vector(&s->l);
+    for (int way = 0; way < 2; way++) {
+        force[way] = lattice_vector(&s->l);
+    }
+    for (int64_t k = 0; k < p->size; k++) {
+        one[k] = 1.0;
+        preconditioner_prolongate(p, one, field);
+        one[k] = 0.0;
+        for (int way = 0; way < 2; way++) {
+            for (int64_t i = 0; i < s->size; i++) {
+                moved[i] = s->u[i] + (way == 0 ? epsilon : -epsilon) * field[i];
+            }
+            system_resist(&s->l.system, moved, force[way]);
+        }
+        for (int64_t i = 0; i < s->size; i++) {
+            force[0][i] = (force[0][i] - force[1][i]) / (2.0 * epsilon);
+        }
+        preconditioner_restrict_force(p, force[0], moved, exact + k * p->size);
+    }
+    return exact;
+}
+
+/* Whether `most` times matrix a is above b: the difference positive definite. */
+static bool is_above(int64_t size, double most, const double *a, const double *b)
+{
+    double *difference = zeros(size * size, sizeof *difference);
+    for (int64_t i = 0; i < size * size; i++) {
+        int64_t across = i % size * size + i / size;
+        difference[i] = 0.5 * (most * (a[i] + a[across]) - b[i] - b[across]);
+    }
+    return dense_factorise(size, difference);
+}
+
+/* Of the norm of the exact stiffness: how far the assembled one is off. */
+static double part_off(const struct strained *s, const double *exact)
+{
+    double off2 = 0.0, whole2 = 0.0;
+    for (int64_t i = 0; i < s->preconditioner.size * s->preconditioner.size; i++) {
+        double off = s->preconditioner.body[i] - exact[i];
+        off2 += off * off;
+        whole2 += exact[i] * exact[i];
+    }
+    return sqrt(off2 / whole2);
+}
+
+/* The assembled stiffness is that of the forces to a tenth, at rest and strained. No field is more than half
+ * as stiff again as assembled; the margin of A is four times. Fields that conditions bend within a few cells
+ * are assembled up to six times as stiff as they are. */
+TEST(stiffness_is_assembled)
+{
+    for (int k = 0; k < 8; k++) {
+        struct strained s;
+        int dim = 2 + k % 2;
+        double poisson_ratio = k / 2 % 2 == 0 ? 0.3 : 0.49, strain = k < 4 ? 0.0 : 0.3;
+        strain_bar_of(&s, dim, poisson_ratio, strain, true, true);
+        double *exact = stiffness_by_differences(&s), off = part_off(&s, exact);
+        print_message("%dD, nu %g, strain %g: off by %g\n", dim, poisson_ratio, strain, off);
+        AT_MOST(off, 0.1);
+        if (strain == 0.0) { /* else the state is no equilibrium, and may have negative ones */
+            assert_true(is_above(s.preconditioner.size, 1.5, s.preconditioner.body, exact));
+            assert_true(is_above(s.preconditioner.size, 6.0, exact, s.preconditioner.body));
+        }
+        release(&s);
     }
 }
 

@@ -13,6 +13,8 @@
 
 /* So many bytes tell whether a file is a mesh. */
 #define MAGIC_SIZE 12
+/* The first element of an XML file, behind its comments, is looked for in so many. */
+#define XML_HEAD 4096
 
 /* ---- what the file is ---- */
 
@@ -74,6 +76,9 @@ static const char *foreign_hint(const char *bytes, size_t size)
         {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO},
     };
     size_t blanks = 0;
+    if (memmem(bytes, size < XML_HEAD ? size : XML_HEAD, "<febio_spec", 11) != NULL) {
+        return ": a model of FEBio: nodes -h tells how to make a mesh of it";
+    }
     while (blanks < size && isspace((unsigned char)bytes[blanks])) {
         blanks++;
     }

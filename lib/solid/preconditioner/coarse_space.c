@@ -153,23 +153,22 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
 /* Amounts by monomial and direction: those of the coarse fields of all centres at once. */
 typedef of_centres coarse_amounts[4][3];
 
-/* Numbers of eight centres, which fit into one register of processors with AVX-512: longer vectors would go
- * through memory. */
-enum { EIGHT = 8 };
-typedef double eight_centres __attribute__((vector_size(8 * EIGHT), aligned(8), may_alias));
-typedef double four_centres __attribute__((vector_size(32)));
+/* Numbers of four centres, which fit into one register of processors with AVX2: longer vectors would go
+ * through memory there. */
+enum { FOUR = 4 };
+typedef double four_centres __attribute__((vector_size(8 * FOUR), aligned(8), may_alias));
 typedef double two_centres __attribute__((vector_size(16)));
 
-#define EIGHT_OF(from) (*(const eight_centres *)(from))
+#define FOUR_OF(from) (*(const four_centres *)(from))
 
-/* The coarse fields at a node of eight centres, from `first` on, but for the radius. The dimension is known
+/* The coarse fields at a node of four centres, from `first` on, but for the radius. The dimension is known
  * when compiling, here and below. */
 KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int first, int64_t node,
-                             eight_centres value[4])
+                             four_centres value[4])
 {
-    value[0] = EIGHT_OF(coarse->share[node] + first);
+    value[0] = FOUR_OF(coarse->share[node] + first);
     for (int a = 0; a < dim; a++) {
-        value[a + 1] = value[0] * (coarse->X[node * dim + a] - EIGHT_OF(coarse->centre[a] + first));
+        value[a + 1] = value[0] * (coarse->X[node * dim + a] - FOUR_OF(coarse->centre[a] + first));
     }
 }
 
@@ -177,8 +176,8 @@ KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int fir
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
                            const double *weight, const double *v, coarse_amounts sum)
 {
-    for (int first = 0; first < coarse->centre_count; first += EIGHT) {
-        eight_centres all[4][3] = {{{0.0}}}, value[4];
+    for (int first = 0; first < coarse->centre_count; first += FOUR) {
+        four_centres all[4][3] = {{{0.0}}}, value[4];
         for (int64_t n = begin; n < end; n++) {
             double scale = weight != NULL ? weight[n] : 1.0;
             monomials(coarse, dim, first, n, value);
@@ -196,14 +195,11 @@ KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t b
 }
 
 /* By halves: in a fixed order, which costs few instructions. */
-KERNEL_INLINE double total(const eight_centres *value)
+KERNEL_INLINE double total(const four_centres *value)
 {
-    eight_centres half = *value;
-    four_centres quarter =
-        __builtin_shufflevector(half, half, 0, 1, 2, 3) + __builtin_shufflevector(half, half, 4, 5, 6, 7);
-    two_centres eighth =
-        __builtin_shufflevector(quarter, quarter, 0, 1) + __builtin_shufflevector(quarter, quarter, 2, 3);
-    return eighth[0] + eighth[1];
+    four_centres all = *value;
+    two_centres half = __builtin_shufflevector(all, all, 0, 1) + __builtin_shufflevector(all, all, 2, 3);
+    return half[0] + half[1];
 }
 
 /* u += amount there. */
@@ -211,13 +207,13 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin
                        const coarse_amounts amount, double *u)
 {
     for (int64_t n = begin; n < end; n++) {
-        eight_centres sum[3] = {{0.0}}, value[4];
-        for (int first = 0; first < coarse->centre_count; first += EIGHT) {
+        four_centres sum[3] = {{0.0}}, value[4];
+        for (int first = 0; first < coarse->centre_count; first += FOUR) {
             monomials(coarse, dim, first, n, value);
             for (int a = 0; a < dim; a++) {
-                eight_centres part = value[0] * EIGHT_OF(amount[0][a] + first);
+                four_centres part = value[0] * FOUR_OF(amount[0][a] + first);
                 for (int m = 1; m <= dim; m++) {
-                    part += value[m] * EIGHT_OF(amount[m][a] + first);
+                    part += value[m] * FOUR_OF(amount[m][a] + first);
                 }
                 sum[a] += part;
             }

@@ -83,7 +83,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
 {
     int64_t cells;
     *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
-    p->has_rigid_mode = system_has_rigid_mode(system);
+    RETURN_IF_ERROR(system_has_rigid_mode(system, &p->has_rigid_mode, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         p->contact_node_count += contact_nodes(&system->contacts[c])->count;
     }

@@ -77,11 +77,12 @@ MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditi
                                                const struct solid_system *system, const double *stiffness,
                                                struct error *error);
 
-/* Measure the stiffness along the coarse fields at u by differences. This takes size + 1 evaluations of the
- * body, so that its last evaluation is not the one before. A follows the contacts. */
+/* Take the stiffness along the coarse fields at u: of smoothed cells it is assembled, from one evaluation of
+ * the body; else it is measured by differences, from size + 1. Their number is added to *evaluations, and the
+ * body's last evaluation is not the one before. A follows the contacts. */
 MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditioner,
                                               struct solid_system *system, const double *u,
-                                              struct error *error);
+                                              int64_t *evaluations, struct error *error);
 
 /* Whether D has changed so much that the coarse fields should be measured again. */
 bool preconditioner_is_stale(const struct preconditioner *preconditioner);

@@ -37,3 +37,8 @@ double preconditioner_factorise(const struct preconditioner *preconditioner, dou
 
 /* The inverses, from what body, contacts and mass are. */
 void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
+
+/* Set the stiffness of body and penalties along the coarse fields, as it is at the last evaluation of a body
+ * of smoothed cells. */
+MUST_CHECK enum status preconditioner_assemble(struct preconditioner *preconditioner,
+                                               struct solid_system *system, struct error *error);

@@ -73,19 +73,15 @@ static void make_symmetric(int64_t n, double *matrix)
     }
 }
 
-enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
-                                   struct error *error)
+/* The stiffness of the body, by the change of its forces at u along each field. */
+static enum status measure_by_differences(struct preconditioner *p, struct solid_system *system,
+                                          const double *u, const double *at_u, struct error *error)
 {
     int64_t values = p->node_count * p->dim;
-    SCRATCH double *at_u = NULL, *moved = NULL, *force = NULL;
+    SCRATCH double *moved = NULL, *force = NULL;
     double epsilon = strain * system_node_spacing(system), *one = p->amount;
-    if (p->size == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&at_u, values, error));
     RETURN_IF_ERROR(NEW_ARRAY(&moved, values, error));
     RETURN_IF_ERROR(NEW_ARRAY(&force, values, error));
-    system_resist(system, u, at_u);
     for (int64_t k = 0; k < p->size; k++) {
         memset(one, 0, (size_t)p->size * sizeof *one);
         one[k] = 1.0;
@@ -98,6 +94,25 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
             force[i] = (force[i] - at_u[i]) / epsilon;
         }
         preconditioner_restrict_force(p, force, moved, p->body + k * p->size);
+    }
+    return STATUS_OK;
+}
+
+enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
+                                   int64_t *evaluations, struct error *error)
+{
+    SCRATCH double *at_u = NULL;
+    if (p->size == 0) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&at_u, p->node_count * p->dim, error));
+    system_resist(system, u, at_u);
+    ++*evaluations;
+    if (system->body.smoothed) {
+        RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
+    } else {
+        RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
+        *evaluations += p->size;
     }
     make_symmetric(p->size, p->body);
     p->measured_mass = preconditioner_sum_of_mass(p);

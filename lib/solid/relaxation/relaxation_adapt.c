@@ -131,8 +131,8 @@ void relaxation_note_new_mass(struct relaxation *r)
 enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error)
 {
     struct spectrum spectrum;
-    r->report->force_evaluations += r->preconditioner.size + 1;
-    enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at, error);
+    enum status status = preconditioner_measure(&r->preconditioner, r->system, r->residual_at,
+                                                &r->report->force_evaluations, error);
     (void)system_residual(r->system, r->residual_at, r->residual); /* the body's last evaluation again */
     (void)preconditioner_follow(&r->preconditioner, r->system, true, NULL, NULL);
     relaxation_note_new_mass(r);

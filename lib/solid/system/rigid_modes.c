@@ -3,6 +3,7 @@
 #include "base/box.h"
 #include "base/eigen.h"
 #include "base/memory.h"
+#include "base/null_space.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -10,13 +11,21 @@
 #include <string.h>
 
 enum { MOST_MODES = EIGEN_MOST };
-/* A rigid mode is free when the squared norm of G times it is below this share of the largest one. */
-static const double least_constrained = 1e-8;
+/* A row counts as a condition on rigid modes from this value on, by the sum of its weights. */
+static const double least_value = 1e-4;
+/* A motion has a share in those that are free from this square on, and of these a rotation. */
+static const double least_share2 = 1e-8;
+/* Free motions that hang together and are looked at. */
+enum { MOST_FREE = 300 };
 
-/* A body, and the Gram matrix of the conditions on its rigid modes: sum over the rows of value value^T. */
-struct mode_gram {
-    struct box box;
-    double matrix[MOST_MODES * MOST_MODES]; /* rows of as many as there are rigid modes */
+/* The motions of the parts of a body that conditions leave free: of each part, coefficients of its rigid
+ * modes. */
+struct parts {
+    const struct solid_system *system;
+    int32_t count;
+    const int32_t *of_node; /* node_count; NULL: all nodes are of part 0 */
+    struct box *box;        /* count: around the nodes of each */
+    struct null_space space;
 };
 
 static int mode_count(int dim)
@@ -45,38 +54,99 @@ static void rigid_mode(const struct box *box, int k, const double *X, double mod
     mode[b] = (X[a] - middle(box, a)) / side;
 }
 
-/* Add the values of row r on each rigid mode of a body; body NULL: of all nodes. */
-static void add_row(const struct solid_system *system, const struct constraint_rows *rows, int64_t r,
-                    const int32_t *body, int32_t number, struct mode_gram *gram)
+static int32_t part_of(const struct parts *parts, int32_t node)
 {
-    int dim = system->dim, modes = mode_count(dim);
-    double value[MOST_MODES] = {0.0};
-    struct average average = constraint_rows_average(rows, r);
-    for (int64_t i = 0; i < average.length; i++) {
-        for (int k = 0; k < modes && (body == NULL || body[average.idx[i]] == number); k++) {
-            double mode[3];
-            rigid_mode(&gram->box, k, system->X + (int64_t)average.idx[i] * dim, mode);
-            for (int a = 0; a < dim; a++) {
-                value[k] += average.phi[i] * rows->direction[r * dim + a] * mode[a];
-            }
-        }
-    }
-    for (int i = 0; i < modes; i++) {
-        add_scaled(modes, value[i], value, gram->matrix + i * modes);
-    }
+    return parts->of_node == NULL ? 0 : parts->of_node[node];
 }
 
-/* free[count][MOST_MODES]: an orthonormal basis of the null space of the conditions. */
-static int free_modes(int dim, const struct mode_gram *gram, double basis[][MOST_MODES])
+/* Add to the condition that is collected: `factor` times the motion of a node along a direction, as the
+ * node of part p moves. */
+static void add_node(struct parts *parts, int32_t p, int32_t node, double factor, const double *direction)
 {
-    int n = mode_count(dim), count = 0;
-    double value_of_mode[MOST_MODES], vector[MOST_MODES * MOST_MODES], largest = 0.0;
-    eigen_symmetric(n, gram->matrix, value_of_mode, vector);
-    for (int k = 0; k < n; k++) {
-        largest = fmax(largest, value_of_mode[k]);
+    int dim = parts->system->dim, modes = parts->space.columns[p] > 0 ? mode_count(dim) : 0; /* 0: held */
+    double mode[3], value[MOST_MODES] = {0.0};
+    for (int k = 0; k < modes; k++) {
+        rigid_mode(&parts->box[p], k, parts->system->X + (int64_t)node * dim, mode);
+        value[k] = vector_dot(dim, direction, mode);
     }
+    null_space_add(&parts->space, p, factor, value);
+}
+
+/* The average of each row from `first` on, along its direction, is held. */
+static enum status hold_rows(struct parts *parts, const struct constraint_rows *rows, int64_t first,
+                             struct error *error)
+{
+    for (int64_t r = first; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        double weights = 0.0;
+        for (int64_t i = 0; i < average.length; i++) {
+            int32_t node = average.idx[i];
+            add_node(parts, part_of(parts, node), node, average.phi[i],
+                     rows->direction + r * parts->system->dim);
+            weights += fabs(average.phi[i]);
+        }
+        RETURN_IF_ERROR(null_space_impose(&parts->space, least_value * weights, error));
+    }
+    return STATUS_OK;
+}
+
+/* A node moves with either of its parts. */
+static enum status hold_joint(struct parts *parts, const struct joint *joint, struct error *error)
+{
+    for (int a = 0; a < parts->system->dim; a++) {
+        double direction[3] = {0.0, 0.0, 0.0};
+        direction[a] = 1.0;
+        add_node(parts, parts->of_node[joint->node], joint->node, 1.0, direction);
+        add_node(parts, joint->part, joint->node, -1.0, direction);
+        RETURN_IF_ERROR(null_space_impose(&parts->space, least_value, error));
+    }
+    return STATUS_OK;
+}
+
+static void parts_free(struct parts *parts)
+{
+    null_space_free(&parts->space);
+    free(parts->box);
+}
+
+/* Springs of measured points hold as rows do. Rows come first, so that what they hold is small. */
+static enum status parts_find(struct parts *parts, int64_t joint_count, const struct joint *joint,
+                              struct error *error)
+{
+    const struct solid_system *system = parts->system;
+    int dim = system->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&parts->box, parts->count, error));
+    for (int32_t p = 0; p < parts->count; p++) {
+        parts->box[p] = box_of(dim, 0, NULL);
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        box_add(&parts->box[part_of(parts, (int32_t)n)], 1, system->X + n * dim);
+    }
+    for (int64_t j = 0; j < joint_count; j++) {
+        box_add(&parts->box[joint[j].part], 1, system->X + (int64_t)joint[j].node * dim);
+    }
+    RETURN_IF_ERROR(null_space_begin(parts->count, mode_count(dim), MOST_FREE, &parts->space, error));
+    RETURN_IF_ERROR(hold_rows(parts, &system->rows, 0, error));
+    RETURN_IF_ERROR(
+        hold_rows(parts, &system->penalties, system->penalties.count - system->spring_count, error));
+    for (int64_t j = 0; j < joint_count; j++) {
+        RETURN_IF_ERROR(hold_joint(parts, &joint[j], error));
+    }
+    return STATUS_OK;
+}
+
+/* basis[count][MOST_MODES]: orthonormal, the free motions of part p, whatever the others do then. */
+static int free_modes(const struct parts *parts, int32_t p, double basis[][MOST_MODES])
+{
+    int n = parts->space.size, columns = parts->space.columns[p], count = 0;
+    const double *motion = parts->space.basis[p];
+    double gram[MOST_MODES * MOST_MODES], share2[MOST_MODES], vector[MOST_MODES * MOST_MODES];
+    for (int i = 0; i < n * n; i++) {
+        gram[i] = vector_dot(columns, motion + i / n * columns, motion + i % n * columns);
+    }
+    eigen_symmetric(n, gram, share2, vector);
     for (int k = 0; k < n; k++) {
-        if (!(value_of_mode[k] > least_constrained * largest)) {
+        if (share2[k] > least_share2) {
             for (int i = 0; i < n; i++) {
                 basis[count][i] = vector[i * n + k];
             }
@@ -104,13 +174,13 @@ static void put_rotation(const struct box *box, const double *mode, struct rigid
     modes->turns++;
 }
 
-/* The free modes as translations, and rotations across them. */
-static void split_modes(int dim, const struct mode_gram *gram, struct rigid_modes *modes)
+/* The free modes of part p as translations, and rotations across them. */
+static void split_modes(const struct parts *parts, int32_t p, struct rigid_modes *modes)
 {
-    int n = mode_count(dim);
+    int dim = parts->system->dim, n = mode_count(dim);
     double basis[MOST_MODES][MOST_MODES], turning[MOST_MODES * MOST_MODES], mix[MOST_MODES * MOST_MODES];
     double turned[MOST_MODES];
-    int count = free_modes(dim, gram, basis);
+    int count = free_modes(parts, p, basis);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < count; k++) {
             turning[i * count + k] = 0.0;
@@ -127,97 +197,35 @@ static void split_modes(int dim, const struct mode_gram *gram, struct rigid_mode
                 mode[a] += mix[i * count + k] * basis[i][a];
             }
         }
-        if (turned[k] > least_constrained) {
-            put_rotation(&gram->box, mode, modes);
+        if (turned[k] > least_share2) {
+            put_rotation(&parts->box[p], mode, modes);
         } else {
             memcpy(modes->along[modes->translations++], mode, (size_t)dim * sizeof *mode);
         }
     }
 }
 
-/* The springs of measured points hold as rows do. */
-static int64_t first_spring(const struct solid_system *system)
+enum status system_rigid_modes(const struct solid_system *system, int32_t part_count, const int32_t *part,
+                               int64_t joint_count, const struct joint *joint, struct rigid_modes *modes,
+                               bool *complete, struct error *error)
 {
-    return system->penalties.count - system->spring_count;
-}
-
-/* Rows from `first` on, on the bodies that they hold. */
-static void add_rows(const struct solid_system *system, const struct constraint_rows *rows, int64_t first,
-                     const int32_t *body, struct mode_gram *gram)
-{
-    for (int64_t r = first; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        int32_t last = -1;
-        for (int64_t i = 0; i < average.length; i++) { /* a body twice: weighs twice */
-            if (body[average.idx[i]] != last && body[average.idx[i]] >= 0) {
-                last = body[average.idx[i]];
-                add_row(system, rows, r, body, last, &gram[last]);
-            }
+    FREED_BY(parts_free) struct parts parts = {.system = system, .count = part_count, .of_node = part};
+    RETURN_IF_ERROR(parts_find(&parts, joint_count, joint, error));
+    memset(modes, 0, (size_t)part_count * sizeof *modes);
+    for (int32_t p = 0; p < part_count; p++) {
+        for (int a = 0; a < system->dim; a++) {
+            modes[p].centre[a] = middle(&parts.box[p], a);
         }
+        split_modes(&parts, p, &modes[p]);
     }
-}
-
-/* Add the rows of a fixed node at X to the Gram matrix. */
-static void add_fixed_node(int dim, const double *X, struct mode_gram *gram)
-{
-    int modes = mode_count(dim);
-    double mode[MOST_MODES][3], value[MOST_MODES];
-    for (int k = 0; k < modes; k++) {
-        rigid_mode(&gram->box, k, X, mode[k]);
-    }
-    for (int a = 0; a < dim; a++) {
-        for (int k = 0; k < modes; k++) {
-            value[k] = mode[k][a];
-        }
-        for (int i = 0; i < modes; i++) {
-            add_scaled(modes, value[i], value, gram->matrix + i * modes);
-        }
-    }
-}
-
-enum status system_rigid_modes(const struct solid_system *system, int64_t body_count, const int32_t *body,
-                               int64_t hinge_count, const struct hinge *hinge, struct rigid_modes *modes,
-                               struct error *error)
-{
-    SCRATCH struct mode_gram *gram = NULL;
-    int dim = system->dim;
-    RETURN_IF_ERROR(NEW_ARRAY(&gram, body_count, error));
-    memset(modes, 0, (size_t)body_count * sizeof *modes);
-    for (int64_t b = 0; b < body_count; b++) {
-        gram[b].box = box_of(dim, 0, NULL);
-    }
-    for (int64_t n = 0; n < system->node_count; n++) {
-        if (body[n] >= 0) {
-            box_add(&gram[body[n]].box, 1, system->X + n * dim);
-            modes[body[n]].nodes++;
-        }
-    }
-    for (int64_t h = 0; h < hinge_count; h++) {
-        box_add(&gram[hinge[h].body].box, 1, system->X + (int64_t)hinge[h].node * dim);
-    }
-    for (int64_t h = 0; h < hinge_count; h++) {
-        add_fixed_node(dim, system->X + (int64_t)hinge[h].node * dim, &gram[hinge[h].body]);
-    }
-    add_rows(system, &system->rows, 0, body, gram);
-    add_rows(system, &system->penalties, first_spring(system), body, gram);
-    for (int64_t b = 0; b < body_count; b++) {
-        for (int a = 0; a < dim; a++) {
-            modes[b].centre[a] = middle(&gram[b].box, a);
-        }
-        split_modes(dim, &gram[b], &modes[b]);
-    }
+    *complete = parts.space.complete;
     return STATUS_OK;
 }
 
-bool system_has_rigid_mode(const struct solid_system *system)
+enum status system_has_rigid_mode(const struct solid_system *system, bool *has, struct error *error)
 {
-    double basis[MOST_MODES][MOST_MODES];
-    struct mode_gram gram = {.box = box_of(system->dim, system->node_count, system->X)};
-    for (int64_t r = 0; r < system->rows.count; r++) {
-        add_row(system, &system->rows, r, NULL, 0, &gram);
-    }
-    for (int64_t r = first_spring(system); r < system->penalties.count; r++) {
-        add_row(system, &system->penalties, r, NULL, 0, &gram);
-    }
-    return free_modes(system->dim, &gram, basis) > 0;
+    FREED_BY(parts_free) struct parts parts = {.system = system, .count = 1};
+    RETURN_IF_ERROR(parts_find(&parts, 0, NULL, error));
+    *has = parts.space.columns[0] > 0;
+    return STATUS_OK;
 }

@@ -3,10 +3,9 @@
 
 #include "solid/system/system.h"
 
-/* The rigid motions of a body that violate no condition. Contacts do not count; springs of measured points
+/* The rigid motions of a part that violate no condition. Contacts do not count; springs of measured points
  * count as conditions. */
 struct rigid_modes {
-    int64_t nodes;        /* of the body */
     double centre[3];     /* of the box of its nodes, m */
     int translations;     /* the free ones, */
     double along[3][3];   /* orthonormal directions of them */
@@ -15,17 +14,19 @@ struct rigid_modes {
     double axis[3][3];    /* orthogonal unit vectors; in 2D not used */
 };
 
-/* A body is held at a node that it shares with others. */
-struct hinge {
-    int32_t body, node;
+/* Another part that a node is of: it moves with either. */
+struct joint {
+    int32_t part, node;
 };
 
-/* modes[body_count]: those of each body; body[node_count]: the body of each node, negative: none.
- * Of a condition's average, the part on the nodes of a body constrains that body. A body is fixed at its
- * hinges, hinge[hinge_count], whose nodes are of no body. */
-MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int64_t body_count,
-                                          const int32_t *body, int64_t hinge_count, const struct hinge *hinge,
-                                          struct rigid_modes *modes, struct error *error);
+/* modes[part_count]: those of each part, as the others may move, too; part[node_count]: the part of each
+ * node. A condition holds its average over all parts that its nodes are of.
+ * joint[joint_count]. *complete: false where more free motions hang together than are looked at, so that
+ * what is free in truth may be less. STATUS_SYSTEM for memory. */
+MUST_CHECK enum status system_rigid_modes(const struct solid_system *system, int32_t part_count,
+                                          const int32_t *part, int64_t joint_count, const struct joint *joint,
+                                          struct rigid_modes *modes, bool *complete, struct error *error);
 
-/* Whether the nodes, taken as one body, have a free rigid-body mode. */
-bool system_has_rigid_mode(const struct solid_system *system);
+/* *has: whether the nodes, taken as one body, have a free rigid-body mode. STATUS_SYSTEM for memory. */
+MUST_CHECK enum status system_has_rigid_mode(const struct solid_system *system, bool *has,
+                                             struct error *error);

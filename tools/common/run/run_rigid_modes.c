@@ -12,7 +12,7 @@
 
 /* The bodies of a model: what hangs together by cells. */
 struct bodies {
-    int64_t count;
+    int32_t count;
     int32_t *of_node;          /* node_count */
     int64_t *cell;             /* count: one of its cells, whose region names it */
     bool *touches;             /* count: a contact acts on it, with a rigid surface or a body that stays */
@@ -28,7 +28,7 @@ static void join_cells(const struct cells *cells, struct bodies *bodies)
     for (int64_t n = 0; n < cells->node_count; n++) {
         /* The first node comes before the others: it has its number by then. */
         int32_t of = first[n];
-        first[n] = of == n ? (int32_t)bodies->count++ : first[of];
+        first[n] = of == n ? bodies->count++ : first[of];
     }
 }
 
@@ -90,6 +90,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
 {
     const struct cells *cells = &model->assembly.cells;
     const struct solid_system *system = &model->system;
+    bool complete;
     *bodies = (struct bodies){0};
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
     join_cells(cells, bodies);
@@ -101,7 +102,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
     }
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
     RETURN_IF_ERROR(
-        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->modes, error));
+        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->modes, &complete, error));
     return find_touching(system, bodies, error);
 }
 
@@ -166,82 +167,77 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     return STATUS_OK;
 }
 
-/* Parts of bodies that are joined to the rest by nodes alone, at corners and edges of cells: by cells with
- * common faces, see cells_parts. */
+/* Parts of bodies that are joined by nodes alone, at corners and edges of cells: by cells with common faces,
+ * see cells_parts. */
 struct hinged {
-    int32_t *of_node; /* the part of each node; NO_PART, or SHARED by parts */
-    struct hinge *hinge;
-    int64_t hinge_count;
-    struct rigid_modes *modes; /* of each part, the others being held */
+    int64_t *cell; /* one of each part */
+    struct joint *joint;
+    int64_t joint_count, joint_room;
+    struct rigid_modes *modes; /* of each part */
+    bool complete;
 };
-enum { NO_PART = -1, SHARED = -2 };
 
+/* Several cells of a part may find the same joint: that does no harm. */
 static enum status hinged_find(const struct model *model, const struct folds *folds, struct hinged *hinged,
                                struct error *error)
 {
     const struct cells *cells = &model->assembly.cells;
-    int64_t corners = cells->count * (cells->dim + 1);
-    RETURN_IF_ERROR(NEW_ARRAY(&hinged->of_node, cells->node_count, error));
-    for (int64_t n = 0; n < cells->node_count; n++) {
-        hinged->of_node[n] = NO_PART;
-    }
-    for (int64_t i = 0; i < corners; i++) {
-        int32_t *of = &hinged->of_node[cells->node[i]], part = folds->part[i / (cells->dim + 1)];
-        *of = *of == NO_PART || *of == part ? part : SHARED;
-    }
-    for (int64_t i = 0; i < corners; i++) {
-        hinged->hinge_count += hinged->of_node[cells->node[i]] == SHARED;
-    }
-    if (hinged->hinge_count == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&hinged->hinge, hinged->hinge_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&hinged->cell, folds->body_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&hinged->modes, folds->body_count, error));
-    for (int64_t i = 0, h = 0; i < corners; i++) {
-        if (hinged->of_node[cells->node[i]] == SHARED) {
-            hinged->hinge[h++] = (struct hinge){folds->part[i / (cells->dim + 1)], cells->node[i]};
+    for (int64_t i = 0; i < cells->count * (cells->dim + 1); i++) {
+        int32_t node = cells->node[i], part = folds->part[i / (cells->dim + 1)];
+        hinged->cell[part] = i / (cells->dim + 1);
+        if (part != folds->node_part[node]) {
+            RETURN_IF_ERROR(GROW_ARRAY(&hinged->joint, hinged->joint_count + 1, &hinged->joint_room, error));
+            hinged->joint[hinged->joint_count++] = (struct joint){part, node};
         }
     }
-    return system_rigid_modes(&model->system, folds->body_count, hinged->of_node, hinged->hinge_count,
-                              hinged->hinge, hinged->modes, error);
+    return hinged->joint_count == 0 ? STATUS_OK
+                                    : system_rigid_modes(&model->system, (int32_t)folds->body_count,
+                                                         folds->node_part, hinged->joint_count, hinged->joint,
+                                                         hinged->modes, &hinged->complete, error);
 }
 
 static void hinged_free(struct hinged *hinged)
 {
-    FREE_ALL(hinged->of_node, hinged->hinge, hinged->modes);
+    FREE_ALL(hinged->cell, hinged->joint, hinged->modes);
 }
 
-/* Note the largest part that may turn where it is joined to the rest, and how many more there are. What a
+/* Note the largest part that may move where nodes join it to others, and how many more there are. What a
  * contact acts on may be held by it. */
 static void note_hinged(const struct run *run, const struct bodies *bodies)
 {
     FREED_BY(hinged_free) struct hinged hinged = {0};
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     const struct model *model = run->model;
-    const struct folds *folds = &run->folds.folds;
     const struct cells *cells = &model->assembly.cells;
-    int64_t first = -1, count = 0;
-    TOOL_TRY(run->tool, hinged_find(model, folds, &hinged, &error));
-    for (int64_t p = 0; p < folds->body_count && hinged.hinge_count > 0; p++) {
-        int32_t node = cells->node[folds->bodies[p].cell.item * (cells->dim + 1)];
+    int32_t first = -1, count = 0;
+    TOOL_TRY(run->tool, hinged_find(model, &run->folds.folds, &hinged, &error));
+    for (int32_t p = 0; p < run->folds.folds.body_count; p++) {
+        int32_t node = cells->node[hinged.cell[p] * (cells->dim + 1)];
         if (hinged.modes[p].translations + hinged.modes[p].turns > 0 &&
             !bodies->touches[bodies->of_node[node]]) {
             first = count++ == 0 ? p : first;
         }
     }
-    if (count > 0) {
+    if (count > 0 && !hinged.complete) {
+        tool_note(run->tool,
+                  "%s: very many parts have nodes in common with each other, but no face: whether all are "
+                  "held is not known: join them by faces",
+                  run->scene->path);
+    } else if (count > 0) {
         char what[512], place[96], more[64] = "";
         modes_text(cells->dim, model->assembly.extent, &hinged.modes[first], what, sizeof what);
         point_text(cells->dim, hinged.modes[first].centre, place);
         TOOL_TRY(run->tool, stream_regions(model->stream, cells, &regions, &error));
         if (count > 1) {
-            snprintf(more, sizeof more, "; %lld such parts in all", (long long)count);
+            snprintf(more, sizeof more, "; %d such parts in all", count);
         }
         tool_note(run->tool,
                   "%s: a part (region %s, near %s) has nodes in common with the rest of its body, but no "
                   "face: it %s: hold it, or join it by faces%s",
-                  run->scene->path, regions.names.name[regions.of_cell[folds->bodies[first].cell.item]],
-                  place, what, more);
+                  run->scene->path, regions.names.name[regions.of_cell[hinged.cell[first]]], place, what,
+                  more);
     }
 }
 
