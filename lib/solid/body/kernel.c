@@ -33,16 +33,6 @@ ALL_SETS void force_sum_corners(int dim, struct field_averages *averages, int64_
     }
 }
 
-ALL_SETS void force_bounds(int dim, const double *g, int64_t count, const double A[9], double smoothing,
-                           double *sum)
-{
-    if (dim == 2) {
-        kernel_bounds(g, count, 2, A, smoothing, sum);
-    } else {
-        kernel_bounds(g, count, 3, A, smoothing, sum);
-    }
-}
-
 ALL_SETS void force_point_gradients(struct body *body, int64_t b)
 {
     if (body->dim == 2) {

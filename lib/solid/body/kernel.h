@@ -19,9 +19,6 @@ void force_apply_transposed(int dim, const struct row_operator *rows, int64_t st
 /* The forces of the corners on averages begin .. end - 1. */
 void force_sum_corners(int dim, struct field_averages *averages, int64_t begin, int64_t end);
 
-/* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and smoothing |g|^2. */
-void force_bounds(int dim, const double *g, int64_t count, const double A[9], double smoothing, double *sum);
-
 /* Of the block of that number: F and J of points from the derivatives of the field; weighted stresses of
  * neo-Hookean points; and weighted stresses P in the place of the derivatives. */
 void force_point_gradients(struct body *body, int64_t block);
