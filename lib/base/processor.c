@@ -1,26 +1,15 @@
 #include "base/processor.h"
 
-#include <string.h>
-
-bool processor_has(const char *set)
+const char *processor_best_set(void)
 {
 #if defined(__x86_64__)
     __builtin_cpu_init();
-    if (strcmp(set, "avx512") == 0) {
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-               __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    if (__builtin_cpu_supports("x86-64-v4")) {
+        return "x86-64-v4";
     }
-    if (strcmp(set, "avx2") == 0) {
-        return __builtin_cpu_supports("avx2");
-    }
-    if (strcmp(set, "fma") == 0) {
-        return __builtin_cpu_supports("fma");
+    if (__builtin_cpu_supports("x86-64-v3")) {
+        return "x86-64-v3";
     }
 #endif
-    return strcmp(set, "plain") == 0;
-}
-
-const char *processor_best_set(void)
-{
-    return processor_has("avx512") ? "avx512" : processor_has("avx2") ? "avx2" : "plain";
+    return "default";
 }

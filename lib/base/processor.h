@@ -1,12 +1,6 @@
 /* Kernels that are compiled for several instruction sets, and which of these the processor runs. */
 #pragma once
 
-#include <stdbool.h>
-
-/* Whether it runs code for "plain" (always), "avx2", "avx512" (its f, dq, vl and bw) or "fma"; false for any
- * other name. */
-bool processor_has(const char *set);
-
 /* A part of such kernels. */
 #define KERNEL_INLINE static inline __attribute__((always_inline))
 
@@ -17,5 +11,5 @@ bool processor_has(const char *set);
 #define ALL_SETS
 #endif
 
-/* The last of "plain", "avx2", "avx512" that it runs. */
+/* The one of these that this processor runs. */
 const char *processor_best_set(void);

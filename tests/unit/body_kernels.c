@@ -1,6 +1,5 @@
-/* How the force loop computes: the same bits from any number of threads, the same forces whatever the
- * instructions, nodal volumes, the bound of the stiffness, and inversion told where it is.
- */
+/* How the force loop computes: the same bits from any number of threads, nodal volumes, the bound of the
+ * stiffness, and inversion told where it is. */
 #include "body_setup.h"
 
 #include "solid/body/kernel.h"
@@ -37,32 +36,6 @@ static void check_threads(const struct sample *sample, const struct setup *setup
 TEST(threads)
 {
     for_all(check_threads);
-}
-
-/* Whatever the instructions: the same forces but for round-off. */
-static void check_instructions(const struct sample *sample, const struct setup *setup, struct random *random)
-{
-    int64_t count = sample->cloud.node_count * sample->dim;
-    static const char *const sets[] = {"plain", "avx2", "avx512"};
-    FREED_BY(body_free) struct body body = make_body(sample, setup);
-    double *force = zeros(count, sizeof *force), *expected = zeros(count, sizeof *expected);
-    double *u = deformed_field(sample, &body, force, random);
-    (void)body_force(&body, u, expected);
-    for (int k = 0; k < 3; k++) {
-        const struct force_kernels *kernels = force_kernels_select(sets[k], sample->dim);
-        if (kernels == NULL) {
-            assert_int_not_equal(k, 0); /* one for every processor */
-            continue;
-        }
-        body.kernels = kernels;
-        (void)body_force(&body, u, force);
-        ALL_NEAR(count, force, expected, 1e-12 * largest(expected, count));
-    }
-}
-
-TEST(instructions)
-{
-    for_all(check_instructions);
 }
 
 /* Averaging changes nothing where the bulk modulus is at most twice the shear modulus and U is a square. */
@@ -237,10 +210,8 @@ TEST(nodal_pressures)
         nodal_pressures_solve(&body);
         for (int64_t a = 0; a < volumes->count; a++) {
             double sum = -volumes->content[a];
-            int64_t slice = a / NODAL_PRESSURE_ROWS, i = a % NODAL_PRESSURE_ROWS;
-            for (int64_t e = pressures->ptr[slice]; e < pressures->ptr[slice + 1]; e++) {
-                int64_t at = e * NODAL_PRESSURE_ROWS + i;
-                sum += pressures->value[at] * volumes->pressure[pressures->idx[at]];
+            for (int64_t at = pressures->matrix.ptr[a]; at < pressures->matrix.ptr[a + 1]; at++) {
+                sum += pressures->matrix.value[at] * volumes->pressure[pressures->matrix.idx[at]];
             }
             missing2 += sum * sum;
             whole2 += volumes->content[a] * volumes->content[a];

@@ -28,11 +28,6 @@ KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, 
     }
 }
 
-KERNEL_INLINE void load_xi(int dim, const struct mls_point *point, int64_t j, lanes *xi)
-{
-    load_vector(dim, point, ROW_XI, j, xi);
-}
-
 /* Differences of coordinates and radii, side by side; the largest radius. */
 KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
 {
@@ -109,28 +104,36 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, b
     }
 }
 
+/* The coordinates of neighbours j on, and their monomials. */
+KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point, int64_t j, lanes *xi,
+                                  lanes *p)
+{
+    load_vector(dim, point, ROW_XI, j, xi);
+    monomials(dim, m, xi, p);
+}
+
 /* Moment matrix. */
 KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struct mls_system *system)
 {
-    int degree = m > dim + 1 ? 4 : 2;
-    lanes sum[MLS_MOMENTS];
-    double moment[MLS_MOMENTS];
+    lanes sum[MLS_MAX_BASIS][MLS_MAX_BASIS];
     memset(sum, 0, sizeof sum);
+    memset(system->matrix, 0, sizeof system->matrix);
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], weight;
-        load_xi(dim, point, j, xi);
+        lanes xi[3], weight, p[MLS_MAX_BASIS];
+        load_monomials(dim, m, point, j, xi, p);
         load_row(point, ROW_WEIGHT, j, &weight);
-        add_moments(dim, degree, &weight, xi, sum);
-    }
-    for (int k = 0; k < moment_count(dim, degree); k++) {
-        moment[k] = lane_sum(&sum[k]);
+        UNROLL
+        for (int k = 0; k < m; k++) {
+            lanes weighted = weight * p[k];
+            UNROLL
+            for (int l = k; l < m; l++) {
+                sum[k][l] += weighted * p[l];
+            }
+        }
     }
     for (int k = 0; k < m; k++) {
-        for (int l = 0; l < m; l++) {
-            system->matrix[k][l] = moment[moment_index(dim, k, l)];
-        }
-        for (int l = m; l < (m + 3) / 4 * 4; l++) {
-            system->matrix[k][l] = 0.0;
+        for (int l = k; l < m; l++) {
+            system->matrix[k][l] = system->matrix[l][k] = lane_sum(&sum[k][l]);
         }
     }
 }
@@ -151,56 +154,42 @@ KERNEL_INLINE double larger_defect(double worst, double defect)
 }
 
 /* phi_j = w_j p_j.c into ROW_PHI, slope_j p_j.c into ROW_SLOPE; where gradients are wanted, the right sides
- * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a per lane: moments again,
- * of one degree more, or with images for xi_a those of each. Returns the largest defect of sum phi p = p(0),
- * p linear. */
+ * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a per lane, with images
+ * for xi_a those. Returns the largest defect of sum phi p = p(0), p linear. */
 KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, bool images,
                             const struct mls_point *point, lanes *right)
 {
-    enum { OF_ONE = 10 }; /* moments up to the second degree */
-    int degree = images ? 2 : m > dim + 1 ? 3 : 2, moments = moment_count(dim, degree) * (images ? dim : 1);
-    lanes moment[3 * OF_ONE], defect[4];
-    memset(moment, 0, sizeof moment);
+    lanes sum[3][MLS_MAX_BASIS], defect[4];
+    memset(sum, 0, sizeof sum);
     memset(defect, 0, sizeof defect);
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], projection, phi, slope;
-        load_xi(dim, point, j, xi);
+        lanes xi[3], p[MLS_MAX_BASIS], image[3], projection, phi, slope;
+        load_monomials(dim, m, point, j, xi, p);
         polynomial(dim, m, c, xi, &projection);
         load_row(point, ROW_WEIGHT, j, &phi);
         phi *= projection;
         store_row(point, ROW_PHI, j, &phi);
-        defect[0] += phi;
-        for (int a = 0; a < dim; a++) {
-            defect[1 + a] += phi * xi[a];
+        for (int k = 0; k <= dim; k++) {
+            defect[k] += phi * p[k];
         }
         if (gradients) {
             load_row(point, ROW_SLOPE, j, &slope);
             slope *= projection;
             store_row(point, ROW_SLOPE, j, &slope);
-            if (images) {
-                lanes image[3];
-                load_vector(dim, point, ROW_IMAGE, j, image);
+            load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
+            UNROLL
+            for (int k = 0; k < m; k++) {
+                lanes part = slope * p[k];
                 for (int a = 0; a < dim; a++) {
-                    image[a] *= slope;
-                    add_moments(dim, degree, &image[a], xi, moment + a * moment_count(dim, degree));
+                    sum[a][k] += part * image[a];
                 }
-            } else {
-                add_moments(dim, degree, &slope, xi, moment);
             }
         }
     }
-    if (gradients) {
-        double total[3 * OF_ONE];
-        for (int k = 0; k < moments; k++) {
-            total[k] = lane_sum(&moment[k]);
-        }
-        for (int k = 0; k < m; k++) {
-            right[k] = (lanes){0.0, 0.0, 0.0, 0.0};
-            for (int a = 0; a < dim; a++) {
-                double sum = images ? total[a * moment_count(dim, degree) + moment_index(dim, 0, k)]
-                                    : total[moment_index(dim, 1 + a, k)];
-                right[k][a] = sum + (k == 1 + a ? 1.0 : 0.0);
-            }
+    for (int k = 0; k < m && gradients; k++) {
+        right[k] = (lanes){0.0, 0.0, 0.0, 0.0};
+        for (int a = 0; a < dim; a++) {
+            right[k][a] = lane_sum(&sum[a][k]) + (k == 1 + a ? 1.0 : 0.0);
         }
     }
     double worst = larger_defect(0.0, lane_sum(&defect[0]) - 1.0);
@@ -224,8 +213,8 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
         }
     }
     for (int64_t j = 0; j < point->padded; j += LANES) {
-        lanes xi[3], image[3], weight, slope;
-        load_xi(dim, point, j, xi);
+        lanes xi[3], p[MLS_MAX_BASIS], image[3], weight, slope;
+        load_monomials(dim, m, point, j, xi, p);
         load_vector(dim, point, images ? ROW_IMAGE : ROW_XI, j, image);
         load_row(point, ROW_WEIGHT, j, &weight);
         load_row(point, ROW_SLOPE, j, &slope);
@@ -234,9 +223,8 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
             polynomial(dim, m, g[a], xi, &gradient);
             gradient = weight * gradient - slope * image[a];
             store_row(point, ROW_GRADIENT + a, j, &gradient);
-            defect[a][0] += gradient;
-            for (int b = 0; b < dim; b++) {
-                defect[a][1 + b] += gradient * xi[b];
+            for (int k = 0; k <= dim; k++) {
+                defect[a][k] += gradient * p[k];
             }
         }
     }

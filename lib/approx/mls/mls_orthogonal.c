@@ -86,17 +86,11 @@ static void assemble(int m, struct mls_local *local)
         }
         for (int l = k; l < m; l++) {
             const double *pl = local->monomials + l * local->stride;
-            double sum[4] = {0.0, 0.0, 0.0, 0.0};
-            int64_t j = 0;
-            for (; j + 4 <= local->count; j += 4) {
-                for (int lane = 0; lane < 4; lane++) {
-                    sum[lane] += local->row[j + lane] * pl[j + lane];
-                }
+            double sum = 0.0;
+            for (int64_t j = 0; j < local->count; j++) {
+                sum += local->row[j] * pl[j];
             }
-            for (; j < local->count; j++) {
-                sum[0] += local->row[j] * pl[j];
-            }
-            local->matrix[k * m + l] = local->matrix[l * m + k] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+            local->matrix[k * m + l] = local->matrix[l * m + k] = sum;
         }
     }
 }
@@ -222,39 +216,18 @@ static void orthogonalise(int m, struct mls_local *local, struct mls_factor *fac
     }
 }
 
-/* solution = M^-1 right, with one step of iterative refinement. */
-static void solve(int m, const struct mls_factor *factor, const struct mls_local *local, const double *right,
-                  double *solution)
-{
-    double residual[MLS_MAX_BASIS] = {0.0}, correction[MLS_MAX_BASIS];
-    substitute(m, m, factor, right, solution);
-    for (int k = 0; k < m; k++) {
-        double sum = right[k];
-        for (int l = 0; l < m; l++) {
-            sum -= local->matrix[k * m + l] * solution[l];
-        }
-        residual[k] = sum;
-    }
-    substitute(m, m, factor, residual, correction);
-    for (int k = 0; k < m; k++) {
-        solution[k] += correction[k];
-    }
-}
-
-/* c = M^-1 e_1 and phi_j = w_j p_j . c, from Q directly: products with a large c would cancel. Sets
+/* phi_j = w_j p_j . c, c = M^-1 e_1, from Q directly: products with a large c would cancel. Sets
  * local->projection. */
-static void orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *c,
-                              double *phi)
+static void orthogonal_values(int m, const struct mls_factor *factor, struct mls_local *local, double *phi)
 {
-    double unit[MLS_MAX_BASIS] = {1.0}, y[MLS_MAX_BASIS];
+    double y[MLS_MAX_BASIS];
     for (int k = 0; k < m; k++) { /* R^T y = D^-1 e_1 */
-        double sum = unit[k] * factor->scaling[k];
+        double sum = k == 0 ? factor->scaling[0] : 0.0;
         for (int i = 0; i < k; i++) {
             sum -= factor->lower[k * m + i] * y[i];
         }
         y[k] = sum / factor->lower[k * m + k];
     }
-    solve(m, factor, local, unit, c);
     for (int64_t j = 0; j < local->count; j++) {
         double sum = 0.0;
         for (int k = 0; k < m; k++) {
@@ -364,7 +337,7 @@ enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support 
                                 int64_t stride, double *phi, double *dphi)
 {
     int dim = mls->dim, m = mls_basis_size(mls);
-    double c[MLS_MAX_BASIS], right[MLS_MAX_BASIS], g[MLS_MAX_BASIS];
+    double right[MLS_MAX_BASIS], g[MLS_MAX_BASIS];
     struct mls_factor factor;
     struct mls_local local = {.count = support->count,
                               .stride = stride,
@@ -383,10 +356,10 @@ enum mls_verdict mls_orthogonal(const struct mls *mls, const struct mls_support 
         return verdict;
     }
     orthogonalise(m, &local, &factor);
-    orthogonal_values(m, &factor, &local, c, phi);
+    orthogonal_values(m, &factor, &local, phi);
     for (int a = 0; dphi != NULL && a < dim; a++) {
         gradient_right_side(m, a, &local, right);
-        solve(m, &factor, &local, right, g);
+        substitute(m, m, &factor, right, g);
         gradient(m, dim, a, &local, g, dphi);
     }
     restore_linear(m, dim, &factor, &local, phi, dphi);

@@ -192,7 +192,6 @@ enum status body_build(const struct body_input *input, struct body *body, struct
                           .point_count = input->point_count,
                           .material_count = input->material_count,
                           .smoothed = input->smoothed != NULL,
-                          .kernels = force_kernels_select(NULL, input->dim),
                           .averaged = input->vertex != NULL};
     if (body->point_count < 1 || body->point_count > INT32_MAX / (body->dim + 1)) {
         return fail(error, STATUS_INPUT, "points.x: %lld points: none, or too many",

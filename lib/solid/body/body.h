@@ -53,13 +53,9 @@ struct block {
     double energy; /* at the last call of body_energy, J (2D: J/m) */
 };
 
-/* The matrix A of the nodal pressures by slices of rows, and how A^-1 is applied: see nodal_pressure.c. */
-#define NODAL_PRESSURE_ROWS 8
+/* The matrix A of the nodal pressures, m3/Pa (2D: m2/Pa), and how A^-1 is applied: see nodal_pressure.c. */
 struct nodal_pressures {
-    int64_t slices;
-    int64_t *ptr;    /* slices + 1: the rows of slice s have the entries ptr[s] to ptr[s + 1], */
-    int32_t *idx;    /* entry k of the row i of a slice at k * NODAL_PRESSURE_ROWS + i: its column, */
-    double *value;   /* and A there, m3/Pa (2D: m2/Pa) */
+    struct sparse matrix;
     double *inverse; /* of each row: S^-1; 0 where nothing carries pressure; */
     double *held;    /* pressure held since an augmentation, Pa; */
     double *change;  /* what the last augmentation changed it by, Pa; */
@@ -86,12 +82,10 @@ struct nodal_volumes {
     double *direct;  /* point_count: what s acts on: y, or near edges means of it; NULL: no edges, y itself */
     double *modulus; /* count: S of nodal volumes that have a cell at an edge, N m (2D: N); 0 of others; */
     double *mean;    /* and Y of these, 0 of others */
-    double *content; /* rows of the slices: b, m3 (2D: m2) */
-    double *pressure; /* likewise: pi, Pa */
+    double *content; /* count: b, m3 (2D: m2) */
+    double *pressure; /* count: pi, Pa */
     struct nodal_pressures pressures;
 };
-
-struct force_kernels;
 
 struct body {
     int dim;
@@ -117,12 +111,11 @@ struct body {
     double *J;         /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
     bool averaged;     /* nodal volumetric averaging */
     struct nodal_volumes volumes;
-    const struct force_kernels *kernels; /* for this processor */
-    int threads;                         /* worth using for so many pairs */
-    struct chunks bound_parts;           /* of the blocks, by each of which body_diagonal sums; */
-    double *bound;                       /* node_count for each: scratch */
-    struct cell_functions *bound_work;   /* for each part */
-    int64_t *bound_first;                /* of each process: the parts whose sums end with it */
+    int threads;                       /* worth using for so many pairs */
+    struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
+    double *bound;                     /* node_count for each: scratch */
+    struct cell_functions *bound_work; /* for each part */
+    int64_t *bound_first;              /* of each process: the parts whose sums end with it */
 };
 
 /* Lay out a body; the arrays are copied. STATUS_INPUT for a point without neighbours

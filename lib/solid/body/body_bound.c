@@ -89,16 +89,18 @@ struct bound_sum {
     bool at_rest;
 };
 
+/* Add g A g, if positive, and smoothing |g|^2 of each gradient[count * dim]. */
 static void add_functions(const struct body *body, const struct bound *bound, int64_t count,
                           const int32_t *node, const double *gradient, double *of_node)
 {
-    double sum[64];
-    for (int64_t i = 0; i < count; i += 64) {
-        int64_t some = count - i < 64 ? count - i : 64;
-        body->kernels->bounds(gradient + i * body->dim, some, bound->A, bound->smoothing, sum);
-        for (int64_t k = 0; k < some; k++) {
-            of_node[node[i + k]] += sum[k];
+    int dim = body->dim;
+    for (int64_t i = 0; i < count; i++) {
+        const double *g = gradient + i * dim;
+        double along = 0.0;
+        for (int a = 0; a < dim; a++) {
+            along += g[a] * vector_dot(dim, bound->A + 3 * a, g);
         }
+        of_node[node[i]] += fmax(along, 0.0) + bound->smoothing * vector_dot(dim, g, g);
     }
 }
 

@@ -90,13 +90,7 @@ enum status body_share_volumes(struct body *body, struct error *error)
     const struct nodal_volumes *volumes = &body->volumes;
     int rank = ranks_rank(share->ranks), vertices = body->dim + 1;
     SCRATCH bool *wanted = NULL;
-    int64_t slices = (volumes->count + NODAL_PRESSURE_ROWS - 1) / NODAL_PRESSURE_ROWS;
-    RETURN_IF_ERROR(ranks_share(share->ranks, slices, NULL, &share->slice_first, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&share->volume_first, ranks_count(share->ranks) + 1, error));
-    for (int r = 0; r <= ranks_count(share->ranks); r++) {
-        int64_t row = share->slice_first[r] * NODAL_PRESSURE_ROWS;
-        share->volume_first[r] = row < volumes->count ? row : volumes->count;
-    }
+    RETURN_IF_ERROR(ranks_share(share->ranks, volumes->count, NULL, &share->volume_first, error));
     if (share->ranks != NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->point_count, error));
         int64_t begin = volumes->ptr[share->volume_first[rank]];
@@ -119,17 +113,16 @@ static int owner_of_volume(const void *body, int64_t volume)
 enum status body_share_pressures(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
-    const struct nodal_pressures *pressures = &body->volumes.pressures;
-    const int64_t *first = share->slice_first + ranks_rank(share->ranks);
+    const struct sparse *matrix = &body->volumes.pressures.matrix;
+    const int64_t *first = share->volume_first + ranks_rank(share->ranks);
     int vertices = body->dim + 1;
     SCRATCH bool *wanted = NULL;
     if (share->ranks == NULL) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->volumes.count, error));
-    for (int64_t i = pressures->ptr[first[0]] * NODAL_PRESSURE_ROWS;
-         i < pressures->ptr[first[1]] * NODAL_PRESSURE_ROWS; i++) {
-        wanted[pressures->idx[i]] = true;
+    for (int64_t i = matrix->ptr[first[0]]; i < matrix->ptr[first[1]]; i++) {
+        wanted[matrix->idx[i]] = true;
     }
     for (int64_t i = share->begin_point * vertices; i < share->end_point * vertices; i++) {
         wanted[body->volumes.of_point[i]] = true;
@@ -321,8 +314,7 @@ bool body_share_has_node(const struct body *body, int64_t node)
 
 void body_share_free(struct body_share *share)
 {
-    FREE_ALL(share->block_first, share->point_first, share->node_first, share->slice_first,
-             share->volume_first);
+    FREE_ALL(share->block_first, share->point_first, share->node_first, share->volume_first);
     row_ranges_free(&share->values);
     row_ranges_free(&share->placed);
     row_ranges_free(&share->sums);

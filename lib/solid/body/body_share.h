@@ -19,8 +19,7 @@ struct body_share {
     int64_t *block_first;      /* of each process, as below: its blocks, */
     int64_t *point_first;      /* the points in them, */
     int64_t *node_first;       /* its nodes in the body's order, */
-    int64_t *slice_first;      /* its nodal pressures, by slices, */
-    int64_t *volume_first;     /* and the nodal volumes of these */
+    int64_t *volume_first;     /* and its nodal volumes */
     int64_t begin_block, end_block, begin_point, end_point, begin_node, end_node; /* of this one */
     int64_t *block;               /* blocks of this process in the order in which they are worked on, */
     int64_t border_count;         /* first those at its border, from which others need strains or forces */

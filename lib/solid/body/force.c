@@ -25,7 +25,7 @@ static void stress_cell_block(struct body *body, int64_t b)
 {
     block_rows P, T;
     if (body->blocks[b].neo_hookean) {
-        body->kernels->cell_neo_hookean(body, b, P, T);
+        force_cell_neo_hookean(body, b, P, T);
     } else {
         stress_cells(body, &body->blocks[b], P, T);
         note_volumes(body, &body->blocks[b]);
@@ -33,8 +33,7 @@ static void stress_cell_block(struct body *body, int64_t b)
     if (body->cells.group != NULL) {
         merged_cells_stresses(body, &body->blocks[b], P, T);
     }
-    body->kernels->cell_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P,
-                               (const double(*)[BLOCK_MOST_POINTS])T);
+    force_cell_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P, (const double(*)[BLOCK_MOST_POINTS])T);
 }
 
 /* Stresses of a block of points. */
@@ -42,11 +41,11 @@ static void stress_point_block(struct body *body, int64_t b)
 {
     block_rows P;
     if (body->blocks[b].neo_hookean) {
-        body->kernels->neo_hookean(body, b, P);
+        force_point_neo_hookean(body, b, P);
     } else {
         stress_points(body, &body->blocks[b], P);
     }
-    body->kernels->point_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P);
+    force_point_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P);
 }
 
 void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context)
@@ -67,7 +66,7 @@ static void apply(const struct body *body, const double *x, double *y)
     const struct row_ranges *rows = &body->share.values;
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
-        body->kernels->apply(&body->rows.matrix, rows->items[i].begin, rows->items[i].end, x, y);
+        force_apply(body->dim, &body->rows.matrix, rows->items[i].begin, rows->items[i].end, x, y);
     }
 }
 
@@ -75,7 +74,7 @@ static void apply_transposed(const struct body *body, const double *x, double *y
 {
 #pragma omp for schedule(static, 1)
     for (int s = 0; s < body->rows.stripe_count; s++) {
-        body->kernels->apply_transposed(&body->rows, s, x, y);
+        force_apply_transposed(body->dim, &body->rows, s, x, y);
     }
 }
 
@@ -83,7 +82,7 @@ static void sum_corners(struct body *body, const struct row_ranges *rows)
 {
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
-        body->kernels->sum_corners(&body->cells.averages, rows->items[i].begin, rows->items[i].end);
+        force_sum_corners(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
@@ -143,9 +142,9 @@ static void return_forces(const struct body *body, double *force)
 static void set_block(struct body *body, int64_t b)
 {
     if (body->smoothed) {
-        body->kernels->cell_gradients(body, b);
+        force_cell_gradients(body, b);
     } else {
-        body->kernels->point_gradients(body, b);
+        force_point_gradients(body, b);
     }
     if (body->averaged) {
         nodal_volumes_strain(body, b);

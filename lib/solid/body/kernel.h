@@ -1,4 +1,6 @@
-/* The kernels of the force loop, one set for each instruction set and dimension; private to lib/solid. */
+/* The kernels of the force loop; private to lib/solid. Each is compiled for several instruction sets
+ * (ALL_SETS), between which results differ by round-off only (fused multiplications), and for 2 and 3
+ * dimensions. */
 #pragma once
 
 #include "solid/body/body.h"
@@ -6,32 +8,28 @@
 /* Matrices of the points of a block: row k of component k, points along it. */
 typedef double block_rows[9][BLOCK_MOST_POINTS];
 
-/* Each function processes the rows, stripe or block of that number. */
-struct force_kernels {
-    const char *name;
-    /* y = A x for rows begin .. end - 1, of vectors VECTOR_STRIDE(dim) apart. */
-    void (*apply)(const struct sparse *matrix, int64_t begin, int64_t end, const double *x, double *y);
-    /* y = A^T x for the columns of a stripe. */
-    void (*apply_transposed)(const struct row_operator *rows, int64_t stripe, const double *x, double *y);
-    /* The forces of the corners on averages begin .. end - 1. */
-    void (*sum_corners)(struct field_averages *averages, int64_t begin, int64_t end);
-    /* F and J of points from the derivatives of the field; and weighted stresses P in the place of these. */
-    void (*point_gradients)(struct body *body, int64_t block);
-    void (*point_forces)(struct body *body, int64_t block, const block_rows P);
-    /* Weighted stresses of a block of neo-Hookean points. */
-    void (*neo_hookean)(const struct body *body, int64_t block, block_rows P);
-    /* What gradients g[count * dim] add to bounds of the stiffness: g A g, if positive, and smoothing |g|^2.
-     */
-    void (*bounds)(const double *g, int64_t count, const double A[9], double smoothing, double *sum);
-    /* F, F_h and J of smoothed cells from the averages; weighted stresses P on F and T on F_h of a block of
-     * neo-Hookean cells; and what the corners then put on the averages. */
-    void (*cell_gradients)(struct body *body, int64_t block);
-    void (*cell_neo_hookean)(const struct body *body, int64_t block, block_rows P, block_rows T);
-    void (*cell_forces)(struct body *body, int64_t block, const block_rows P, const block_rows T);
-};
+/* y = A x for rows begin .. end - 1, of vectors VECTOR_STRIDE(dim) apart. */
+void force_apply(int dim, const struct sparse *matrix, int64_t begin, int64_t end, const double *x,
+                 double *y);
 
-/* Sets by name, plain, avx2, avx512: NULL where the processor lacks it; the best one for NULL. */
-const struct force_kernels *force_kernels_select(const char *name, int dim);
+/* y = A^T x for the columns of the stripe of that number. */
+void force_apply_transposed(int dim, const struct row_operator *rows, int64_t stripe, const double *x,
+                            double *y);
+
+/* The forces of the corners on averages begin .. end - 1. */
+void force_sum_corners(int dim, struct field_averages *averages, int64_t begin, int64_t end);
+
+/* Of the block of that number: F and J of points from the derivatives of the field; weighted stresses of
+ * neo-Hookean points; and weighted stresses P in the place of the derivatives. */
+void force_point_gradients(struct body *body, int64_t block);
+void force_point_neo_hookean(const struct body *body, int64_t block, block_rows P);
+void force_point_forces(struct body *body, int64_t block, const block_rows P);
+
+/* F, F_h and J of smoothed cells from the averages; weighted stresses P on F and T on F_h of neo-Hookean
+ * cells; and what the corners then put on the averages. */
+void force_cell_gradients(struct body *body, int64_t block);
+void force_cell_neo_hookean(const struct body *body, int64_t block, block_rows P, block_rows T);
+void force_cell_forces(struct body *body, int64_t block, const block_rows P, const block_rows T);
 
 /* Scratch of body_diagonal. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);

@@ -14,23 +14,14 @@ KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t f
                                 const struct block *block, int dim, block_corners corners)
 {
     const int32_t *of_corner = averages->of_corner + first + block->first_point * (dim + 1) * rows;
-    int64_t last = block->point_count - 1;
-    for (int64_t i = 0; i <= last; i += 4) {
-        for (int k = 0; k <= dim; k++) {
-            const double *from[4];
-            quad4 value[4], next[4];
-            for (int j = 0; j < rows; j++) {
-                for (int r = 0; r < 4; r++) { /* the last one again where there are no more */
-                    int64_t cell = i + r < last ? i + r : last;
-                    from[r] = averages->value + of_corner[(cell * (dim + 1) + k) * rows + j];
-                }
-                load_components(from, dim, next);
-                for (int a = 0; a < dim; a++) {
-                    value[a] = j == 0 ? next[a] : value[a] + next[a];
-                }
-            }
+    for (int64_t i = 0; i < block->point_count; i++) {
+        for (int k = 0; k <= dim; k++, of_corner += rows) {
             for (int a = 0; a < dim; a++) {
-                STORE(corners[k * dim + a] + i, value[a]);
+                double sum = 0.0;
+                for (int j = 0; j < rows; j++) {
+                    sum += averages->value[of_corner[j] + a];
+                }
+                corners[k * dim + a][i] = sum;
             }
         }
     }
@@ -39,26 +30,11 @@ KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t f
 KERNEL_INLINE void write_corners(struct field_averages *averages, int64_t first, const struct block *block,
                                  int dim, const block_corners corners)
 {
-    int64_t i = 0, stride = (dim + 1) * VECTOR_STRIDE(dim);
-    double *force = averages->corner_force + first * VECTOR_STRIDE(dim) + block->first_point * stride;
-    for (; i + 4 <= block->point_count; i += 4) {
-        for (int k = 0; k <= dim; k++) {
-            double rows[4 * VECTOR_STRIDE(3)];
-            quad4 value[4] = {{0.0}};
+    int64_t corner = first + block->first_point * (dim + 1);
+    for (int64_t i = 0; i < block->point_count; i++) {
+        for (int k = 0; k <= dim; k++, corner++) {
             for (int a = 0; a < dim; a++) {
-                LOAD(value[a], corners[k * dim + a] + i);
-            }
-            store_components(value, dim, rows);
-            for (int r = 0; r < 4; r++) {
-                memcpy(force + (i + r) * stride + k * VECTOR_STRIDE(dim), rows + r * VECTOR_STRIDE(dim),
-                       VECTOR_STRIDE(dim) * sizeof *rows);
-            }
-        }
-    }
-    for (; i < block->point_count; i++) {
-        for (int k = 0; k <= dim; k++) {
-            for (int a = 0; a < dim; a++) {
-                force[i * stride + k * VECTOR_STRIDE(dim) + a] = corners[k * dim + a][i];
+                averages->corner_force[corner * VECTOR_STRIDE(dim) + a] = corners[k * dim + a][i];
             }
         }
     }

@@ -171,18 +171,3 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
         }
     }
 }
-
-KERNEL_INLINE void kernel_bounds(const double *restrict g, int64_t count, int dim, const double A[9],
-                                 double smoothing, double *restrict sum)
-{
-    double xy = 2.0 * A[1], xz = 2.0 * A[2], yz = 2.0 * A[5];
-    for (int64_t i = 0; i < count; i++) {
-        double x = g[i * dim], y = g[i * dim + 1], z = dim == 3 ? g[i * dim + 2] : 0.0;
-        double bound = (A[0] * x + xy * y) * x + A[4] * y * y, square = x * x + y * y;
-        if (dim == 3) {
-            bound += (A[8] * z + xz * x + yz * y) * z;
-            square += z * z;
-        }
-        sum[i] = (bound > 0.0 ? bound : 0.0) + smoothing * square;
-    }
-}

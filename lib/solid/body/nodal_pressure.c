@@ -7,13 +7,10 @@
  * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
  * 2003, algorithm 12.1. */
 #include "base/memory.h"
-#include "base/processor.h"
 #include "solid/body/nodal_volume.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { ROWS = NODAL_PRESSURE_ROWS, SLICES_AT_ONCE = 32 };
 
 /* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
  * most this part; and x at most that. */
@@ -26,8 +23,8 @@ static const double augmented_accuracy = 0.01;
  * at least this cosine. */
 static const double aligned = 0.99;
 
-/* The volumes that share points with volume a, itself included, each once: every ROWS-th place of idx; NULL:
- * count only. seen: scratch, in which no entry is a before. Returns how many. */
+/* The volumes that share points with volume a, itself included, each once; NULL: count only. seen: scratch,
+ * in which no entry is a before. Returns how many. */
 static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen,
                                int32_t *idx)
 {
@@ -40,7 +37,7 @@ static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices
             }
             seen[of[k]] = a;
             if (idx != NULL) {
-                idx[count * ROWS] = of[k];
+                idx[count] = of[k];
             }
             count++;
         }
@@ -65,35 +62,35 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
         double limited = fmin(rest, pressures->most * material->shear_modulus);
         compliance /= body->dim + 2;
         pressures->weight[a] += share * (1.0 / limited - 1.0 / rest);
-        pressures->value[pressures->entry[a]] += share * (1.0 / limited + compliance);
+        pressures->matrix.value[pressures->entry[a]] += share * (1.0 / limited + compliance);
         *bound += share * (1.0 / limited + compliance);
         for (int k = 0; k < vertices; k++) {
             int64_t other = q * vertices + k;
-            pressures->value[pressures->entry[volumes->of_point[other]]] -=
+            pressures->matrix.value[pressures->entry[volumes->of_point[other]]] -=
                 compliance * share * volumes->share[other] / body->weight[q];
         }
     }
 }
 
-/* Lay out the slices, each as wide as its longest row. A row is padded with zeros in the column of its
- * diagonal entry. */
-static enum status lay_out(const struct body *body, struct nodal_pressures *pressures, int64_t *seen,
-                           struct error *error)
+/* The rows and columns of A. */
+static enum status lay_out(const struct body *body, struct sparse *matrix, struct error *error)
 {
     const struct nodal_volumes *volumes = &body->volumes;
+    int64_t count = volumes->count, entries = 0;
     int vertices = body->dim + 1;
-    pressures->slices = (volumes->count + ROWS - 1) / ROWS;
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->ptr, pressures->slices + 1, error));
-    for (int64_t slice = 0; slice < pressures->slices; slice++) {
-        int64_t widest = 0;
-        for (int64_t a = slice * ROWS; a < (slice + 1) * ROWS && a < volumes->count; a++) {
-            int64_t width = list_neighbours(volumes, vertices, a, seen, NULL);
-            widest = width > widest ? width : widest;
-        }
-        pressures->ptr[slice + 1] = pressures->ptr[slice] + widest;
+    SCRATCH int64_t *seen = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    for (int64_t a = 0; a < count; a++) {
+        entries += list_neighbours(volumes, vertices, a, seen, NULL);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->idx, pressures->ptr[pressures->slices] * ROWS, error));
-    return NEW_ARRAY(&pressures->value, pressures->ptr[pressures->slices] * ROWS, error);
+    RETURN_IF_ERROR(sparse_new(count, count, entries, matrix, error));
+    memset(seen, -1, (size_t)count * sizeof *seen);
+    for (int64_t a = 0; a < count; a++) {
+        int64_t at = matrix->ptr[a];
+        matrix->ptr[a + 1] = at + list_neighbours(volumes, vertices, a, seen, matrix->idx + at);
+    }
+    return STATUS_OK;
 }
 
 /* The iterations for eigenvalues from rho to 1. */
@@ -106,36 +103,17 @@ static void choose_iterations(struct nodal_pressures *pressures, double largest,
     pressures->scale = 1.0 / (1.0 - 1.0 / cosh(pressures->iterations * rate));
 }
 
-/* The columns of the rows. */
-static void set_columns(const struct body *body, int64_t *seen, struct nodal_pressures *pressures)
-{
-    const struct nodal_volumes *volumes = &body->volumes;
-    for (int64_t a = 0; a < volumes->count; a++) {
-        int64_t slice = a / ROWS, width = pressures->ptr[slice + 1] - pressures->ptr[slice];
-        int32_t *idx = pressures->idx + pressures->ptr[slice] * ROWS + a % ROWS;
-        for (int64_t k = list_neighbours(volumes, body->dim + 1, a, seen, idx); k < width; k++) {
-            idx[k * ROWS] = (int32_t)a;
-        }
-    }
-}
-
 enum status nodal_pressures_build(struct body *body, struct error *error)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
-    int64_t count = body->volumes.count, rows;
-    SCRATCH int64_t *seen = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
-    memset(seen, -1, (size_t)count * sizeof *seen);
-    RETURN_IF_ERROR(lay_out(body, pressures, seen, error));
-    rows = pressures->slices * ROWS;
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->inverse, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->held, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->change, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->weight, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pressures->scratch, 3 * rows, error));
+    int64_t count = body->volumes.count;
+    RETURN_IF_ERROR(lay_out(body, &pressures->matrix, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->inverse, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->held, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->change, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->weight, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&pressures->scratch, 3 * count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&pressures->entry, count, error));
-    memset(seen, -1, (size_t)count * sizeof *seen);
-    set_columns(body, seen, pressures);
     RETURN_IF_ERROR(body_share_pressures(body, error));
     body_limit_bulk(body, INFINITY);
     return STATUS_OK;
@@ -144,15 +122,13 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
 /* The values of A, with S^-1 and the weights. */
 static void set_values(struct body *body, struct nodal_pressures *pressures)
 {
-    int64_t rows = pressures->slices * ROWS;
-    memset(pressures->value, 0, (size_t)(pressures->ptr[pressures->slices] * ROWS) * sizeof(double));
-    memset(pressures->weight, 0, (size_t)rows * sizeof *pressures->weight);
-    for (int64_t a = 0; a < body->volumes.count; a++) {
+    const struct sparse *matrix = &pressures->matrix;
+    memset(matrix->value, 0, (size_t)matrix->ptr[matrix->row_count] * sizeof *matrix->value);
+    memset(pressures->weight, 0, (size_t)matrix->row_count * sizeof *pressures->weight);
+    for (int64_t a = 0; a < matrix->row_count; a++) {
         double bound = 0.0;
-        int64_t first = pressures->ptr[a / ROWS] * ROWS, end = pressures->ptr[a / ROWS + 1] * ROWS;
-        /* From the end, as the padding of a row has the column of its diagonal entry. */
-        for (int64_t at = end - ROWS + a % ROWS; at >= first; at -= ROWS) {
-            pressures->entry[pressures->idx[at]] = at;
+        for (int64_t at = matrix->ptr[a]; at < matrix->ptr[a + 1]; at++) {
+            pressures->entry[matrix->idx[at]] = at;
         }
         add_points(body, a, pressures, &bound);
         pressures->inverse[a] = bound > 0.0 ? 1.0 / bound : 0.0;
@@ -183,8 +159,8 @@ void body_limit_bulk(struct body *body, double most)
                       pressures->limited ? augmented_accuracy * limited_bulk / bulk
                                          : fmin(most_inaccurate, effect * fmax(bulk, 1.0)));
     set_values(body, pressures);
-    memset(pressures->held, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->held);
-    memset(pressures->change, 0, (size_t)(pressures->slices * ROWS) * sizeof *pressures->change);
+    memset(pressures->held, 0, (size_t)body->volumes.count * sizeof *pressures->held);
+    memset(pressures->change, 0, (size_t)body->volumes.count * sizeof *pressures->change);
 }
 
 bool body_is_limited(const struct body *body)
@@ -198,7 +174,7 @@ double body_augment(struct body *body, bool steady, double strain)
     const double *value = body->volumes.pressure, *weight = pressures->weight;
     body_share_collect_pressures(body);
     double now2 = 0.0, before2 = 0.0, both = 0.0, value2 = 0.0, least = strain * pressures->least_shear;
-    int64_t count = pressures->slices * ROWS;
+    int64_t count = body->volumes.count;
     for (int64_t a = 0; a < count; a++) {
         double change = value[a] - pressures->held[a];
         now2 += weight[a] * change * change;
@@ -217,27 +193,18 @@ double body_augment(struct body *body, bool steady, double strain)
     return jumps ? INFINITY : lack;
 }
 
-/* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of some slices. */
-ALL_SETS static void iterate(const struct nodal_pressures *pressures, int64_t first, int64_t end, double keep,
-                             double add, const double *restrict move, double *restrict residual,
-                             double *restrict next, double *restrict value)
+/* residual -= A move; next = keep move + add S^-1 residual; value += scale next; of row a. */
+static inline void iterate(const struct nodal_pressures *pressures, int64_t a, double keep, double add,
+                           const double *move, double *residual, double *next, double *value)
 {
-    for (int64_t slice = first; slice < end; slice++) {
-        const double *entry = pressures->value + pressures->ptr[slice] * ROWS;
-        const int32_t *column = pressures->idx + pressures->ptr[slice] * ROWS;
-        int64_t width = pressures->ptr[slice + 1] - pressures->ptr[slice], row = slice * ROWS;
-        double sum[ROWS] = {0.0};
-        for (int64_t k = 0; k < width * ROWS; k += ROWS) {
-            for (int i = 0; i < ROWS; i++) {
-                sum[i] += entry[k + i] * move[column[k + i]];
-            }
-        }
-        for (int64_t a = row; a < row + ROWS; a++) {
-            residual[a] -= sum[a - row];
-            next[a] = keep * move[a] + add * pressures->inverse[a] * residual[a];
-            value[a] += pressures->scale * next[a];
-        }
+    const struct sparse *matrix = &pressures->matrix;
+    double sum = 0.0;
+    for (int64_t i = matrix->ptr[a]; i < matrix->ptr[a + 1]; i++) {
+        sum += matrix->value[i] * move[matrix->idx[i]];
     }
+    residual[a] -= sum;
+    next[a] = keep * move[a] + add * pressures->inverse[a] * residual[a];
+    value[a] += pressures->scale * next[a];
 }
 
 void nodal_pressures_solve(struct body *body)
@@ -245,14 +212,14 @@ void nodal_pressures_solve(struct body *body)
     const struct nodal_pressures *pressures = &body->volumes.pressures;
     const double *content = body->volumes.content;
     struct body_share *share = &body->share;
-    int64_t count = pressures->slices * ROWS;
-    int64_t begin = share->slice_first[ranks_rank(share->ranks)];
-    int64_t last_slice = share->slice_first[ranks_rank(share->ranks) + 1];
+    int64_t count = body->volumes.count;
+    int64_t begin = share->volume_first[ranks_rank(share->ranks)];
+    int64_t end = share->volume_first[ranks_rank(share->ranks) + 1];
     double *residual = pressures->scratch, *move = residual + count, *next = move + count;
     double *value = body->volumes.pressure;
     double centre = pressures->centre / pressures->half, last = 1.0 / centre;
 #pragma omp for schedule(static)
-    for (int64_t a = begin * ROWS; a < last_slice * ROWS; a++) {
+    for (int64_t a = begin; a < end; a++) {
         residual[a] = content[a] + pressures->weight[a] * pressures->held[a];
         move[a] = pressures->inverse[a] * residual[a] / pressures->centre;
         value[a] = pressures->scale * move[a];
@@ -261,10 +228,8 @@ void nodal_pressures_solve(struct body *body)
         double now = 1.0 / (2.0 * centre - last), *swap = move;
         body_share_exchange(share, &share->pressures, 1, move);
 #pragma omp for schedule(static)
-        for (int64_t first = begin; first < last_slice; first += SLICES_AT_ONCE) {
-            int64_t end = first + SLICES_AT_ONCE < last_slice ? first + SLICES_AT_ONCE : last_slice;
-            iterate(pressures, first, end, now * last, 2.0 * now / pressures->half, move, residual, next,
-                    value);
+        for (int64_t a = begin; a < end; a++) {
+            iterate(pressures, a, now * last, 2.0 * now / pressures->half, move, residual, next, value);
         }
         move = next;
         next = swap;
@@ -275,7 +240,8 @@ void nodal_pressures_solve(struct body *body)
 
 void nodal_pressures_free(struct nodal_pressures *pressures)
 {
-    FREE_ALL(pressures->ptr, pressures->idx, pressures->value, pressures->inverse, pressures->held,
-             pressures->change, pressures->weight, pressures->entry, pressures->scratch);
+    sparse_free(&pressures->matrix);
+    FREE_ALL(pressures->inverse, pressures->held, pressures->change, pressures->weight, pressures->entry,
+             pressures->scratch);
     *pressures = (struct nodal_pressures){0};
 }

@@ -104,8 +104,8 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     }
     RETURN_IF_ERROR(body_share_volumes(body, error));
     RETURN_IF_ERROR(nodal_pressures_build(body, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&volumes->content, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error));
-    return NEW_ARRAY(&volumes->pressure, volumes->pressures.slices * NODAL_PRESSURE_ROWS, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&volumes->content, volumes->count, error));
+    return NEW_ARRAY(&volumes->pressure, volumes->count, error);
 }
 
 double nodal_volume_modulus(const struct material *material)
