@@ -112,7 +112,8 @@ KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point,
     monomials(dim, m, xi, p);
 }
 
-/* Moment matrix. */
+/* Moment matrix. The product of the monomials comes first, so that the entries of x and y and of 1 and xy are
+ * the same number. */
 KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struct mls_system *system)
 {
     lanes sum[MLS_MAX_BASIS][MLS_MAX_BASIS];
@@ -124,10 +125,9 @@ KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struc
         load_row(point, ROW_WEIGHT, j, &weight);
         UNROLL
         for (int k = 0; k < m; k++) {
-            lanes weighted = weight * p[k];
             UNROLL
             for (int l = k; l < m; l++) {
-                sum[k][l] += weighted * p[l];
+                sum[k][l] += weight * (p[k] * p[l]);
             }
         }
     }
