@@ -11,9 +11,11 @@
 
 /* Nodes for each field at least. */
 static const int64_t nodes_per_coarse_field = 8;
-/* Of the coarse space at most: each costs an evaluation at the begin, and when the body has stiffened. So
- * there are up to 16 centres in two dimensions and 8 in three. */
+/* Unknowns of the coarse space of small bodies at most: up to 16 centres in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
+/* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
+ * steps follow the distance of the centres by that of the nodes. */
+static const int64_t nodes_per_centre = 1000;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
@@ -21,6 +23,9 @@ static int64_t centre_count(const struct solid_system *system)
 {
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
+    most = of_large > most ? of_large : most;
+    most = most < COARSE_MOST_CENTRES ? most : COARSE_MOST_CENTRES;
     return count < most ? count : most;
 }
 
