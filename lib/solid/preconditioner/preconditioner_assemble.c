@@ -27,7 +27,7 @@ struct assembly {
     const struct solid_system *system;
     int64_t most;  /* neighbours of a node at most */
     int32_t *near; /* node_count: which node that P moves it is, or -1 */
-    double *bent;  /* dim * size for each of these: P Z - Z there */
+    float *bent;   /* dim * size for each of these: P Z - Z there; in large bodies there are many */
 };
 
 /* The functions of the cells that are one domain. */
@@ -57,6 +57,13 @@ ALL_SETS static void add_row(int64_t count, double a, const double *x, double *r
     }
 }
 
+ALL_SETS static void add_floats(int64_t count, double a, const float *x, double *restrict y)
+{
+    for (int64_t i = 0; i < count; i++) {
+        y[i] += a * (double)x[i];
+    }
+}
+
 /* to[rows][size] += block[rows][dim] W_n */
 static void take(const struct assembly *s, int64_t node, int rows, const double *block, double *to)
 {
@@ -70,8 +77,8 @@ static void take(const struct assembly *s, int64_t node, int rows, const double 
         }
     }
     for (int k = 0; k < rows * dim && s->near[node] >= 0; k++) {
-        add_row(p->size, block[k], s->bent + (s->near[node] * dim + k % dim) * p->size,
-                to + k / dim * p->size);
+        add_floats(p->size, block[k], s->bent + (s->near[node] * dim + k % dim) * p->size,
+                   to + k / dim * p->size);
     }
 }
 
@@ -88,13 +95,12 @@ static void put(const struct assembly *s, int64_t node, const double *force, dou
                 matrix + (field[i / dim] * dim + i % dim) * size);
     }
     for (int64_t i = 0; i < dim * size && s->near[node] >= 0; i++) {
-        add_row(size, s->bent[s->near[node] * dim * size + i], force + i / size * size,
+        add_row(size, (double)s->bent[s->near[node] * dim * size + i], force + i / size * size,
                 matrix + i % size * size);
     }
 }
 
-/* matrix += stiffness row^T row */
-static void add_square(int64_t size, double stiffness, const double *row, double *matrix)
+void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix)
 {
     for (int64_t k = 0; k < size; k++) {
         if (row[k] != 0.0) {
@@ -152,19 +158,26 @@ static double *block_of(struct block_row *row, int dim, int32_t node)
     return block;
 }
 
-/* Add the domain of the cells from q on to the row of its function n. */
-static void add_domain(const struct body *body, int64_t q, int n, struct domain *domain,
-                       struct block_row *row)
+/* Of a domain: with the gradients g, f = F g and c = cof F g of two of its functions, the block between these
+ * is shear g . g' I + mixed (c f' + f c') + square c c' + turned (c c' - c' c). */
+struct tangent {
+    double shear, mixed, square, turned;
+    double content, share; /* of each nodal volume, and that times the root of k */
+};
+
+/* The tangent of the domain that cell q is in, and F g and cof F g of its functions. */
+static struct tangent find_tangent(const struct body *body, int64_t q, struct domain *domain)
 {
+    static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const struct material *material = &body->materials[body->material[q]];
-    int dim = body->dim;
-    double F[9], C[9], mu = material->shear_modulus, rest = 0.0, pressure = 0.0;
-    stress_matrix(dim, body->cells.interpolant + q, body->point_count, F);
+    double F[9], C[9], mu = material->shear_modulus, pressure = 0.0;
+    double rest = body->averaged ? nodal_pressure_modulus(material) : 0.0;
+    stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, F);
     double J = determinant(F);
     if (J > 0.0 && isfinite(J)) {
         pressure = body->averaged ? nodal_volume_pressure(body, q) : material_pressure(material, body->J[q]);
     } else {
-        stress_matrix(dim, (const double[9]){1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, 1, F);
+        memcpy(F, at_rest, sizeof F);
         J = 1.0;
     }
     cofactor(F, C);
@@ -172,28 +185,36 @@ static void add_domain(const struct body *body, int64_t q, int n, struct domain 
         transform(F, domain->gradient[k], domain->along[k]);
         transform(C, domain->gradient[k], domain->normal[k]);
     }
-    if (body->averaged) {
-        rest = nodal_pressure_modulus(material);
-    }
     double I1 = vector_dot(9, F, F), shear = domain->weight * mu / cbrt(J * J);
-    double mixed = -2.0 / 3.0 * shear / J;
-    double square = 5.0 / 9.0 * shear * I1 / (J * J) + domain->weight * (material->bulk_modulus - rest);
-    double turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J;
     double content = domain->weight / domain->count;
-    double share = content * sqrt(fmin(rest, body->volumes.pressures.most * mu));
+    return (struct tangent){.shear = shear,
+                            .mixed = -2.0 / 3.0 * shear / J,
+                            .square = 5.0 / 9.0 * shear * I1 / (J * J) +
+                                      domain->weight * (material->bulk_modulus - rest),
+                            .turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J,
+                            .content = content,
+                            .share = content * sqrt(fmin(rest, body->volumes.pressures.most * mu))};
+}
+
+/* Add the domain that cell q is in to the row of its function n. */
+static void add_domain(const struct body *body, int64_t q, int n, struct domain *domain,
+                       struct block_row *row)
+{
+    int dim = body->dim;
+    struct tangent t = find_tangent(body, q, domain);
     const double *g = domain->gradient[n], *f = domain->along[n], *c = domain->normal[n];
-    row->volume += content;
+    row->volume += t.content;
     for (int m = 0; m < domain->count; m++) {
         double *block = block_of(row, dim, domain->node[m]);
         const double *fm = domain->along[m], *cm = domain->normal[m];
-        double common = shear * vector_dot(3, g, domain->gradient[m]);
+        double common = t.shear * vector_dot(3, g, domain->gradient[m]);
         for (int a = 0; a < dim; a++) {
             block[a * dim + a] += common;
             for (int b = 0; b < dim; b++) {
-                block[a * dim + b] += mixed * (c[a] * fm[b] + f[a] * cm[b]) + square * c[a] * cm[b] +
-                                      turned * (c[a] * cm[b] - cm[a] * c[b]);
+                block[a * dim + b] += t.mixed * (c[a] * fm[b] + f[a] * cm[b]) + t.square * c[a] * cm[b] +
+                                      t.turned * (c[a] * cm[b] - cm[a] * c[b]);
             }
-            block[dim * dim + a] += share * cm[a];
+            block[dim * dim + a] += t.share * cm[a];
         }
     }
 }
@@ -245,7 +266,7 @@ static void add_node(const struct assembly *s, int32_t node, struct block_row *r
         take(s, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim, row->taken);
     }
     put(s, body->node_order[node], row->taken, matrix);
-    add_square(s->p->size, 1.0 / row->volume, row->taken + dim * s->p->size, matrix);
+    preconditioner_add_square(s->p->size, 1.0 / row->volume, row->taken + dim * s->p->size, matrix);
 }
 
 static void add_penalty(const struct assembly *s, int64_t r, double *taken, double *matrix)
@@ -261,7 +282,7 @@ static void add_penalty(const struct assembly *s, int64_t r, double *taken, doub
         }
         take(s, average.idx[i], 1, block, taken);
     }
-    add_square(s->p->size, s->system->penalty_stiffness[r], taken, matrix);
+    preconditioner_add_square(s->p->size, s->system->penalty_stiffness[r], taken, matrix);
 }
 
 /* field = B G^T amount */
@@ -299,7 +320,7 @@ static enum status find_bent(struct assembly *s, struct error *error)
         spread(p, rows, amount, field);
         for (int64_t i = 0; i < nodes * dim; i++) {
             if (s->near[i / dim] >= 0) {
-                s->bent[(s->near[i / dim] * dim + i % dim) * size + k] = field[i];
+                s->bent[(s->near[i / dim] * dim + i % dim) * size + k] = (float)field[i];
             }
         }
     }

@@ -9,17 +9,6 @@
 
 static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
 
-/* matrix += stiffness row row^T */
-static void add_square(int64_t size, double stiffness, const double *row, double *matrix)
-{
-    for (int64_t i = 0; i < size; i++) {
-        double part = stiffness * row[i];
-        for (int64_t k = 0; k < size && part != 0.0; k++) {
-            matrix[i * size + k] += part * row[k];
-        }
-    }
-}
-
 /* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
 static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, int64_t *corner,
                           double *weight)
@@ -71,7 +60,7 @@ void preconditioner_add_contacts(const struct preconditioner *p, const struct so
                 for (int64_t i = 0; i < p->size; i++) {
                     row[i] = field[i / dim] * direction[i % dim];
                 }
-                add_square(p->size, stiffness, row, matrix);
+                preconditioner_add_square(p->size, stiffness, row, matrix);
             }
         }
         opposite += contact_between_corners(contact) * p->coarse.count;

@@ -38,6 +38,9 @@ double preconditioner_factorise(const struct preconditioner *preconditioner, dou
 /* The inverses, from what body, contacts and mass are. */
 void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
 
+/* matrix[size * size] += stiffness row^T row */
+void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix);
+
 /* Set the stiffness of body and penalties along the coarse fields, as it is at the last evaluation of a body
  * of smoothed cells. */
 MUST_CHECK enum status preconditioner_assemble(struct preconditioner *preconditioner,
