@@ -12,8 +12,8 @@
 #include <string.h>
 
 /* Entries of a row of L: with 12, 24 and 40 the ratio of the frequencies of a bar is 26, 22, 22; of a ball of
- * flat cells 119, 79, 52. */
-enum { MOST_ENTRIES = 24 };
+ * flat cells 119, 79, 52. In two dimensions a row of S has half as many. */
+enum { MOST_ENTRIES = 24, MOST_ENTRIES_2D = 12 };
 /* Rows that are worth the while of a thread. */
 static const int64_t worthwhile = 500;
 static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
@@ -22,7 +22,7 @@ static const double ridge = 1e-9; /* on the diagonal of S_pp, by itself */
 static int64_t choose(const struct solid_system *system, const struct lower *lower, int32_t i,
                       struct placed *near, int32_t list[MOST_ENTRIES])
 {
-    int dim = system->dim;
+    int dim = system->dim, most = dim == 2 ? MOST_ENTRIES_2D : MOST_ENTRIES;
     int64_t count = 0, kept = 0;
     struct lower_row row = lower_row(lower, i);
     for (int64_t k = 0; k < row.count; k++) {
@@ -33,7 +33,7 @@ static int64_t choose(const struct solid_system *system, const struct lower *low
         }
     }
     qsort(near, (size_t)count, sizeof *near, compare_placed);
-    for (; kept < count && kept < MOST_ENTRIES - 1; kept++) {
+    for (; kept < count && kept < most - 1; kept++) {
         list[kept] = (int32_t)near[kept].item;
     }
     qsort(list, (size_t)kept, sizeof *list, compare_int32);

@@ -159,8 +159,8 @@ MUST_CHECK enum status system_share_penalties(struct solid_system *system, struc
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
 
-/* Whether relaxations have an inverse factor (inverse_stiffness.h): in three dimensions, with smoothed cells
- * and values at the nodes. In two, supports are narrow, and it saves no steps. */
+/* Whether relaxations have an inverse factor (inverse_stiffness.h): with smoothed cells and values at the
+ * nodes. */
 bool system_has_inverse(const struct solid_system *system);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
