@@ -139,8 +139,10 @@ crushed() {
     # Pressed by half a side in plane strain wrinkles; it has rolled round the rim of the support, which is in nobody's way.
     { block quasi-static | sed 's/0.45/0.49/'
         printf '[displacement planes]\nfacets = xmin, ymin\nnormal = 0\n[displacement top]\nfacets = ymax\nnormal = -0.05\n'; } > slide.scene
-    refused 1 'slide.scene: the body folds from 0.' mtled slide.scene block.mts
-    [[ $stderr == *" of the load on: ymax at (0.0"*", 0.1) is turned over, through the plane that it slides on: let a rigid surface in place of that support stop it, "* ]]
+    # The block is symmetric, and unstable on the way: chance which plane it is, and when the wrinkles have grown.
+    refused 1 'slide.scene: the body folds ' mtled slide.scene block.mts
+    [[ $stderr =~ ": ymax at (0.0"[0-9]*", 0.1) is turned over, "|": ymin at (0.0"[0-9]*", 0) is turned over, " ]]
+    [[ $stderr == *" is turned over, through the plane that it slides on: let a rigid surface in place of that support stop it, "* ]]
     # Up to the stretch at which a plane side creases, .65, that is homogeneous: in closed form 215.611 N/m at .7.
     sed 's/-0.05/-0.03\n[output]\nreactions = yes/' slide.scene > slide30.scene
     mtled slide30.scene block.mts > u.dat
