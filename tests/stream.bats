@@ -248,7 +248,7 @@ large() {
 @test "the sections of the manual are those that the library knows" {
     awk -F '|' '/^## Sections/ { on = 1 } /^Results/ { exit } on && /^\| `/ { gsub(/[` ]/, "", $2); gsub(/,/, "\n", $2); print $2 }' \
         "$BATS_TEST_DIRNAME/../lib/README.md" | sort > manual
-    sed -n 's/^ *{"\([^"]*\)", TYPE.*MADE_WITH_\([A-Z]*\)},/\1 \2/p' "$BATS_TEST_DIRNAME/../lib/io/sections.c" |
+    sed -n 's/^ *{"\([^"]*\)", TYPE.*MADE_WITH_\([A-Z]*\)},/\1 \2/p' "$BATS_TEST_DIRNAME/../lib/io/stream/sections.c" |
         awk '$2 != "RESULTS" { print $1 }' | sort > library
     [ "$(wc -l < library)" -gt 30 ]
     diff manual library

@@ -359,7 +359,8 @@ END
     refused 1 'part.scene: step ' mtled part.scene cubes.mts
     [[ $stderr == *"; the body folds "*": let all of it touch (facets = *, against = *)" ]]
     steps=${stderr#*step }
-    [ "${steps%%:*}" -lt 5500 ]
+    # 2 400 to 6 000 steps, by chance: the folded state has no equilibrium. Without the verdict on folds it takes tens of thousands.
+    [ "${steps%%:*}" -lt 8000 ]
 }
 
 @test "the lips of a ring meet corner on corner, and slip past each other" {

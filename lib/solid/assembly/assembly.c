@@ -2,8 +2,9 @@
 
 #include "solid/assembly/prescription.h"
 
-#include "approx/field/field.h"
 #include "approx/cells/quadrature.h"
+#include "approx/cells/quality.h"
+#include "approx/field/field.h"
 #include "base/box.h"
 #include "base/memory.h"
 
@@ -113,6 +114,15 @@ void assembly_complete(struct assembly *input)
                                             .cell_side = input->cell_side};
 }
 
+/* Triangles below this quality are flatter than about 1 to 3. */
+static const double flat_quality = 0.5;
+
+/* Whether half of the cells, or more, are flat. */
+static bool are_flat(const struct cells *cells)
+{
+    return 2 * cells_poorest(cells, flat_quality, 0, NULL) >= cells->count;
+}
+
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
 {
@@ -121,6 +131,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
                                     .X = input->cells.x,
                                     .node_lists = &input->node_lists,
                                     .node_phi = input->node_phi,
+                                    .has_flat_cells = are_flat(&input->cells),
                                     .curves = input->curves,
                                     .curve_count = input->curve_count,
                                     .conditions = input->conditions};

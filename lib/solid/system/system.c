@@ -294,7 +294,8 @@ double system_longest_change(const struct solid_system *system)
 
 bool system_has_inverse(const struct solid_system *system)
 {
-    return system->body.smoothed && system->node_lists != NULL;
+    return (system->dim == 3 || system->has_flat_cells) && system->body.smoothed &&
+           system->node_lists != NULL;
 }
 
 /* The stiffness that a constraint penalty on an average adds to its nodes. */

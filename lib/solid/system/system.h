@@ -57,6 +57,7 @@ struct solid_system {
     struct body body;
     const struct neighbours *node_lists; /* values of the shape functions at the nodes, the caller's; NULL: */
     const double *node_phi;              /* not known */
+    bool has_flat_cells;                 /* half of the cells or more, see assembly.c */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
@@ -160,7 +161,8 @@ MUST_CHECK enum status system_share_penalties(struct solid_system *system, struc
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);
 
 /* Whether relaxations have an inverse factor (inverse_stiffness.h): with smoothed cells and values at the
- * nodes. */
+ * nodes, in three dimensions, and in two if cells are flat. Elsewhere in two, where supports are narrow, it
+ * saves fewer steps than it costs where lips press on each other. */
 bool system_has_inverse(const struct solid_system *system);
 
 /* Mass for relaxation: a bound of each node's stiffness, N/m, so that all parts of the body have about the
