@@ -359,7 +359,7 @@ END
     refused 1 'part.scene: step ' mtled part.scene cubes.mts
     [[ $stderr == *"; the body folds "*": let all of it touch (facets = *, against = *)" ]]
     steps=${stderr#*step }
-    # 2 400 to 6 000 steps, by chance: the folded state has no equilibrium. Without the verdict on folds it takes tens of thousands.
+    # By chance 2 400 to 6 000 steps: the folded state has no equilibrium.
     [ "${steps%%:*}" -lt 8000 ]
 }
 
