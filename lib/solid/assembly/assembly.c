@@ -117,10 +117,10 @@ void assembly_complete(struct assembly *input)
 /* Triangles below this quality are flatter than about 1 to 3. */
 static const double flat_quality = 0.5;
 
-/* Whether half of the cells, or more, are flat. */
+/* Whether half of the cells, or more, are flat triangles. */
 static bool are_flat(const struct cells *cells)
 {
-    return 2 * cells_poorest(cells, flat_quality, 0, NULL) >= cells->count;
+    return cells->dim == 2 && 2 * cells_poorest(cells, flat_quality, 0, NULL) >= cells->count;
 }
 
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,

@@ -234,7 +234,6 @@ static void make_row(const struct body *body, int32_t node, struct block_row *ro
     const struct field_averages *averages = &body->cells.averages;
     int64_t r = averages->row_count - body->node_count + node;
     struct domain domain = {0};
-    memset(domain.gradient, 0, sizeof domain.gradient);
     row->count = 0;
     row->volume = 0.0;
     for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1]; i++) {

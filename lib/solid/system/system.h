@@ -57,7 +57,7 @@ struct solid_system {
     struct body body;
     const struct neighbours *node_lists; /* values of the shape functions at the nodes, the caller's; NULL: */
     const double *node_phi;              /* not known */
-    bool has_flat_cells;                 /* half of the cells or more, see assembly.c */
+    bool has_flat_cells;                 /* 2D: half of the cells or more, see assembly.c */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
