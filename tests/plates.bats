@@ -225,6 +225,21 @@ buckled() {
     done
 }
 
+@test "a slender body that buckles under a load that is held comes to a stable state: a note, no verdict" {
+    cloud -d 3 -k jittered -n 31,3,3 --jitter 0.15 --seed 7 --box 0,0.1,0,0.003,0,0.003 2> note | shapefn > rod.mts 2>> note
+    { block quasi-static | sed 's/dim = 2/dim = 3/'
+        printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.004, 0, 0\n[output]\nreactions = yes\n'; } > rod.scene
+    run --separate-stderr mtled -o u.dat rod.scene rod.mts
+    [ "$status" -eq 0 ]
+    [[ $stderr == "mtled: rod.scene: at the whole load, the body has buckled, most of all, by 0.00"*" m, at (0.05, "* ]]
+    # The elastica between clamped ends (to fourth order in its modulus k): what the force does not compress shortens it by
+    # 2 - 2 E / K = k^2 + k^4 / 8 of its length, and it bows by k / K of that.
+    mts print reactions u.dat | awk 'NR == 1 { print $1 }' > force
+    mts print u u.dat | awk -v force="$(cat force)" '{ s = sqrt($2 ^ 2 + $3 ^ 2); if (s > bow) bow = s } END {
+        shorter = 0.04 - force / (3000 * 0.003 ^ 2); k2 = shorter - shorter ^ 2 / 8
+        ratio = bow / (0.1 * sqrt(k2) / (3.14159265 / 2 * (1 + k2 / 4))); exit !(ratio > 0.98 && ratio < 1.02) }'
+}
+
 @test "a body that buckles is told where the scene has contacts as well, that do not act" {
     buckled 5 0.495 1e-5 '[contact all]\nfacets = *\nagainst = *'
     sed -i '/^\[output/d' buckled.scene

@@ -417,7 +417,10 @@ void run_folds_judge(struct run *run)
         remedy = "let a rigid surface beside the support stop it, press less, refine there";
     }
     if (text[0] == '\0') {
-        run_stability_describe(run, text, sizeof text);
+        if (run_stability_describe(run, text, sizeof text)) {
+            tool_note(run->tool, "%s: %s", run->scene->path, text);
+            text[0] = '\0';
+        }
         remedy = "press less, hold it there";
     }
     if (text[0] != '\0' && !run->scene->output.folds_allowed) {

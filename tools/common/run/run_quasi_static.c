@@ -35,12 +35,16 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
-        const char *remedy = run_folds_touch_in_part(run) ? "" /* it is named with the fold */
-                             : run_touches_in_part(run)
-                                 ? ": to let all of it touch (facets = *, against = *), a larger tolerance, "
-                                   "a finer cloud at the contacts, or supports against rigid motion may help"
-                                 : ": a larger tolerance, a finer cloud at the contacts, or supports against "
-                                   "rigid motion may help";
+        const char *remedy =
+            run_folds_touch_in_part(run) ? "" /* it is named with the fold */
+            : run_touches_in_part(run)
+                ? ": to let all of it touch (facets = *, against = *), a larger tolerance, "
+                  "a finer cloud at the contacts, or supports against rigid motion may help"
+            : run->model->system.contact_count > 0
+                ? ": a larger tolerance, a finer cloud at the contacts, or supports against rigid motion may "
+                  "help"
+                : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
+                  "tolerance, or supports against that motion may help";
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s", scene->path,
                  (long long)report->steps, load, report->error, remedy);

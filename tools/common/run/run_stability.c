@@ -1,6 +1,9 @@
 #include "run/run.h"
 
+#include "approx/cells/cells.h"
+#include "approx/field/field.h"
 #include "approx/field/field_compare.h"
+#include "base/eigen.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -12,6 +15,10 @@
  * that is held, the largest of the last samples' moves has risen by this factor over what it was at an
  * estimated error below `near_error`; moves below a share of the displacement are round-off. */
 static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
+
+/* A plane side creases when it is compressed to this stretch (Hong, Zhao and Suo 2009). An instability of a
+ * body that is compressed by less is that of its shape, whose length the mesh resolves. */
+static const double crease_stretch = 0.65;
 
 static int64_t parameter_count(const struct run *run)
 {
@@ -118,7 +125,53 @@ static double moved_since(const struct run *run, int64_t *node)
     return most;
 }
 
-void run_stability_describe(const struct run *run, char *text, size_t size)
+/* The least principal stretch of a cell whose nodes move by the field. */
+static double least_stretch(const struct cells *cells, int64_t c, const double *field)
+{
+    int dim = cells->dim;
+    double F[9] = {0.0}, C[9] = {0.0}, value[3], directions[9], least = INFINITY;
+    for (int k = 0; k <= dim; k++) {
+        int32_t face[3];
+        double area[3];
+        const double *u = field + (int64_t)cells->node[c * (dim + 1) + k] * dim;
+        cell_face(cells, c, k, face);
+        face_area_vector(dim, cells->x, face, area); /* -dim V grad N_k */
+        for (int i = 0; i < dim * dim; i++) {
+            F[i] +=
+                (i / dim == i % dim && k == 0) - u[i / dim] * area[i % dim] / (dim * cell_volume(cells, c));
+        }
+    }
+    for (int i = 0; i < dim * dim; i++) {
+        for (int k = 0; k < dim; k++) {
+            C[i] += F[k * dim + i / dim] * F[k * dim + i % dim];
+        }
+    }
+    eigen_symmetric(dim, C, value, directions);
+    for (int k = 0; k < dim; k++) {
+        least = fmin(least, value[k]);
+    }
+    return sqrt(fmax(least, 0.0));
+}
+
+/* Whether the cells at a node were compressed by less than what makes a side crease, in the state that was
+ * left. */
+static bool is_of_shape(const struct run *run, int64_t node)
+{
+    const struct cells *cells = &run->model->assembly.cells;
+    double *field = run_new_values(run, parameter_count(run)), least = INFINITY;
+    const struct assembly *input = &run->model->assembly;
+    field_evaluate(cells->node_count, input->node_lists.ptr, input->node_lists.idx, input->node_phi,
+                   cells->dim, run->stability.near, field);
+    for (int64_t i = 0; i < cells->count * (cells->dim + 1); i++) {
+        if (cells->node[i] == node) {
+            least = fmin(least, least_stretch(cells, i / (cells->dim + 1), field));
+        }
+    }
+    free(field);
+    return least > crease_stretch;
+}
+
+bool run_stability_describe(const struct run *run, char *text, size_t size)
 {
     const struct run_stability *stability = &run->stability;
     const struct solid_system *system = &run->model->system;
@@ -127,17 +180,18 @@ void run_stability_describe(const struct run *run, char *text, size_t size)
     text[0] = '\0';
     snprintf(when, sizeof when, stability->since < 1.0 ? "from %.4g of the load on" : "at the whole load",
              stability->since);
-    if (stability->left) {
-        double moved = moved_since(run, &node);
-        if (moved > growth * stability->least) {
-            point_text(system->dim, system->X + node * system->dim, place);
-            snprintf(
-                text, size,
-                "the body folds %s: it buckles or wrinkles, away from an equilibrium that is not stable, "
-                "most of all, by %.2g m, at %s",
-                when, moved, place);
-            return;
-        }
+    double moved = stability->left ? moved_since(run, &node) : 0.0;
+    if (stability->left && moved > growth * stability->least) {
+        bool stands = !stability->negative && is_of_shape(run, node);
+        point_text(system->dim, system->X + node * system->dim, place);
+        snprintf(text, size,
+                 stands
+                     ? "%s, the body has buckled, most of all, by %.2g m, at %s: the state that it left was "
+                       "not stable, this one is, and so may be others, as its mirror image"
+                     : "the body folds %s: it buckles or wrinkles, away from an equilibrium that is not "
+                       "stable, most of all, by %.2g m, at %s",
+                 when, moved, place);
+        return stands;
     }
     if (stability->negative) {
         point_text(system->dim, system->X + stability->node * system->dim, place);
@@ -146,4 +200,5 @@ void run_stability_describe(const struct run *run, char *text, size_t size)
                  "at %s",
                  when, place);
     }
+    return false;
 }

@@ -39,5 +39,6 @@ void run_stability_look(struct run *run, double load);
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);
 
-/* What was seen up to the final state run->u, into text[size]; empty when all is stable. */
-void run_stability_describe(const struct run *run, char *text, size_t size);
+/* What was seen up to the final state run->u, into text[size]; empty when all is stable. True where that is a
+ * note: the body has buckled, which is a matter of its shape, and the state that it has come to is stable. */
+bool run_stability_describe(const struct run *run, char *text, size_t size);
