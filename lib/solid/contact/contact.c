@@ -9,15 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Depths below this part of a point's width are none. */
+/* Depths below this share of a point's width count as zero. */
 static const double round_off = 1e-6;
 /* Unit normals that differ by less are the same. */
 static const double same_normal = 1e-6;
-/* Modulus of the penalty by the largest pressure that multipliers exert: at least, and when it is raised. */
+/* Modulus of the penalty by the largest multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
-/* A point of a facet is half or a third of it. */
+/* A quadrature point has an equal share of the area of its facet. */
 double contact_width(const struct contact *contact, int64_t p)
 {
     int points = contact->averages == NULL ? 1 : contact->dim;
@@ -35,8 +35,8 @@ double contact_round_off(const struct contact *contact, int64_t p)
     return round_off * contact_width(contact, p);
 }
 
-/* Cosine between the body's outward normal at point p and the surface's normal. Where they can touch it is
- * about -1. */
+/* Cosine between the body's outward normal at point p and the surface's normal; about -1 where they can
+ * touch. */
 static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
     double cosine = 0.0;
@@ -46,8 +46,8 @@ static double facing(const struct contact *contact, int64_t p, const struct rigi
     return cosine;
 }
 
-/* No point may start far behind the surface. No point may start on it or behind it while the body faces away
- * from it, as a body on the wrong side of a shell does at a small depth. */
+/* No point may start far behind the surface. No point may start on or behind it where the body faces away
+ * from it, as a body on the wrong side of a shell does. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     int64_t worst = -1;
@@ -98,7 +98,7 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
         contact->stiffness[p] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
-        contact->checked_x[i] = INFINITY; /* no search yet: it may be in contact from the start */
+        contact->checked_x[i] = INFINITY; /* forces a search in the first evaluation */
     }
     contact->part = 1.0;
     return STATUS_OK;
@@ -168,7 +168,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     if (contact->modulus > 0.0) {
         contact_set_stiffness(contact, contact->modulus);
     }
-    contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
+    contact_spread_multipliers(contact); /* `held` follows from the state that was read */
     return STATUS_OK;
 }
 
@@ -227,7 +227,7 @@ static double least_distance(const struct contact *contact, int64_t p, const str
 }
 
 /* Gaps and pressures of the points from `begin` to before `end`. Where the surface is too far away for a
- * pressure it is not searched for, and the gap is that of the last search. */
+ * pressure, there is no search, and the gap is that of the last one. */
 static void measure_points(struct contact *contact, int64_t begin, int64_t end, const double *u, bool all)
 {
     int dim = contact->dim;

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Part of an augmentation that is made at least; its inverse at most, where two changes in a row have this
- * cosine. */
+/* Least share of an augmentation that is made. The largest is its inverse, where the cosine between two
+ * consecutive changes is above `aligned`. */
 static const double least_part = 1.0 / 16.0, aligned = 0.99;
 
 void contact_spread_multipliers(struct contact *contact)
@@ -83,8 +83,8 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
     }
 }
 
-/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns by how much its change is what the
- * contact gives way by there, m/Pa; 0: nothing changes. */
+/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns the compliance, m/Pa, by which its
+ * change is the penetration there; 0: nothing changes. */
 static double augmented(const struct contact *contact, int64_t a, double next[3])
 {
     const struct boundary_averages *averages = contact->averages;
@@ -102,7 +102,7 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
         compliance += part;
         add_difference(contact, p, part, sum, direction);
     }
-    if (!(compliance > 0.0)) { /* all of it is pressed on by others */
+    if (!(compliance > 0.0)) { /* all points are led */
         return 0.0;
     }
     for (int c = 0; c < contact->dim; c++) {
@@ -123,9 +123,9 @@ static void forget_change(struct contact *contact)
     memset(contact->change, 0, values * sizeof *contact->change);
 }
 
-/* Let contact->change become what the multipliers lack by the last evaluation. Returns the part of it to go
- * on by. With the change d before, of which part w was made, and d' now it is w d . (d - d') / |d - d'|^2: of
- * a geometric sequence the whole way to its limit. */
+/* Set contact->change to the change of the multipliers by the last evaluation. Returns the share of it to
+ * make, equation (20b): w d . (d - d') / |d - d'|^2 with the change d before, of which the share w was made,
+ * and d' now. For a geometric sequence this leads to its limit. */
 static double take_change(struct contact *contact)
 {
     const struct boundary_averages *nodes = contact_nodes(contact);
@@ -168,13 +168,13 @@ void contact_augment(struct contact *contact, bool steady)
             next[c] = multiplier[c] + part * change;
             along += next[c] * (multiplier[c] + change);
         }
-        for (int c = 0; c < dim; c++) { /* beyond the whole change it may become a pull */
+        for (int c = 0; c < dim; c++) { /* more than the whole change may make it a tension */
             multiplier[c] = part <= 1.0 || along > 0.0 ? next[c] : 0.0;
         }
     }
     contact->part = part;
     if (part > 1.0) {
-        forget_change(contact); /* what comes next is no sequence with it */
+        forget_change(contact); /* the next change does not continue the sequence */
     }
     contact_spread_multipliers(contact);
 }

@@ -7,11 +7,11 @@
 
 #include <string.h>
 
-/* Facets of one body nearer at rest than so many widths are neighbours through it, if each is behind the
- * other by more than this part of their distance. A point may be behind another facet by half a width: what
- * lies further apart in the body would have to be flattened to an eighth for that. */
+/* Two facets of one body are neighbours through it if they are nearer at rest than this many widths and each
+ * is behind the other by more than this share of their distance. A point may be behind another facet by half
+ * a width: a body thicker than `near_widths` would have to be flattened to an eighth for that. */
 static const double near_widths = 4.0, behind_share = 1e-3;
-/* By how much of its width a facet that turns moves, by radians. */
+/* A facet that turns by an angle moves by this share of its width, per radian. */
 static const double lever = 0.3;
 enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 
@@ -102,7 +102,7 @@ static enum status number_vertices(struct opposite *opposite, const struct face_
     return STATUS_OK;
 }
 
-/* What is known of the facets at rest. */
+/* Normals, middles, widths and bodies of the facets at rest. */
 static enum status measure_rest(struct opposite *opposite, const struct facet_set *set, const int32_t *part,
                                 struct error *error)
 {
@@ -143,7 +143,7 @@ static double corner_angle(const struct rigid_surface *surface, const int32_t *f
     return atan2(vector_length(3, cross), vector_dot(3, one, other));
 }
 
-/* The boxes of the tree, which keeps its branches: those of a branch come behind it. */
+/* Fit the boxes of the tree to the moved facets. The branches below a branch come behind it. */
 static void fit_boxes(struct rigid_surface *surface)
 {
     int dim = surface->dim;
@@ -244,7 +244,7 @@ void opposite_move(struct opposite *opposite, const double *u)
 struct search {
     const struct opposite *opposite;
     const struct seeker *seeker;
-    double free_way; /* what facets that do not face the point leave it, m */
+    double free_way; /* relative motion until another facet may face the point, m */
 };
 
 /* Whether facet f was a neighbour of the point through the body. */

@@ -14,14 +14,14 @@ static enum status fail_sides(int64_t one, int64_t other, struct error *error)
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* The error of a facet that stands twice: it would have twice the weight in normals, and hide rims. */
+/* The error of a repeated facet: it would have twice the weight in normals, and hide rims. */
 static enum status fail_twice(int64_t one, int64_t other, struct error *error)
 {
     return fail(error, STATUS_INPUT, "rigid surface: facets %lld and %lld are the same: remove one",
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* 2D: no segment stands twice. */
+/* 2D: check that no segment is repeated. */
 static enum status check_segments(const struct rigid_surface *surface, struct error *error)
 {
     SCRATCH struct placed *segments = NULL; /* each by its two vertices as one number */
