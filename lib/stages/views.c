@@ -55,7 +55,7 @@ enum status stream_field(const struct stream *stream, const char *name, int64_t 
     return STATUS_OK;
 }
 
-/* Numbers of `what`, found `where`, each within [0, bound). */
+/* Check that the numbers of a section are within [0, bound). `what` and `where` name them in messages. */
 static enum status check_numbers(const struct section *section, const char *what, const char *where,
                                  int64_t bound, struct error *error)
 {
@@ -191,7 +191,7 @@ bool points_are_smoothed(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
-/* The sections PREFIX.around and .image of lists with `pairs` entries, where they exist. */
+/* The sections PREFIX.around and .image, if they exist, of lists with `pairs` entries. */
 static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
                                struct around *around, struct error *error)
 {

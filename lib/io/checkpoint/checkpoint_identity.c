@@ -13,7 +13,7 @@
 
 enum { BLOCK = 1 << 16 };
 
-/* Go on with the bytes of a file. */
+/* Update the checksum with the bytes of a file. */
 static enum status add_file(const char *file, uLong *crc, struct error *error)
 {
     SCRATCH unsigned char *block = NULL;
