@@ -35,17 +35,6 @@ double contact_round_off(const struct contact *contact, int64_t p)
     return round_off * contact_width(contact, p);
 }
 
-/* Cosine between the body's outward normal at point p and the surface's normal; about -1 where they can
- * touch. */
-static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
-{
-    double cosine = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        cosine += contact->points->normal[p * contact->dim + c] * closest->normal[c];
-    }
-    return cosine;
-}
-
 /* No point may start far behind the surface. No point may start on or behind it where the body faces away
  * from it, as a body on the wrong side of a shell does. */
 static enum status check_side(const struct contact *contact, struct error *error)
@@ -56,7 +45,8 @@ static enum status check_side(const struct contact *contact, struct error *error
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
         double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
-        bool back = closest.found && facing(contact, p, &closest) > 0.5;
+        double cosine = vector_dot(contact->dim, contact->points->normal + p * contact->dim, closest.normal);
+        bool back = closest.found && cosine > 0.5; /* about -1 where they can touch */
         if (depth > deepest && (depth > length || (depth > -round_off * length && back))) {
             deepest = depth;
             worst = p;
@@ -187,11 +177,8 @@ static bool was_in_front(const struct contact *contact, int64_t p, const double 
 /* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
 static bool has_turned(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
-    double turn2 = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        double d = closest->normal[c] - contact->checked_normal[p * contact->dim + c];
-        turn2 += d * d;
-    }
+    double turn2 =
+        vector_distance2(contact->dim, closest->normal, contact->checked_normal + p * contact->dim);
     return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
 }
 
@@ -218,12 +205,8 @@ static void search(struct contact *contact, int64_t p, struct contact_view *view
 /* Lower bound of the distance of y_p from the surface, from that at the last search, m. */
 static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
 {
-    double moved2 = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        double step = view->sought[c] - contact->checked_x[p * contact->dim + c];
-        moved2 += step * step;
-    }
-    return contact->checked_distance[p] - sqrt(moved2);
+    return contact->checked_distance[p] -
+           vector_distance(contact->dim, view->sought, contact->checked_x + p * contact->dim);
 }
 
 /* Gaps and pressures of the points from `begin` to before `end`. Where the surface is too far away for a
@@ -328,10 +311,9 @@ void contact_total(const struct contact *contact, double *total)
     double sign = contact_between_sign(contact);
     memset(total, 0, (size_t)contact->dim * sizeof *total);
     for (int64_t p = 0; p < contact->count; p++) {
-        for (int c = 0; c < contact->dim; c++) {
-            total[c] += sign * contact->pressure[p] * contact->points->area[p] *
-                        contact->normal[p * contact->dim + c];
-        }
+        double force[3];
+        contact_point_force(contact, p, force);
+        add_scaled(contact->dim, sign, force, total);
     }
 }
 
@@ -341,7 +323,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
     double sign = contact_between_sign(contact);
     memset(moment, 0, 3 * sizeof *moment);
     for (int64_t p = 0; p < contact->count; p++) {
-        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
+        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0}, of_point[3];
         if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
@@ -351,10 +333,8 @@ void contact_moment(const struct contact *contact, const double *point, double m
             double raised = contact->rest[p * dim + c] - contact->points->position[p * dim + c];
             arm[c] -= raised + point[c];
         }
-        for (int c = 0; c < 3; c++) {
-            int i = (c + 1) % 3, j = (c + 2) % 3;
-            moment[c] += sign * (arm[i] * force[j] - arm[j] * force[i]);
-        }
+        vector_cross(arm, force, of_point);
+        add_scaled(3, sign, of_point, moment);
     }
 }
 

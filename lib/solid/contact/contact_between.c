@@ -81,17 +81,12 @@ static void facet_normal(const struct contact *contact, int64_t f, double normal
 {
     static const int32_t corners[] = {0, 1, 2};
     int dim = contact->dim;
-    double x[9], length2 = 0.0;
+    double x[9];
     for (int k = 0; k < dim; k++) {
         memcpy(x + k * dim, contact->view[f * contact->between->per_facet + k].x, (size_t)dim * sizeof *x);
     }
     face_area_vector(dim, x, corners, normal);
-    for (int c = 0; c < dim; c++) {
-        length2 += normal[c] * normal[c];
-    }
-    for (int c = 0; c < dim && length2 > 0.0; c++) {
-        normal[c] /= sqrt(length2);
-    }
+    vector_normalise(dim, normal);
 }
 
 /* How far y_p is from x_p, m. */
@@ -194,11 +189,7 @@ static double relative_way(const struct contact *contact, const double *u)
     const struct contact_between *between = contact->between;
     double most2 = 0.0;
     for (int64_t n = 0; n < between->values; n += contact->dim) {
-        double way2 = 0.0;
-        for (int c = 0; c < contact->dim; c++) {
-            way2 += (u[n + c] - between->before[n + c]) * (u[n + c] - between->before[n + c]);
-        }
-        most2 = fmax(most2, way2);
+        most2 = fmax(most2, vector_distance2(contact->dim, u + n, between->before + n));
     }
     return between->leverage * sqrt(most2);
 }

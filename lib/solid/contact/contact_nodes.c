@@ -24,9 +24,7 @@ void contact_spread_multipliers(struct contact *contact)
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
             double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
-            for (int c = 0; c < contact->dim; c++) {
-                contact->held[p * contact->dim + c] += weight * multiplier[c];
-            }
+            add_scaled(contact->dim, weight, multiplier, contact->held + p * contact->dim);
         }
     }
 }
@@ -46,9 +44,7 @@ static double add_point(const struct contact *contact, int64_t p, double share, 
     node->pressed += contact->pressure[p] > 0.0 ? share : 0.0;
     node->stiffness += share * contact->stiffness[p];
     node->turned = node->turned || contact->view[p].turned;
-    for (int c = 0; c < contact->dim; c++) {
-        node->normal[c] += share * contact->normal[p * contact->dim + c];
-    }
+    add_scaled(contact->dim, share, contact->normal + p * contact->dim, node->normal);
     return within ? share : 0.0;
 }
 
@@ -56,18 +52,13 @@ struct contact_node contact_node(const struct contact *contact, int64_t a)
 {
     const struct boundary_averages *averages = contact->averages;
     struct contact_node node = {0};
-    double length2 = 0.0, within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
+    double within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
     for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
          averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
         within += add_point(contact, averages->sample_point[s], averages->sample_share[s], &node);
     }
     node.gap = within > 0.0 ? node.gap / within : INFINITY;
-    for (int c = 0; c < contact->dim; c++) {
-        length2 += node.normal[c] * node.normal[c];
-    }
-    for (int c = 0; c < contact->dim && length2 > 0.0; c++) {
-        node.normal[c] /= sqrt(length2);
-    }
+    vector_normalise(contact->dim, node.normal);
     return node;
 }
 

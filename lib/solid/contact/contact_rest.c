@@ -76,7 +76,7 @@ static enum status find_normals(struct facets *facets, struct error *error)
             }
         }
         facets->rim[a] = once != 0;
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
     }
     return STATUS_OK;
 }

@@ -118,7 +118,7 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
         face_area_vector(dim, opposite->rest, facet, normal);
         double area = vector_length(dim, normal);
         opposite->width[f] = dim == 2 ? area : sqrt(area);
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
         opposite->part[f] = -1;
         for (int k = 0; k < dim; k++) {
             add_scaled(dim, 1.0 / dim, opposite->rest + (int64_t)facet[k] * dim, opposite->middle + f * dim);
@@ -176,21 +176,21 @@ static void refit(struct opposite *opposite)
         const int32_t *facet = surface->facet + f * dim;
         double *normal = surface->normal + f * dim;
         face_area_vector(dim, surface->vertex, facet, normal);
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
         for (int k = 0; k < dim; k++) {
             add_scaled(dim, corner_angle(surface, facet, k), normal,
                        surface->vertex_normal + (int64_t)facet[k] * dim);
         }
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
-        normalise(dim, surface->vertex_normal + v * dim);
+        vector_normalise(dim, surface->vertex_normal + v * dim);
     }
     for (int64_t slot = 0; slot < surface->facet_count * 3 && dim == 3; slot++) {
         double *normal = surface->edge_normal + slot * 3;
         int64_t beyond = opposite->across[slot] >= 0 ? opposite->across[slot] : slot;
         memcpy(normal, surface->normal + slot / 3 * 3, 3 * sizeof *normal);
         add_scaled(3, 1.0, surface->normal + beyond / 3 * 3, normal);
-        normalise(3, normal);
+        vector_normalise(3, normal);
     }
     fit_boxes(surface);
 }
@@ -311,7 +311,7 @@ static bool was_behind(const struct opposite *opposite, const struct seeker *see
         average_place(&average, dim, opposite->rest + v * dim, seeker->last_u, x + k * dim);
     }
     face_area_vector(dim, x, corners, normal);
-    normalise(dim, normal);
+    vector_normalise(dim, normal);
     average_place(&seeker->average, dim, seeker->rest, seeker->last_u, last);
     vector_subtract(dim, last, x, offset);
     return vector_dot(dim, offset, normal) < -seeker->began;

@@ -28,12 +28,3 @@ int64_t rigid_edge_end(const struct half_edge *edges, int64_t first, int64_t cou
 
 /* Set branch, branch_count and in_order. */
 MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);
-
-/* Make v unit; a zero vector stays zero. */
-static inline void normalise(int dim, double *v)
-{
-    double sum = vector_dot(dim, v, v);
-    for (int a = 0; a < dim && sum > 0.0; a++) {
-        v[a] /= sqrt(sum);
-    }
-}

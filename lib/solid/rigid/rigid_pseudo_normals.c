@@ -125,7 +125,7 @@ static enum status join_edge(struct rigid_surface *surface, const struct half_ed
     for (int64_t i = 0; i < count; i++) {
         add_scaled(3, 1.0, surface->normal + edges[i].slot / 3 * 3, normal);
     }
-    normalise(3, normal);
+    vector_normalise(3, normal);
     for (int64_t i = 0; i < count; i++) {
         memcpy(surface->edge_normal + edges[i].slot * 3, normal, sizeof normal);
         surface->edge_is_rim[edges[i].slot] = count == 1;
@@ -181,7 +181,7 @@ enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct erro
         }
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
-        normalise(surface->dim, surface->vertex_normal + v * surface->dim);
+        vector_normalise(surface->dim, surface->vertex_normal + v * surface->dim);
     }
     for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
         int64_t vertex = surface->facet[c];
