@@ -103,10 +103,8 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
 static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
 {
     int dim;
-    int64_t node_count;
-    const double *x;
     struct recorded recorded;
-    TOOL_TRY(tool, stream_nodes(stream, &dim, &node_count, &x, &error));
+    TOOL_TRY(tool, stream_nodes(stream, &dim, NULL, NULL, &error));
     TOOL_TRY(tool, stage_recorded(stream, "support", dim, &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.visibility = recorded.support.visibility;

@@ -152,9 +152,6 @@ enum status stage_support(struct stream *stream, const struct support_options *o
                           struct support_report *report, struct error *error)
 {
     FREED_BY(support_space_free) struct support_space space = {0};
-    int dim;
-    int64_t node_count;
-    const double *x;
     const struct section *points, *facepoints;
     struct support_options actual = *options;
     struct cells cells;
@@ -164,19 +161,18 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     *report = (struct support_report){0};
     bool had_sides = stream_find(stream, "support.side") != NULL;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
     report->visibility = actual.visibility;
-    RETURN_IF_ERROR(put_radii(stream, &actual, node_count, x, error));
+    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
     if (actual.side != NULL) {
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    RETURN_IF_ERROR(stage_own_part(stream, node_count, &actual, error));
+    RETURN_IF_ERROR(stage_own_part(stream, cells.node_count, &actual, error));
     RETURN_IF_ERROR(
         support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
@@ -186,7 +182,8 @@ enum status stage_support(struct stream *stream, const struct support_options *o
         RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        RETURN_IF_ERROR(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        RETURN_IF_ERROR(
+            stream_need(stream, "facepoints.x", TYPE_F8, cells.dim, "ipoints", &facepoints, error));
         if (had_sides || actual.side != NULL) {
             RETURN_IF_ERROR(renew_rows(stream, &cells, actual.side, error));
             facepoints = stream_find(stream, "facepoints.x");

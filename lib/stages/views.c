@@ -17,11 +17,14 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
                     "nodes.x: %lld rows of %lld columns: not a cloud in 2 or 3 dimensions",
                     (long long)nodes->rows, (long long)nodes->cols);
     }
+    const double *place = nodes->data;
     *dim = (int)nodes->cols;
-    *node_count = nodes->rows;
-    *x = nodes->data;
+    if (node_count != NULL) {
+        *node_count = nodes->rows;
+        *x = place;
+    }
     for (int64_t i = 0; i < nodes->rows * nodes->cols; i++) {
-        if (!isfinite((*x)[i])) {
+        if (!isfinite(place[i])) {
             return fail(error, STATUS_INPUT, "nodes.x: row %lld: not a finite coordinate",
                         (long long)(i / nodes->cols));
         }
@@ -197,15 +200,13 @@ static enum status view_around(const struct stream *stream, const char *prefix, 
 {
     char name[64];
     int dim;
-    int64_t node_count;
-    const double *x;
     const struct section *pair, *image;
     *around = (struct around){0};
     snprintf(name, sizeof name, "%s.around", prefix);
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
     RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
     snprintf(name, sizeof name, "%s.image", prefix);
     RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));

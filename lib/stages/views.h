@@ -6,7 +6,7 @@
 #include "approx/shape/shape.h"
 #include "stages/names.h"
 
-/* Node coordinates, checked to be finite. */
+/* Node coordinates, checked to be finite; or, with node_count and x NULL, only their dimension. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);
 
