@@ -33,7 +33,7 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-/* What the shape functions are, for whoever evaluates them elsewhere. */
+/* Record the settings of the shape functions, by which other tools evaluate them. */
 static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
 {
     const struct section *radius = stream_find(stream, "support.radius");

@@ -74,7 +74,7 @@ static struct support_options parse(const struct tool *tool, int dim)
     return support;
 }
 
-/* All widening in one line, then each list. */
+/* Note all widening in one line, then each list. */
 static void note_report(const struct tool *tool, const struct support_report *report)
 {
     int64_t widened = 0;
