@@ -33,7 +33,7 @@ static const char usage[] =
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
     "internal and contact.\n"
     "\n"
-    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
+    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the start, 1, 2, ...,\n"
     "evenly. A quasi-static scene's time is 0 to 1; its load is that of the curve, held until the\n"
     "error is below the tolerance. There, not in dynamics, what else is asked for is given of each\n"
     "frame: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
