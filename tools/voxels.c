@@ -75,7 +75,6 @@ static const char usage[] =
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */

@@ -3,7 +3,6 @@
 #include "stages/stages.h"
 
 #include "approx/cells/face_rows.h"
-#include "base/memory.h"
 
 /* Read the integration points. */
 static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)

@@ -15,7 +15,6 @@
 #include "io/mesh/msh.h"
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 /* Tags are of type int in all versions of the format except MSH 4.1, where gmsh keeps most of them as int. */

@@ -5,7 +5,6 @@
 #include "solid/constraint/held_directions.h"
 
 #include "approx/field/scattered_fit.h"
-#include "approx/visibility/edge_paths.h"
 
 /* A condition, and the system that its rows are added to. */
 struct prescription {

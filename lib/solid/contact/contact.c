@@ -6,7 +6,6 @@
 #include "solid/contact/contact_rest.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Depths below this share of a point's width count as zero. */

@@ -2,10 +2,8 @@
 
 #include "base/memory.h"
 #include "base/vector.h"
-#include "solid/rigid/rigid_private.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The two ends of a chord of a circle have the same height above each other's tangents. A boundary is

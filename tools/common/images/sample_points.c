@@ -6,7 +6,6 @@
 
 #include "io/files/table.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows)

@@ -5,7 +5,6 @@
 #include "stages/views.h"
 
 #include "base/memory.h"
-#include "base/options.h"
 #include "io/scene/scene.h"
 #include "solid/assembly/assembly.h"
 
