@@ -194,7 +194,7 @@ END
     run -2 --separate-stderr mts recover /dev/null
 }
 
-@test "a long run: memory as at the begin, energy kept" {
+@test "a long run: memory as at the start, energy kept" {
     bash "$BATS_TEST_DIRNAME/soak.sh" 200000 > table
     growth=1.02
     ! nm "$(type -P mtled)" | grep -q ' __asan_init$' || growth=10 # it keeps what is freed for a while

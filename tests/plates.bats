@@ -271,7 +271,7 @@ buckled() {
     [ "$status" -eq 1 ]
     [ ! -e u.dat ]
     mts recover u.dat.part 2> said | mts list > list
-    [ "$(grep -c '^u\.frame\.' list)" -eq 6 ] # and that of the begin
+    [ "$(grep -c '^u\.frame\.' list)" -eq 6 ] # and that of the start
 }
 
 @test "a side beyond the plane of its support is noted; a rigid plate there stops it" {

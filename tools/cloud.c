@@ -46,7 +46,7 @@ static const char usage[] =
 #include "cell_report.h"
 #include "tool.h"
 
-/* Exits where an option that goes with another kind was given. */
+/* Exit if an option of another kind was given. */
 static void check_kind(const struct tool *tool, const char *option, bool applies)
 {
     if (tool_given(tool, option) && !applies) {
@@ -120,7 +120,7 @@ static enum status put_field(struct stream *stream, const struct cloud *cloud, e
     return stream_put(stream, "u", TYPE_F8, cloud->node_count, 1, "", values, true, error);
 }
 
-/* The cloud as a mesh of one region; region[cell_count] is zero and outlives the stream. */
+/* Put the cloud as a mesh of one region; region[cell_count] is zero and must outlive the stream. */
 static enum status put_cloud(struct stream *stream, const struct cloud *cloud, int32_t region[],
                              struct error *error)
 {

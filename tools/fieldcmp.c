@@ -51,7 +51,7 @@ static const char usage[] =
 #include "comparison.h"
 #include "overwrite.h"
 
-/* Where it is known. */
+/* Print the error of the iteration, if it is known. */
 static void print_iteration(const char *name, const struct side *side)
 {
     double error = iteration_error(side);

@@ -65,10 +65,10 @@ static const char usage[] =
 #include <math.h>
 #include <string.h>
 
-/* Cells per direction by the ratio that is used: outside of this it is noted. */
+/* The ratio of the cells per direction by the ratio in use; values outside of these bounds are noted. */
 static const double least_agreement = 0.65, most_agreement = 1.5;
 
-/* What the command line asks for. */
+/* The options. */
 struct request {
     double order; /* 0: none given */
     double ratio;
@@ -86,7 +86,7 @@ static struct request parse(const struct tool *tool)
     return request;
 }
 
-/* Exits where the second cloud is no coarser one. */
+/* Exit unless the second cloud is coarser. Returns the ratio of the cells per direction. */
 static double check_coarser(const struct tool *tool, const struct request *request, const struct side *fine,
                             const struct side *coarse)
 {
@@ -105,7 +105,7 @@ static double check_coarser(const struct tool *tool, const struct request *reque
     return found;
 }
 
-/* The difference of a row of `name` in the two streams, and the length of it in the fine one. */
+/* The difference of two rows; *length: the norm of the fine one. */
 static double row_difference(const struct section *fine, int64_t i, const struct section *coarse, int64_t k,
                              double *length)
 {
@@ -121,7 +121,7 @@ static const struct section *find_table(const struct side *side, const char *nam
     return section != NULL && section->type == TYPE_F8 && section->cols == cols ? section : NULL;
 }
 
-/* Conditions and contacts that both results have. */
+/* Print the errors of the forces of conditions and contacts in both results. */
 static enum status print_forces(const struct side *fine, const struct side *coarse, double share,
                                 struct error *error)
 {
@@ -167,10 +167,9 @@ static double average_difference(const struct tool *tool, const struct request *
     return findings.statistics.average;
 }
 
-/* The order assumed, or that of the averages of differences of three results: of the whole body, also where a
- * region is comparison for, as its error is in part one from elsewhere, and an average over more nodes is
- * steadier.
- */
+/* The assumed order, or that observed from the average differences of three results. These are averages over
+ * the whole body even if a region is requested: the error of a region partly comes from elsewhere, and an
+ * average over more nodes varies less. */
 static double choose_order(struct tool *tool, const struct request *request, const struct side *fine,
                            const struct side *coarse, const struct findings *findings)
 {
@@ -187,8 +186,8 @@ static double choose_order(struct tool *tool, const struct request *request, con
     return field_error_order(near, far, request->ratio);
 }
 
-/* Both errors beside each other: what the iterations of the two results leave, which the estimate, `share` of
- * their difference, contains, and its average. */
+/* Print the error of the iterations of both results that the estimate, `share` of their difference, contains,
+ * and which error dominates: this one or the discretisation's, `average`. */
 static void print_iteration(const struct tool *tool, const struct side *fine, const struct side *coarse,
                             double share, double average)
 {
@@ -207,7 +206,7 @@ static void print_iteration(const struct tool *tool, const struct side *fine, co
     }
 }
 
-/* From differences of the two fields to the error of the first one. */
+/* Turn differences of the two fields into the error of the first one. */
 static void scale(struct findings *findings, double share, int64_t node_count)
 {
     struct field_statistics *all = &findings->statistics;

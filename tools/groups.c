@@ -73,7 +73,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what the options ask for ---- */
+/* ---- the options ---- */
 
 /* One use of an option: "--facets held=low:long,12%" */
 struct request {
@@ -83,7 +83,7 @@ struct request {
     bool replace;
 };
 
-/* The part of the value before its '=', allocated; *behind receives what follows. */
+/* *name: the part of the value before '=', to be freed; *behind: the part after it. */
 static enum status take_name(const struct request *request, char **name, const char **behind,
                              struct error *error)
 {
@@ -133,7 +133,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
     return group_put(body, kind, name, chosen, request->use->value, error);
 }
 
-/* The one group that "NAME" or "KIND:NAME" means: its kind and place. */
+/* The kind and place of the group "NAME" or "KIND:NAME". */
 static enum status find_any(const struct request *request, const char *name, enum group_kind *kind,
                             int64_t *place, struct error *error)
 {
@@ -209,7 +209,7 @@ static enum status carry_out(const struct request *request, struct error *error)
     }
 }
 
-/* ---- what came of it ---- */
+/* ---- the result ---- */
 
 static void drop_empty_regions(const struct tool *tool, struct group_list *regions)
 {
@@ -221,7 +221,7 @@ static void drop_empty_regions(const struct tool *tool, struct group_list *regio
     }
 }
 
-/* How many facets of a group are marked. */
+/* The number of marked facets of a group. */
 static int64_t count_marked(const struct group *group, const bool *marked)
 {
     int64_t count = 0;
@@ -231,7 +231,7 @@ static int64_t count_marked(const struct group *group, const bool *marked)
     return count;
 }
 
-/* Note which groups have facets in common with a new one that neither was made of the other. */
+/* Note groups that have facets in common with a new one, unless one of the two was made from the other. */
 static enum status note_overlaps(const struct tool *tool, const struct group_body *body, struct error *error)
 {
     const struct group_list *list = &body->groups[GROUP_FACETS];
@@ -305,7 +305,7 @@ static void report(const struct tool *tool, const struct group_body *body, enum 
     tool_note(tool, "%s %s: %s", group_kind_names[kind], group->name, text);
 }
 
-/* Sections whose making heeds the groups of facets. */
+/* Remove sections that depend on the groups of facets. */
 static void drop_stale(const struct tool *tool, struct stream *stream)
 {
     int64_t before = stream->section_count;

@@ -54,16 +54,16 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-/* Points with the neighbours and the values of the shape functions at each. */
+/* Points with their neighbours and shape functions. */
 struct points {
-    struct solved solved; /* the field whose shape functions these are; none: others */
+    struct solved solved; /* the computed field whose shape functions these are, if any */
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
     struct field_table table;
 };
 
-/* Options that go with those of another file's points only. */
+/* Options that need points of a file. */
 static const char *const choose_supports[] = {RADIUS_OPTIONS, MLS_OPTIONS, NULL};
 
 static struct support_options parse(const struct tool *tool, int dim)
@@ -82,7 +82,7 @@ static struct support_options parse(const struct tool *tool, int dim)
     return support;
 }
 
-/* The rows of a table of coordinates. */
+/* Read the points of a table of coordinates. */
 static void read_table(const struct tool *tool, const char *file, const char *unit_name, int dim,
                        struct points *points)
 {
@@ -98,7 +98,7 @@ static void read_table(const struct tool *tool, const char *file, const char *un
     }
 }
 
-/* The nodes of another stream. */
+/* Read the nodes of another stream as points. */
 static void read_nodes(const struct tool *tool, const char *file, int dim, struct points *points)
 {
     FREED_BY(stream_free) struct stream other = {0};
@@ -123,7 +123,8 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     memcpy(points->x, x, (size_t)(points->count * dim) * sizeof *x);
 }
 
-/* Leave out the points that lie outside, and tell how many; or fail on the first that lies farther out. */
+/* Leave out the points outside of the body, and note their number; or fail on the first one that is too far
+ * outside. */
 static enum status drop_outside(const struct tool *tool, const struct cells *cells, const double *spacing,
                                 bool skip, const char *file, struct points *points, struct error *error)
 {
@@ -159,8 +160,8 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
     return STATUS_OK;
 }
 
-/* Supports and shape functions at the points: of the stream's own integration points, or, with a file, of the
- * user's, which may lie outside; those of a field that is known, or chosen. */
+/* Make supports and shape functions at the points: integration points of the stream, or points of a file,
+ * which may be outside; the shape functions are those of the computed field, or chosen by options. */
 static enum status make_table(const struct tool *tool, const struct solved *known,
                               const struct support_options *support, const struct stream *stream, bool skip,
                               const char *file, struct points *points, struct error *error)
@@ -186,7 +187,7 @@ static enum status make_table(const struct tool *tool, const struct solved *know
                              file != NULL ? file : "points.x", &points->table, error);
 }
 
-/* The stream's own points. */
+/* Copy the integration points of the stream. */
 static enum status copy_points(const struct stream *stream, int dim, struct points *points,
                                struct error *error)
 {
@@ -198,7 +199,7 @@ static enum status copy_points(const struct stream *stream, int dim, struct poin
     return STATUS_OK;
 }
 
-/* Whether a section is a field at the nodes: not one of those that describe the discretisation. */
+/* Whether a section is a nodal field, not part of the discretisation. */
 static bool is_field(const struct section *section, int64_t node_count)
 {
     if (section_stage(section->name) < MADE_WITH_RESULTS || solved_is_parameters(section)) {
@@ -237,7 +238,7 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
     }
 }
 
-/* The fields of a list of names. */
+/* Put the fields of a list of names. */
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
@@ -259,7 +260,7 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
     free(list);
 }
 
-/* x.deformed = points + displacement there. */
+/* Put x.deformed, the points moved by the displacement. */
 static void put_deformed(const struct tool *tool, const struct stream *stream, int dim, int64_t node_count,
                          const struct points *points, struct stream *output)
 {
@@ -281,7 +282,7 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
                               vector_attributes(dim, "m", attributes), x, true, &error));
 }
 
-/* The points wanted: the stream's own, or those of a file; and supports and shape functions there. */
+/* Find the points, those of the stream or of a file, with supports and shape functions. */
 static void find_points(const struct tool *tool, struct stream *stream, int dim, struct points *points)
 {
     const char *file = tool_value(tool, "points");
@@ -306,7 +307,7 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
                               &error));
 }
 
-/* A stream of the same descent that holds the points; it takes points->x. */
+/* Begin the output stream with the provenance of the input and the points; it takes points->x. */
 static void begin_output(const struct tool *tool, struct stream *stream, int dim, const struct points *points,
                          struct stream *output)
 {

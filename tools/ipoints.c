@@ -61,7 +61,7 @@ static void parse_lattice(const struct tool *tool, const char *text, int64_t lat
     }
 }
 
-/* Adaptive integration by the shape functions `mls`, but for what the options say of them. */
+/* The options of adaptive integration; shape functions not given by options are those of `mls`. */
 static struct adaptive_options parse_adaptive(const struct tool *tool, const struct mls *mls)
 {
     struct adaptive_options adaptive = adaptive_defaults(mls->dim);
@@ -99,14 +99,12 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
     return ipoints;
 }
 
-/* The options for this stream: its dimension, the shape functions recorded in it. */
+/* The options for this stream, with its dimension and recorded shape functions. */
 static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
 {
     int dim;
-    int64_t node_count;
-    const double *x;
     struct recorded recorded;
-    TOOL_TRY(tool, stream_nodes(stream, &dim, &node_count, &x, &error));
+    TOOL_TRY(tool, stream_nodes(stream, &dim, NULL, NULL, &error));
     TOOL_TRY(tool, stage_recorded(stream, "support", dim, &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.visibility = recorded.support.visibility;

@@ -33,7 +33,7 @@ static const char usage[] =
     "error of the balance relative to the largest energy; in a quasi-static scene one row,\n"
     "internal and contact.\n"
     "\n"
-    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the begin, 1, 2, ...,\n"
+    "And of frames, states on the way: u.frame.K, the field u at time=, K = 0, the start, 1, 2, ...,\n"
     "evenly. A quasi-static scene's time is 0 to 1; its load is that of the curve, held until the\n"
     "error is below the tolerance. There, not in dynamics, what else is asked for is given of each\n"
     "frame: stress.frame.K and so on, and tables with a row for each frame, time first,\n"
@@ -89,8 +89,8 @@ static long from_mpirun(const char *name, const char *other)
     return value != NULL ? strtol(value, NULL, 10) : -1;
 }
 
-/* Where mpirun has started several processes that know nothing of each other, mtled-mpi, which lies beside
- * this program, takes its place: else all would compute the same and write the same files. */
+/* If mpirun has started several processes, execute mtled-mpi, which is in the folder of this program:
+ * otherwise all would compute the same and write the same files. */
 static void become_mpi(char *argv[])
 {
     char file[PATH_MAX + sizeof "-mpi"];
@@ -103,21 +103,22 @@ static void become_mpi(char *argv[])
         execv(file, argv);
     }
     if (from_mpirun("OMPI_COMM_WORLD_RANK", "PMI_RANK") > 0) {
-        sleep(10); /* mpirun ends this process when the first one has said why */
+        sleep(10); /* mpirun ends this process after the first one has printed the message */
     } else {
         fprintf(stderr, "mtled: no mtled-mpi beside it, which mpirun needs: it is built by make mpi\n");
     }
     exit((int)STATUS_INPUT);
 }
 
-/* The results of an earlier run on the same stream. */
+/* Remove the results of an earlier run from the stream. */
 static void drop_results(struct stream *stream)
 {
     sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
     run_drop_frames(stream);
 }
 
-/* The checkpoint, and the one before, must be neither an input nor the result: they go at the end. */
+/* The checkpoint and the previous one must be neither an input nor the result, as they are removed at the
+ * end. */
 static void check_checkpoint(const struct tool *tool)
 {
     static const char *const suffixes[] = {"", ".old"};
@@ -136,7 +137,7 @@ static void check_checkpoint(const struct tool *tool)
     }
 }
 
-/* The operands in the wrong order. */
+/* Exit if the operands are in the wrong order. */
 static void check_scene(const struct tool *tool)
 {
     char begin[5] = "";
@@ -150,7 +151,7 @@ static void check_scene(const struct tool *tool)
     }
 }
 
-/* Usage errors before any input is read; returns the seconds between checkpoints. */
+/* Check options before any input is read; returns the time between checkpoints, s. */
 static double parse(struct tool *tool)
 {
     const char *input = tool->operands[1];
@@ -166,7 +167,7 @@ static double parse(struct tool *tool)
     return tool_number(tool, "every", 0.0, 1e9, 60.0);
 }
 
-/* The stream, from one file or from those of all parts, without earlier results. */
+/* Read the stream, from one file or from those of all parts, and remove earlier results. */
 static void read_stream(const struct tool *tool, struct stream *stream, struct parts_input *parts)
 {
     const char *input = tool->operands[1];
@@ -181,7 +182,7 @@ static void read_stream(const struct tool *tool, struct stream *stream, struct p
     }
 }
 
-/* The model, at rest or where a checkpoint left it. */
+/* Build the model, at rest or in the state of a checkpoint. */
 static void prepare(struct run *run)
 {
     struct model *model = run->model;
@@ -215,7 +216,7 @@ static void compute(struct run *run)
     run_checkpoint_end(run);
 }
 
-/* The results; and with -v what they cost. */
+/* Write the results; with -v report the time. */
 static void write_results(struct run *run)
 {
     run_put_results(run);

@@ -48,7 +48,7 @@ static const char usage[] =
 #include <string.h>
 #include <unistd.h>
 
-/* One command: how many operands stand behind it and which options go with it. */
+/* A command, with the number of its operands and its options. */
 struct command {
     const char *name;
     int least, most;
@@ -100,7 +100,7 @@ static void print_violation(void *context, const char *text)
     puts(text);
 }
 
-/* What is worth knowing of cells that are right in themselves; returns how many violations that showed. */
+/* Report on valid cells; returns the number of violations found. */
 static int tell_cells(const struct tool *tool, const struct stream *stream)
 {
     struct cells cells;
@@ -156,7 +156,7 @@ static int recover(struct tool *tool)
     return tool_end(tool);
 }
 
-/* Does the name match one of the comma-separated patterns? Marks in used[] which it matches. */
+/* Whether the name matches one of the patterns; marks in used[] those that it matches. */
 static bool matches(const char *name, char *const patterns[], int count, bool used[])
 {
     bool any = false;

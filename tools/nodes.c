@@ -95,7 +95,7 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
     }
 }
 
-/* Bodies so large or small are likely read in a wrong unit, m. */
+/* Larger or smaller bodies are probably read in a wrong unit, m. */
 #define LARGEST_DIAGONAL 10.0
 #define SMALLEST_DIAGONAL 1e-3
 
@@ -126,7 +126,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     }
 }
 
-/* Exits for options that do not go together. */
+/* Parse the options; exits if they exclude each other. */
 static struct mesh_options parse(const struct tool *tool)
 {
     static const char *const choices[] = {"drop", "use"};

@@ -42,7 +42,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <zlib.h>
 
-/* What -v tells. */
+/* The report of -v. */
 struct report {
     double own, nodes, needed, others, work;
     double most_own, most_nodes, most_needed, most_others, most_work;
@@ -57,7 +57,7 @@ static void add(double value, double *sum, double *most)
 static void print_report(const struct cut_body *whole, const struct report *report)
 {
     int32_t parts = whole->partition.parts;
-    /* Displacements of the nodes of others come in, forces on them go out; and the same for one's own nodes.
+    /* Displacements of other parts' nodes are received, forces on them sent; and the reverse for own nodes.
      */
     double bytes = 2.0 * whole->cells.dim * sizeof(double);
     fprintf(stderr,
@@ -89,7 +89,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
             SCRATCH char *file = tool_numbered(whole->tool, "-o ", name, k);
             whole->tool->output = file;
             if (k == 0) {
-                tool_write(whole->tool, whole->stream, text); /* and how it was made, for all */
+                tool_write(whole->tool, whole->stream, text); /* adds the provenance for all parts */
             } else {
                 tool_copy(whole->tool, whole->stream, text);
             }
@@ -98,7 +98,7 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
     }
 }
 
-/* What parts of one cut have in common, and those of another have not. */
+/* A number that identifies the parts of one cut. */
 static uint32_t identify(const struct cut_body *whole)
 {
     const struct cells *cells = &whole->cells;
@@ -110,7 +110,7 @@ static uint32_t identify(const struct cut_body *whole)
     return (uint32_t)crc32_z(crc, (const Bytef *)&whole->partition.widen, sizeof whole->partition.widen);
 }
 
-/* Only this program calls METIS, so that the others are linked without. */
+/* Cut the body. Only this program calls METIS; the others are linked without it. */
 static void cut(struct cut_body *whole, const struct support_options *support)
 {
     struct tool *tool = whole->tool;

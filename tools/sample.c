@@ -59,7 +59,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* What was asked for. */
+/* The options. */
 struct request {
     enum image_method method;
     const char *at, *region, *points, *section; /* NULL: not given */
@@ -112,7 +112,7 @@ static void parse(const struct tool *tool, struct request *request)
     }
 }
 
-/* Whether all are finite. */
+/* Whether all values are finite. */
 static bool are_finite(const double *values, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -123,7 +123,7 @@ static bool are_finite(const double *values, size_t count)
     return true;
 }
 
-/* One image's values at all points, into columns `first` and on. */
+/* Sample one image at all points, into columns from `first` on. */
 static void sample_image(const struct tool *tool, const struct request *request, const struct image *image,
                          const char *name, struct sample_points *rows, int64_t first)
 {
@@ -170,7 +170,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
               rows->what, (long long)outside, (long long)rows->count, name, request->outside);
 }
 
-/* That no value is beyond 0 to 1, but for round-off; one that is not finite counts as outside. */
+/* Check that all finite values are within 0 to 1, up to round-off. */
 static void check_probabilities(const struct tool *tool, const struct image *image, const char *name)
 {
     for (size_t v = 0; v < image_voxels(image); v++) {
@@ -181,7 +181,7 @@ static void check_probabilities(const struct tool *tool, const struct image *ima
     }
 }
 
-/* The values of all images. The first one says how many there are at a point. */
+/* Sample all images. The first one determines the number of values at a point. */
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
     for (int i = 0; i < request->image_count; i++) {
@@ -204,7 +204,7 @@ static void sample_images(const struct tool *tool, const struct request *request
     }
 }
 
-/* E and nu in place of the images' values. */
+/* Replace the values of the images by E and nu. */
 static void find_moduli(const struct tool *tool, const struct tissue *tissue, struct sample_points *rows)
 {
     double(*moduli)[2];

@@ -33,7 +33,7 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-/* What the shape functions are, for whoever evaluates them elsewhere. */
+/* Record the settings of the shape functions, by which other tools evaluate them. */
 static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
 {
     const struct section *radius = stream_find(stream, "support.radius");
@@ -45,14 +45,12 @@ int main(int argc, char *argv[])
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     int dim;
-    int64_t node_count;
-    const double *x;
     struct mls mls = mls_default(0);
     struct recorded recorded;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     mls_parse(&tool, &mls);
     tool_read(&tool, tool.operands[0], &stream);
-    TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error));
+    TOOL_TRY(&tool, stream_nodes(&stream, &dim, NULL, NULL, &error));
     stage_fill(&tool, &stream, "support");
     TOOL_TRY(&tool, stage_recorded(&stream, "support", dim, &recorded, &error));
     recorded.shapes = recorded.support.mls;

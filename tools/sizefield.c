@@ -48,7 +48,7 @@ static const char usage[] =
 
 #include <string.h>
 
-/* What the command line asks for. */
+/* The options. */
 struct request {
     struct size_field_request sizes;
     double unit; /* m */
@@ -86,8 +86,8 @@ static enum status recover(const struct stream *stream, const char *field, struc
                    "%s", field);
 }
 
-/* The cells with their sizes, and a layer beyond the boundary: between each facet and its nodes moved outward
- * dim simplices. */
+/* The cells with their sizes, and a layer beyond the boundary: dim simplices between each facet and its nodes
+ * moved outward. */
 struct layered {
     struct cells cells;
     double *x;     /* cells.node_count * dim, m: the nodes, and those of the boundary moved outward */
@@ -104,7 +104,7 @@ static enum status layered_make(const struct cells *cells, const struct size_fie
                                 struct layered *layered, struct error *error)
 {
     int dim = cells->dim;
-    SCRATCH int32_t *outer = NULL; /* node_count: the node moved outward, 0: of none */
+    SCRATCH int32_t *outer = NULL; /* node_count: number of the moved node; 0: none */
     const struct faces *boundary = &field->boundary;
     *layered = (struct layered){.cells = {.dim = dim, .node_count = cells->node_count}};
     RETURN_IF_ERROR(NEW_ARRAY(&outer, cells->node_count, error));
@@ -128,7 +128,7 @@ static enum status layered_make(const struct cells *cells, const struct size_fie
     for (int64_t f = 0; f < boundary->boundary_count; f++) {
         const int32_t *node = boundary->node + f * dim;
         for (int part = 0; part < dim; part++, simplex += dim + 1) {
-            /* Nodes up to `part` moved outward, those from `part` on at their places. */
+            /* Moved nodes up to `part`, unmoved nodes from `part` on. */
             for (int k = 0; k <= dim; k++) {
                 simplex[k] = k <= part ? outer[node[k]] : node[k - 1];
             }
@@ -140,7 +140,7 @@ static enum status layered_make(const struct cells *cells, const struct size_fie
     return STATUS_OK;
 }
 
-/* Simplices of a view of gmsh, ST or SS: corners and the sizes there. */
+/* Print the simplices of a view of gmsh, ST or SS: corners and the sizes there. */
 static void print_view(FILE *file, const struct layered *layered, double unit)
 {
     int dim = layered->cells.dim;
@@ -161,8 +161,7 @@ static void print_view(FILE *file, const struct layered *layered, double unit)
     fprintf(file, "};\n");
 }
 
-/* Cells of a stream are positively oriented: those of the layer are turned where need be, or left out where
- * they have no volume. */
+/* Orient the cells of the layer positively, and leave out those without volume. */
 static void orient(struct layered *layered)
 {
     int corners = layered->cells.dim + 1;

@@ -74,7 +74,7 @@ static struct support_options parse(const struct tool *tool, int dim)
     return support;
 }
 
-/* All widening in one line, then each list. */
+/* Note all widening in one line, then each list. */
 static void note_report(const struct tool *tool, const struct support_report *report)
 {
     int64_t widened = 0;
@@ -105,13 +105,11 @@ int main(int argc, char *argv[])
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
     int dim;
-    int64_t node_count;
-    const double *x;
     struct support_report report;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     (void)parse(&tool, 0); /* usage errors before waiting for the input */
     tool_read(&tool, tool.operands[0], &stream);
-    TOOL_TRY(&tool, stream_nodes(&stream, &dim, &node_count, &x, &error));
+    TOOL_TRY(&tool, stream_nodes(&stream, &dim, NULL, NULL, &error));
     struct support_options support = parse(&tool, dim);
     stage_fill(&tool, &stream, "ipoints");
     SCRATCH int32_t *side = NULL;

@@ -48,7 +48,7 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* One frame as a vtu file. */
+/* Write one frame as a vtu file. */
 static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
 {
     RETURN_IF_ERROR(plot_choose(plot, frame, error));
@@ -56,7 +56,7 @@ static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *
                      text, error);
 }
 
-/* NAME-0001.vtu, ... and at last the NAME.pvd that lists them. */
+/* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
 static void write_series(const struct tool *tool, struct plot *plot, bool text)
 {
     struct error error;
@@ -87,7 +87,7 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
     }
 }
 
-/* Exits where the ending of the output's name is not one of ours. */
+/* Exit if the name of the output has another ending. */
 static void check_ending(const struct tool *tool)
 {
     const char *path = tool->output != NULL ? tool->output : "", *slash = strrchr(path, '/');

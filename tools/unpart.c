@@ -32,7 +32,7 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 1, INT_MAX, argc, argv);
     rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
     rejoin_sections(&rejoin, &stream);
-    stream_inherit(&stream, &rejoin.part[0].stream); /* as they were made alike */
+    stream_inherit(&stream, &rejoin.part[0].stream); /* all parts have the same provenance */
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     return tool_end(&tool);
 }

@@ -75,14 +75,12 @@ static const char usage[] =
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* Errors of volume above this share are reported, and so is a share of the body above it that lies beyond the
- * cells of the sizes. */
+/* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
 static const double reported_share = 0.01;
 
-/* Volumes in ml, areas in cm2. */
+/* A volume in ml, an area in cm2. */
 static double shown(int dim, double volume)
 {
     return volume * (dim == 3 ? 1e6 : 1e4);
@@ -139,8 +137,8 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     }
 }
 
-/* Where a connection of the image's bodies is missing. Labels are smoothed: what is too thin for that is lost
- * at any spacing. */
+/* Report missing connections of the image's bodies. Labels are smoothed: connections that are too thin for
+ * this are lost at any spacing. */
 static void report_apart(const struct tool *tool, const struct label_image *image,
                          const struct label_cells *result, const int32_t *part, int32_t count)
 {
@@ -172,7 +170,7 @@ static void report_apart(const struct tool *tool, const struct label_image *imag
                   : "it is as thin as a voxel there, which no spacing keeps: make it thicker in the image");
 }
 
-/* How many connected bodies there are, when more than one. */
+/* Report the number of connected bodies if there are several. */
 static void report_bodies(const struct tool *tool, const struct label_image *image,
                           const struct label_cells *result, const struct cells *cells, bool verbose)
 {

@@ -62,7 +62,7 @@ static const char usage[] =
 #include <math.h>
 #include <string.h>
 
-static const double tolerance = 1e-4; /* of the places, in voxels */
+static const double tolerance = 1e-4; /* of positions, in voxels */
 
 static void parse(const struct tool *tool, struct warp_request *request)
 {
@@ -153,7 +153,7 @@ static void tell(const struct tool *tool, const struct warp_request *request, co
     }
 }
 
-/* That the image's type can hold the value of an option. */
+/* Exit if the image's type cannot represent the value of an option. */
 static void check_value(const struct tool *tool, const struct image *image, const char *option, double value)
 {
     double least, most;
@@ -164,7 +164,7 @@ static void check_value(const struct tool *tool, const struct image *image, cons
     }
 }
 
-/* The result, all zero: an image like the source on the grid of another, or the field there. */
+/* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
 static void new_result(const struct tool *tool, const struct image *source, const struct image *grid,
                        struct image *result)
 {
@@ -196,7 +196,7 @@ static void tell_not_finite(const struct tool *tool, const struct image *image, 
     }
 }
 
-/* Gradients are those of the field that mtled solved for, where the stream tells it. */
+/* Build the motion, with gradients of the field that mtled computed, if the stream has it. */
 static void build_motion(const struct tool *tool, const struct stream *stream, const char *section,
                          const struct cells *cells, const double *u, struct motion *motion)
 {
@@ -216,7 +216,7 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
     tool_check(tool, status, &error);
 }
 
-/* The axes of the image, and of the grid that is written on, in the order of the body's. */
+/* Bring the axes of the image, and of the grid of the result, into the order of the body's axes. */
 static void turn_images(const struct tool *tool, int dim, struct image *image, struct image *like,
                         struct image_axes *axes)
 {
@@ -231,7 +231,7 @@ static void turn_images(const struct tool *tool, int dim, struct image *image, s
     }
 }
 
-/* For each voxel of the grid the cell that it lies in where the result shows the body. */
+/* For each voxel of the grid the cell that contains it in the state of the result. */
 static int32_t *find_seen(const struct tool *tool, const struct image *grid, const struct cells *cells,
                           const double *seen, int64_t *doubly)
 {

@@ -15,7 +15,7 @@ ALL_SETS static void add_row(int64_t n, double a, const double *x, double *restr
 bool dense_factorise(int64_t n, double *matrix)
 {
     for (int64_t k = 0; k < n; k++) {
-        double *above = matrix + k * n, pivot = above[k]; /* the column of L beneath it, as a row */
+        double *above = matrix + k * n, pivot = above[k]; /* row k of L^T: the column of L below the pivot */
         if (!(pivot > 0.0 && isfinite(pivot))) {
             return false;
         }

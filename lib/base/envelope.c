@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows with a pivot below this share of their diagonal entry are put last, where they are distinguished from
- * dependent ones: a small pivot among the first would make all following rows inaccurate. */
+/* Rows with a pivot below this share of their diagonal entry are put last, where dependent ones are
+ * identified: a small pivot in an early row would make all following rows inaccurate. */
 static const double weak_pivot = 1e-3;
 
-/* Rows with more than this times the mean number of entries are put last, too: elsewhere they would widen the
- * envelope of all rows behind them. */
+/* Rows with more than this multiple of the mean number of entries are put last, too: elsewhere they would
+ * widen the envelope of all following rows. */
 static const int64_t most_entries = 8;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
@@ -62,7 +62,8 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
     return STATUS_OK;
 }
 
-/* Find where diagonal blocks begin, from the end: at a row such that no later row has an entry before it. */
+/* Find the first rows of the diagonal blocks, from the end: a block begins at a row if no later row has an
+ * entry before it. */
 static void find_blocks(struct envelope *factor)
 {
     int64_t n = factor->n, least = n, *block = factor->block, blocks = 0;
@@ -118,7 +119,7 @@ static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, co
     return STATUS_OK;
 }
 
-/* Sum of a[k] b[k], in four parts: one would wait for each addition. */
+/* Sum of a[k] b[k], in four partial sums, as a single one would wait for each addition. */
 static double product(int64_t count, const double *a, const double *b)
 {
     double sum[4] = {0.0, 0.0, 0.0, 0.0};
@@ -140,7 +141,7 @@ static double *row_at(const struct envelope *factor, int64_t i)
     return factor->value + factor->start[i] - factor->first[i];
 }
 
-/* Entries of row i of L in the columns before `columns`, whose rows are done. */
+/* Compute the entries of row i of L in the columns before `columns`, whose rows are complete. */
 static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
 {
     double *row = row_at(factor, i);
@@ -169,7 +170,7 @@ static void drop_row(struct envelope *factor, int64_t i)
     row[i] = INFINITY;
 }
 
-/* Row i of L; dropped when its pivot is below `least` times its diagonal entry. */
+/* Compute row i of L; it is dropped if its pivot is below `least` times its diagonal entry. */
 static void factor_row(struct envelope *factor, int64_t i, double least)
 {
     double diagonal = row_at(factor, i)[i];
@@ -182,7 +183,7 @@ static void factor_row(struct envelope *factor, int64_t i, double least)
     row_at(factor, i)[i] = sqrt(pivot);
 }
 
-/* The rows of L before `kept`; the others are dropped. */
+/* Compute the rows of L before `kept`; the others are dropped. */
 static void factor_rows(struct envelope *factor, int64_t kept, double least)
 {
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, 0, factor->n))
@@ -201,8 +202,8 @@ static void factor_rows(struct envelope *factor, int64_t kept, double least)
     }
 }
 
-/* Order `count` rows by the largest remaining pivot, relative to the diagonal entries: matrix[count * count]
- * is overwritten. Returns how many there are above `least`; these come first in order[count]. */
+/* Order `count` rows by the largest remaining pivot, relative to the diagonal entries; matrix[count * count]
+ * is overwritten. Returns the number of pivots above `least`; their rows come first in order[count]. */
 static int64_t order_by_pivot(int64_t count, double *matrix, const double *diagonal, double least,
                               int64_t *order)
 {
@@ -231,8 +232,8 @@ static int64_t order_by_pivot(int64_t count, double *matrix, const double *diago
     return count;
 }
 
-/* Put the rows that pass 1 has left out behind the others, the most independent first; *kept receives the
- * number of independent rows. */
+/* Put the rows that the first pass left out behind the others, the most independent first; *kept: number of
+ * independent rows. */
 static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                               double least, struct envelope *factor, int64_t *kept, struct error *error)
 {
@@ -288,7 +289,7 @@ enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *col
     if (factor->dropped > 0) {
         RETURN_IF_ERROR(order_weak(n, ptr, column, value, least, factor, &kept, error));
         RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-        /* A pivot that was above `least` before cannot be far below now, but by round-off. */
+        /* A pivot that was above `least` can now be below it only by round-off. */
         factor_rows(factor, kept, 0.1 * least);
     }
     return STATUS_OK;
@@ -309,7 +310,7 @@ void envelope_free(struct envelope *factor)
     *factor = (struct envelope){0};
 }
 
-/* y[begin .. end): a block. */
+/* Solve for one block, y[begin .. end). */
 static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
 {
     for (int64_t i = begin; i < end; i++) {

@@ -37,8 +37,7 @@ void envelope_dropped(const struct envelope *factor, int64_t *row);
 MUST_CHECK enum status envelope_share(const struct envelope *factor, const struct ranks *ranks,
                                       int64_t **first, struct error *error);
 
-/* envelope_solve by several processes, each for its rows, with the same bits. Collective: all processes call
- * it. */
+/* envelope_solve by several processes, each for its rows, with the same bits. Collective. */
 void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
                            double *x);
 

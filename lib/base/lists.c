@@ -7,7 +7,7 @@ enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t row
 {
     int64_t count = items * per, *next;
     RETURN_IF_ERROR(NEW_ARRAY(ptr, rows + 2, error));
-    next = *ptr + 1; /* where the next item of each row goes: in the end, where the row after it begins */
+    next = *ptr + 1; /* next[r]: place of the next item of row r; in the end, the start of row r + 1 */
     for (int64_t i = 0; i < count; i++) {
         (*ptr)[row[i] + 2] += row[i] >= 0;
     }

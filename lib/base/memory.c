@@ -10,7 +10,7 @@ static int bytes_of(int64_t count, size_t size, size_t *bytes)
     return count >= 0 && !__builtin_mul_overflow((size_t)count, size, bytes) && *bytes <= SIZE_MAX / 2;
 }
 
-/* Aligned memory of whole lines of 64 bytes; *rounded: how much. */
+/* Allocate aligned memory in multiples of 64 bytes; *rounded: its size. */
 static void *allocate(int64_t count, size_t size, size_t *rounded)
 {
     size_t bytes;
@@ -38,7 +38,7 @@ void *array_new_untouched(int64_t count, size_t size)
     if (array == NULL) {
         return NULL;
     }
-    /* Private pages that are given back read as zeros afterwards. */
+    /* Private pages that are released read as zeros afterwards. */
     size_t before = (page - (uintptr_t)array % page) % page,
            pages = bytes > before ? (bytes - before) / page : 0;
     if (pages == 0 || madvise(array + before, pages * page, MADV_DONTNEED) != 0) {

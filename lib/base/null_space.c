@@ -48,7 +48,7 @@ void null_space_add(struct null_space *space, int32_t block, double factor, cons
     add_scaled(space->size, factor, value, space->value + (int64_t)block * space->size);
 }
 
-/* Columns of zeros before and behind those of the blocks of a group. */
+/* Insert columns of zeros before and behind the columns of a group's blocks. */
 static enum status widen(struct null_space *space, int32_t of, int before, int behind, struct error *error)
 {
     int32_t b = of;
@@ -68,7 +68,7 @@ static enum status widen(struct null_space *space, int32_t of, int before, int b
     return STATUS_OK;
 }
 
-/* The groups of two blocks become one. */
+/* Merge the groups of two blocks. */
 static enum status join(struct null_space *space, int32_t a, int32_t b, struct error *error)
 {
     int of_a = space->columns[a], of_b = space->columns[b];
@@ -84,8 +84,8 @@ static enum status join(struct null_space *space, int32_t a, int32_t b, struct e
     return STATUS_OK;
 }
 
-/* Take the direction v[columns], of length `length`, out of the basis of a group: a reflection turns it into
- * the last column (Householder), which is dropped. v is lost. */
+/* Remove the direction v[columns], of length `length`, from the basis of a group: a Householder reflection
+ * maps it to the last column, which is dropped. v is overwritten. */
 static void take_out(struct null_space *space, int32_t of, double length, double *v)
 {
     int columns = space->columns[of], last = columns - 1;
@@ -105,8 +105,8 @@ static void take_out(struct null_space *space, int32_t of, double length, double
     } while (b != of);
 }
 
-/* Make one group of the blocks that the condition touches. *of: one of them, -1 if all are held, or if the
- * basis would be too large. */
+/* Merge the groups of the blocks that the condition touches. *of: one of these blocks; -1 if all are held, or
+ * if the basis would be too large. */
 static enum status gather(struct null_space *space, int32_t *of, struct error *error)
 {
     *of = -1;

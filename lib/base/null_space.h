@@ -12,9 +12,9 @@ struct null_space {
     int32_t blocks;
     int size;         /* unknowns of a block */
     int most;         /* columns of a basis */
-    bool complete;    /* no condition was left out since a basis would have more columns */
-    int32_t *group;   /* blocks: one block of those that conditions have joined to this one */
-    int32_t *next;    /* blocks: the next one of these, round in a ring */
+    bool complete;    /* false: a condition was left out, as a basis would have had more columns */
+    int32_t *group;   /* blocks: a block that represents the group of this one */
+    int32_t *next;    /* blocks: the next block of the group, in a ring */
     int *columns;     /* blocks: of the basis of its group */
     double **basis;   /* blocks: size * columns, the rows of the basis that are its own */
     double *value;    /* blocks * size: the condition that is being collected, */

@@ -13,7 +13,7 @@ static void declare(struct options *options, char letter, const char *name, size
     struct option *option = &options->option[options->count++];
     assert(options->count <= OPTIONS_MOST && length > 0 && length < sizeof option->name);
     for (const struct option *other = options->option; other < option; other++) {
-        assert(letter == '\0' || other->letter != letter); /* else the later one could not be given */
+        assert(letter == '\0' || other->letter != letter); /* letters are unique */
         assert(strlen(other->name) != length || strncmp(other->name, name, length) != 0);
     }
     *option = (struct option){.letter = letter, .takes_value = takes_value, .repeats = repeats};
@@ -184,7 +184,7 @@ enum status options_parse(struct options *options, int argc, char *argv[], int *
     return STATUS_OK;
 }
 
-/* Only what strtod is to see: decimal digits, sign, point, exponent. */
+/* Whether a text has only decimal digits, sign, point and exponent, before it is passed to strtod. */
 static bool looks_decimal(const char *text)
 {
     return text[0] != '\0' && strspn(text, "+-.0123456789eE") == strlen(text);

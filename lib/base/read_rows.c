@@ -75,7 +75,7 @@ static int64_t length_of(const struct read_rows *rows, int64_t row)
     return rows->ptr[row + 1] - rows->ptr[row];
 }
 
-/* fetched->ptr, and room for the rows; the halo lists what others have. */
+/* Set fetched->ptr and allocate the rows; the halo lists the rows that other processes have. */
 static enum status lay_out(const struct read_rows *rows, const bool *wanted, struct halo *halo,
                            struct sparse *fetched, struct error *error)
 {
@@ -97,7 +97,7 @@ static enum status lay_out(const struct read_rows *rows, const bool *wanted, str
     return STATUS_OK;
 }
 
-/* Copy entries of `size` bytes to their rows of `to`: own rows from `from`, and those of other processes. */
+/* Copy entries of `size` bytes to their rows in `to`: own rows from `from`, and those of other processes. */
 static enum status send_entries(const struct read_rows *rows, const bool *wanted, const struct halo *halo,
                                 const struct sparse *fetched, size_t size, const char *from, char *to,
                                 struct error *error)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A message is one line whatever the names in it contain. */
+/* Make a message one line, whatever the names in it contain. */
 static void make_one_line(char *text)
 {
     for (; *text != '\0'; text++) {

@@ -69,6 +69,15 @@ static inline void add_scaled(int dim, double factor, const double *x, double *s
     }
 }
 
+/* Make x a unit vector; zeros stay zeros. */
+static inline void vector_normalise(int dim, double *x)
+{
+    double length = vector_length(dim, x);
+    for (int i = 0; i < dim && length > 0.0; i++) {
+        x[i] /= length;
+    }
+}
+
 /* w = u x v, in three dimensions */
 static inline void vector_cross(const double *u, const double *v, double *w)
 {

@@ -13,7 +13,7 @@ static const double unity_tolerance = 1e-9;
 
 /* ---- each section by itself ---- */
 
-/* The dimension, from the coordinates that there are; 0 when there are none. */
+/* The dimension, from the columns of coordinates; 0 if there are none. */
 static int find_dimension(const struct stream *stream)
 {
     const struct section *nodes = stream_find(stream, "nodes.x"), *points = stream_find(stream, "points.x");
@@ -102,7 +102,7 @@ static enum status check_section(const struct stream *stream, const struct secti
 
 /* ---- sections together, each as the table says ---- */
 
-/* Shape functions sum to 1 over each list. */
+/* Check that shape functions sum to 1 over each list. */
 static enum status check_unity(const struct neighbours *lists, const struct section *phi, struct error *error)
 {
     const double *value = phi->data;
@@ -119,7 +119,7 @@ static enum status check_unity(const struct neighbours *lists, const struct sect
     return STATUS_OK;
 }
 
-/* The lists PREFIX.ptr, PREFIX.idx, and the shape functions on them. */
+/* Check the lists PREFIX.ptr, PREFIX.idx, and the shape functions on them. */
 static enum status check_lists(const struct stream *stream, const char *prefix, struct error *error)
 {
     char ptr_name[64], idx_name[64];
@@ -143,7 +143,7 @@ static enum status check_lists(const struct stream *stream, const char *prefix, 
     return STATUS_OK;
 }
 
-/* Regions, facets and node sets. */
+/* Check regions, facets and node sets. */
 static enum status check_groups(const struct stream *stream, const struct cells *cells, struct error *error)
 {
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};

@@ -7,10 +7,9 @@
 /* Receives each violation as one line, "section: row: what", without newline. */
 typedef void violation_function(void *context, const char *text);
 
-/* Check every section that the table knows, whatever else the stream holds: first each by itself, its type,
- * columns, rows and numbers; then, where these are right, what they say together: positive volumes of cells,
- * groups, faces, ascending lists, partition of unity within 1e-9. Of a section the first violation is
- * reported; *count receives how many were. Absent sections are no violation. STATUS_SYSTEM where memory is
- * short. */
+/* Check every section that is in the table. First each by itself: type, columns, rows and numbers. If these
+ * are right, sections together: positive volumes of cells, groups, faces, ascending lists, partition of unity
+ * within 1e-9. Only the first violation of a section is reported; *count: their number. Absent sections are
+ * no violation. STATUS_SYSTEM: memory. */
 MUST_CHECK enum status stream_check(const struct stream *stream, violation_function *report, void *context,
                                     int64_t *count, struct error *error);

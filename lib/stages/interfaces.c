@@ -12,8 +12,8 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
 {
     struct cells cells;
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    SCRATCH int32_t *of_region = NULL;
-    int32_t named = 0; /* the place of each region in the list, from 1; 0: it has none */
+    SCRATCH int32_t *of_region = NULL; /* the place of each region in the list, from 1; 0: not in it */
+    int32_t named = 0;
     SCRATCH char *list = strdup(names);
     char *rest = list;
     *side = NULL;

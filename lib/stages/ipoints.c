@@ -14,7 +14,7 @@ struct ipoints_options ipoints_defaults(void)
     return (struct ipoints_options){.smoothed = true};
 }
 
-/* Room for so many points. */
+/* Allocate `count` points. */
 static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, count * dim, error));
@@ -44,7 +44,8 @@ static enum status cell_points(const struct cells *cells, int per_cell, struct a
     return STATUS_OK;
 }
 
-/* n[dim] points along each axis, from one number for all or one for each; *count receives their product. */
+/* n[dim]: points along each axis, from one number for all axes or one for each; *count receives their
+ * product. */
 static enum status count_lattice(const int64_t wanted[3], int dim, int64_t n[3], int64_t *count,
                                  struct error *error)
 {
@@ -90,8 +91,7 @@ static enum status lattice_points(const struct cells *nodes, const int64_t wante
     return STATUS_OK;
 }
 
-/* What the shape functions of adaptive integration are made from: the settings and radii recorded in the
- * stream, unless others were asked for. */
+/* radius[]: those recorded in the stream, unless options give others. */
 static enum status adaptive_radii(const struct stream *stream, const struct ipoints_options *options,
                                   const struct cells *cells, double *radius, struct error *error)
 {
@@ -131,7 +131,7 @@ static enum status put_points(struct stream *stream, int dim, const char *rule,
     return stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error);
 }
 
-/* Faces, and their quadrature points. */
+/* Put the faces and their quadrature points. */
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
                              struct error *error)
 {
@@ -177,7 +177,7 @@ enum status stage_ipoints(struct stream *stream, const struct ipoints_options *o
         snprintf(rule, sizeof rule, options->smoothed ? "conforming" : "gauss%d", per_cell);
         RETURN_IF_ERROR(cell_points(&cells, per_cell, &points, error));
     }
-    /* What was made from other points is void. */
+    /* Sections made from other points are void. */
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(put_points(stream, cells.dim, rule, &points, error));
     if (!lattice) {

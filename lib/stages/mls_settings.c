@@ -42,7 +42,7 @@ enum status mls_apply(const struct mls_texts *texts, struct mls *mls, struct err
             return fail(error, STATUS_INPUT, "--mu-unit: needs --mu");
         }
         RETURN_IF_ERROR(parse_length_unit(texts->mu_unit, "--mu-unit", &unit, error));
-        /* mu enters as mu / s^4 with s in that unit. */
+        /* mu is used as mu / s^4 with s in this unit. */
         for (int k = 0; k < MLS_MAX_SECOND; k++) {
             mls->mu[k] *= unit * unit * unit * unit;
         }

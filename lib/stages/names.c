@@ -14,7 +14,7 @@ enum status names_of(const struct section *section, const char *key, struct name
 {
     size_t size = strlen(section->attributes) + 1;
     *names = (struct names){0};
-    /* And behind it the same, cut at the commas. */
+    /* The list, followed by a copy that is cut at the commas. */
     RETURN_IF_ERROR(NEW_ARRAY(&names->list, 2 * (int64_t)size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&names->name, (int64_t)size, error));
     char *rest = NULL;

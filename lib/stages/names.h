@@ -4,7 +4,7 @@
 #include "io/stream/stream.h"
 
 struct names {
-    char *list; /* "body,lump", as in the section; "" when it has none */
+    char *list; /* "body,lump", as in the section; "" if it has none */
     int64_t count;
     char **name; /* count */
 };
@@ -19,6 +19,6 @@ void names_free(struct names *names);
 /* Index of `name`, or -1. */
 int64_t names_find(const struct names *names, const char *name);
 
-/* The names, separated by blanks after the commas, into text[256] for a message; "none" when there are none.
- */
+/* text[256] = the names, with a blank after each comma, for a message; "none" if there are none. Returns
+ * text. */
 const char *names_text(const struct names *names, char text[256]);

@@ -9,7 +9,7 @@
 
 enum { DESCRIPTION = 960 }; /* bytes of the attributes */
 
-/* Attributes that record the settings; those that are seldom given only where they are. */
+/* The attributes that record the settings; rarely used ones only if they are set. */
 static void describe(const struct recorded *recorded, char text[DESCRIPTION])
 {
     const struct support_options *options = &recorded->support;
@@ -28,8 +28,7 @@ static void describe(const struct recorded *recorded, char text[DESCRIPTION])
              same ? "" : shapes);
 }
 
-/* The shape functions' settings, in attributes that begin with a prefix, as options of a command line say
- * them. */
+/* The settings of shape functions, from attributes with this prefix. */
 static enum status read_mls(const struct section *section, const char *prefix, struct mls *mls,
                             struct error *error)
 {
@@ -49,7 +48,7 @@ static enum status read_mls(const struct section *section, const char *prefix, s
     return status == STATUS_OK ? status : fail(error, status, "%s: %s", section->name, own.text);
 }
 
-/* The value of an attribute, and what messages call it; false: there is none. */
+/* The value of an attribute, and its name for messages; false: there is none. */
 static bool find_attribute(const struct section *section, const char *key, char value[64], char what[96])
 {
     snprintf(what, 96, "%s: %s", section->name, key);

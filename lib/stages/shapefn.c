@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Sections may come from anywhere: finite coordinates, radii and factors that are finite and positive. */
+/* Check the numbers of a section from any source: coordinates are finite, radii and factors positive. */
 static enum status check_numbers(const struct section *section, bool positive, struct error *error)
 {
     const double *values = section->data;
@@ -55,7 +55,7 @@ static enum status view_points(const struct stream *stream, const char *section,
     return STATUS_OK;
 }
 
-/* Tabulate phi (and gradients) at the points of one section on the lists of one prefix. */
+/* Tabulate phi, and gradients, at the points of one section on the lists of one prefix. */
 static enum status tabulate(struct stream *stream, const struct mls *mls, const char *section,
                             const char *prefix, const char *phi_name, bool gradients, struct error *error)
 {
@@ -78,7 +78,7 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
     return STATUS_OK;
 }
 
-/* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
+/* Put a table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
 static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t **ptr,
                              int32_t **idx, double **phi, struct error *error)
 {
@@ -88,8 +88,8 @@ static enum status put_table(struct stream *stream, const char *prefix, int64_t 
     return stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", phi, error);
 }
 
-/* The values at points on the boundary, and the averages over faces of smoothed cells. What lies at the
- * points of faces has served. */
+/* Put the values at points on the boundary, and the averages over faces of smoothed cells. The points of
+ * faces and their lists are then removed. */
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
     struct cells cells;

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "io/stream/sections.h"
 
-/* Radii by the local spacing: from the cells where there are any, else from the nearest nodes. */
+/* Radii from the local spacing: of the cells if there are any, else of the nearest nodes. */
 static enum status local_radii(const struct stream *stream, const struct support_options *options,
                                int64_t node_count, const double *x, double *radius, struct error *error)
 {
@@ -28,7 +28,7 @@ enum status stage_radii(const struct stream *stream, const struct support_option
                                  : local_radii(stream, options, node_count, x, radius, error);
 }
 
-/* Radii of the nodes, put into the stream with the settings they were made for. */
+/* Put the radii of the nodes into the stream, with the settings. */
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
@@ -38,7 +38,8 @@ static enum status put_radii(struct stream *stream, const struct support_options
     return stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error);
 }
 
-/* Points of one section, in those cells: lists PREFIX.ptr, .idx, .widen, and what the report calls them. */
+/* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
+ * report. */
 struct listed {
     const struct section *points;
     struct visibility_places places;
@@ -78,7 +79,7 @@ static enum status put_lists(struct stream *stream, const struct support_options
     return STATUS_OK;
 }
 
-/* The cells of the integration points; to be found by place where there is no such section. */
+/* The cells of the integration points; they are searched for if there is no such section. */
 static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
                                     struct visibility_places *places, struct error *error)
 {
@@ -102,8 +103,8 @@ static enum status places_of_points(const struct stream *stream, const struct ce
     return STATUS_OK;
 }
 
-/* The cells at the points of faces, in arrays of the caller's; to be found by place where faces.cell is not
- * there. */
+/* The cells at the points of faces, in (*ptr)[] and (*cell)[], to be freed; they are searched for if there is
+ * no faces.cell. */
 static enum status places_of_face_points(const struct stream *stream, const struct cells *cells,
                                          int64_t points, int64_t **ptr, int32_t **cell,
                                          struct visibility_places *places, struct error *error)
@@ -123,7 +124,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
     return STATUS_OK;
 }
 
-/* The rows of faces, and their points, as the sides have them. */
+/* Make the rows of faces and their points again, for these sides. */
 static enum status renew_rows(struct stream *stream, const struct cells *cells, const int32_t *side,
                               struct error *error)
 {
@@ -151,9 +152,6 @@ enum status stage_support(struct stream *stream, const struct support_options *o
                           struct support_report *report, struct error *error)
 {
     FREED_BY(support_space_free) struct support_space space = {0};
-    int dim;
-    int64_t node_count;
-    const double *x;
     const struct section *points, *facepoints;
     struct support_options actual = *options;
     struct cells cells;
@@ -163,19 +161,18 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     *report = (struct support_report){0};
     bool had_sides = stream_find(stream, "support.side") != NULL;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &points, error));
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
+    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
     report->visibility = actual.visibility;
-    RETURN_IF_ERROR(put_radii(stream, &actual, node_count, x, error));
+    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
     if (actual.side != NULL) {
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    RETURN_IF_ERROR(stage_own_part(stream, node_count, &actual, error));
+    RETURN_IF_ERROR(stage_own_part(stream, cells.node_count, &actual, error));
     RETURN_IF_ERROR(
         support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
@@ -185,7 +182,8 @@ enum status stage_support(struct stream *stream, const struct support_options *o
         RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        RETURN_IF_ERROR(stream_need(stream, "facepoints.x", TYPE_F8, dim, "ipoints", &facepoints, error));
+        RETURN_IF_ERROR(
+            stream_need(stream, "facepoints.x", TYPE_F8, cells.dim, "ipoints", &facepoints, error));
         if (had_sides || actual.side != NULL) {
             RETURN_IF_ERROR(renew_rows(stream, &cells, actual.side, error));
             facepoints = stream_find(stream, "facepoints.x");

@@ -3,9 +3,8 @@
 #include "stages/stages.h"
 
 #include "approx/cells/face_rows.h"
-#include "base/memory.h"
 
-/* The integration points. */
+/* Read the integration points. */
 static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)
 {
     const struct section *points, *weight, *cell;
@@ -48,7 +47,7 @@ static enum status read_table(const struct stream *stream, const char *prefix, c
     return STATUS_OK;
 }
 
-/* The tables over points or faces, over the boundary, and over the nodes. */
+/* Read the tables of points or faces, of the boundary, and of the nodes. */
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
     int dim = input->cells.dim, per_face = OWN_POINTS(dim);

@@ -1,5 +1,4 @@
-/* The cloud and the tables of shape functions that the stages have left in a stream, as an assembly takes
- * them. */
+/* The cloud and the tables of shape functions in a stream, as input of assembly. */
 #pragma once
 
 #include "io/stream/stream.h"

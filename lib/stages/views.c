@@ -17,11 +17,14 @@ enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_co
                     "nodes.x: %lld rows of %lld columns: not a cloud in 2 or 3 dimensions",
                     (long long)nodes->rows, (long long)nodes->cols);
     }
+    const double *place = nodes->data;
     *dim = (int)nodes->cols;
-    *node_count = nodes->rows;
-    *x = nodes->data;
+    if (node_count != NULL) {
+        *node_count = nodes->rows;
+        *x = place;
+    }
     for (int64_t i = 0; i < nodes->rows * nodes->cols; i++) {
-        if (!isfinite((*x)[i])) {
+        if (!isfinite(place[i])) {
             return fail(error, STATUS_INPUT, "nodes.x: row %lld: not a finite coordinate",
                         (long long)(i / nodes->cols));
         }
@@ -55,7 +58,7 @@ enum status stream_field(const struct stream *stream, const char *name, int64_t 
     return STATUS_OK;
 }
 
-/* Numbers of `what`, found `where`, each within [0, bound). */
+/* Check that the numbers of a section are within [0, bound). `what` and `where` name them in messages. */
 static enum status check_numbers(const struct section *section, const char *what, const char *where,
                                  int64_t bound, struct error *error)
 {
@@ -191,21 +194,19 @@ bool points_are_smoothed(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
-/* The sections PREFIX.around and .image of lists with `pairs` entries, where they exist. */
+/* The sections PREFIX.around and .image, if they exist, of lists with `pairs` entries. */
 static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
                                struct around *around, struct error *error)
 {
     char name[64];
     int dim;
-    int64_t node_count;
-    const double *x;
     const struct section *pair, *image;
     *around = (struct around){0};
     snprintf(name, sizeof name, "%s.around", prefix);
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, &node_count, &x, error));
+    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
     RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
     snprintf(name, sizeof name, "%s.image", prefix);
     RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));

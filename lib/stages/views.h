@@ -1,20 +1,20 @@
-/* Parts of a stream as the rest of the library takes them: in view, their shapes and indices checked. The
- * messages name the tool that makes what is missing. */
+/* Views of the sections of a stream, with shapes and indices checked. If a section is missing, the message
+ * names the tool that makes it. */
 #pragma once
 
 #include "approx/cells/cells.h"
 #include "approx/shape/shape.h"
 #include "stages/names.h"
 
-/* Node coordinates, checked to be finite. */
+/* Node coordinates, checked to be finite; or, with node_count and x NULL, only their dimension. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
                                     const double **x, struct error *error);
 
-/* Nodes and background cells. cells->count is 0 when there are none, an error if they are needed. */
+/* Nodes and background cells. Without cells cells->count is 0, or it is an error if they are needed. */
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
 
-/* A field at the nodes, of 1 to 3 columns. */
+/* A nodal field of 1 to 3 columns. */
 MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
                                     const struct section **field, struct error *error);
 
@@ -27,8 +27,8 @@ MUST_CHECK enum status stream_regions(const struct stream *stream, const struct 
                                       struct cell_regions *regions, struct error *error);
 void cell_regions_free(struct cell_regions *regions);
 
-/* Named facets of the boundary, checked: facet[count * dim] nodes of the cells, group[count] a name for each.
- * count is 0 when there are none, an error if they are needed; to be freed, also on failure. */
+/* Named facets of the boundary: facet[count * dim] nodes of the cells, group[count] a name for each. Without
+ * facets count is 0, or it is an error if they are needed. To be freed, also on failure. */
 struct named_facets {
     int64_t count;
     const int32_t *facet, *group;
@@ -38,8 +38,8 @@ MUST_CHECK enum status stream_facets(const struct stream *stream, bool needed, c
                                      struct named_facets *facets, struct error *error);
 void named_facets_free(struct named_facets *facets);
 
-/* Named sets of nodes, checked: a list, ascending, for each name. No names when there are none, an error if
- * they are needed; to be freed, also on failure. */
+/* Named sets of nodes: an ascending list for each name. It is an error if there are none but they are needed.
+ * To be freed, also on failure. */
 struct named_sets {
     struct neighbours lists;
     struct names names;
@@ -48,31 +48,31 @@ MUST_CHECK enum status stream_sets(const struct stream *stream, bool needed, int
                                    struct named_sets *sets, struct error *error);
 void named_sets_free(struct named_sets *sets);
 
-/* Faces of the cells, checked; those on the boundary come first. The view is not to be freed. */
+/* Faces of the cells; those on the boundary come first. The view is not to be freed. */
 MUST_CHECK enum status stream_faces(const struct stream *stream, const struct cells *cells,
                                     struct faces *faces, struct error *error);
 
 /* A CSR list: PREFIX.ptr (rows + 1), PREFIX.idx (within [0, columns), ascending in each row), and
- * PREFIX.widen, .around and .image where there are any. */
+ * PREFIX.widen, .around and .image if they exist. */
 MUST_CHECK enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows,
                                          int64_t columns, struct neighbours *lists, struct error *error);
 
-/* Whether points.x has one point for each cell, for gradients smoothed over it. */
+/* Whether points.x has one point for each cell, for smoothed cells. */
 bool points_are_smoothed(const struct section *points);
 
-/* Put section PREFIX.NAME, of the array at *array, which the stream takes: *array becomes NULL, also on
- * failure. */
+/* Put section PREFIX.NAME. The stream takes the array *array, which becomes NULL, also on failure. */
 MUST_CHECK enum status stream_put_member(struct stream *stream, const char *prefix, const char *name,
                                          enum element_type type, int64_t rows, int64_t cols,
                                          const char *attributes, void *array, struct error *error);
 
-/* Put a copy of the data. */
+/* Put a section with a copy of the data. */
 MUST_CHECK enum status stream_put_copy(struct stream *stream, const char *name, enum element_type type,
                                        int64_t rows, int64_t cols, const char *attributes, const void *data,
                                        struct error *error);
 
-/* The provenance of `from`, for what is made of it. */
+/* Move the provenance of `from` to a stream that is made from it. */
 void stream_inherit(struct stream *stream, struct stream *from);
 
-/* Attributes of a section of one vector in each row, "unit=UNIT cols=x,y[,z]", into text[64]; returns it. */
+/* text[64] = the attributes of a section with a vector in each row, "unit=UNIT cols=x,y[,z]". Returns
+ * text. */
 const char *vector_attributes(int dim, const char *unit, char text[64]);

@@ -202,7 +202,7 @@ time_step_margin = $margin
 END
     relax "$work/a.scene" "$work/block.mts" "$work/$margin.dat"
 done
-# energies MARGIN EXPRESSION: the largest magnitude over the run, relative to the energy at the begin. Columns of the section:
+# energies MARGIN EXPRESSION: the largest magnitude over the run, relative to the energy at the start. Columns of the section:
 # time, kinetic, internal, contact, work.
 energies() {
     { [ ! -s "$work/$1.dat" ] || mts print energy "$work/$1.dat"; } | awk '

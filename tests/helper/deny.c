@@ -1,4 +1,4 @@
-/* deny.so, to be preloaded: lets the allocation number DENY of a program fail, counted from 0 at the begin of
+/* deny.so, to be preloaded: lets the allocation number DENY of a program fail, counted from 0 at the start of
  * main, whoever asks for it: the program, the C library, OpenMP. Without DENY, none fails, and the
  * number of allocations is written into the file that DENY_COUNT names. The memory comes from the allocator
  * that would serve without it: that of a sanitizer, too (with verify_asan_link_order=0). */

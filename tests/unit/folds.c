@@ -520,7 +520,7 @@ static void make_two(struct shape *shape, int dim, double away)
     finish(shape, -1, 0.0);
 }
 
-/* A body whose sides are nearly closed, or through each other, at rest: that is known from the begin, and not
+/* A body whose sides are nearly closed, or through each other, at rest: that is known from the start, and not
  * told again. */
 TEST(crease_at_rest)
 {

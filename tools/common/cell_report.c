@@ -55,9 +55,10 @@ const char *cell_report_box(const struct box *box, char text[128])
     return text;
 }
 
-/* A body is thin where its thickness is less than this, in lengths of cells. A clamped plate of 60 x 20 x 4
- * mm, nu .49, is too stiff by half with cells as long as it is thick, by a tenth with half of that, by 4 %
- * with a third (mixed elements on the finest cells). Reported from this share of the boundary on. */
+/* A body is thin where its thickness is less than `bound` cells; this is reported if it holds for at least
+ * `noted_share` of the boundary. A clamped plate of 60 x 20 x 4 mm with nu .49 is too stiff by 50 % with
+ * cells as long as it is thick, by 10 % with cells of half that size, by 4 % with a third (compared with
+ * mixed elements on the finest cells). */
 static const double bound = 1.5, noted_share = 0.1;
 
 void tool_note_thin(const struct tool *tool, const struct cells *cells)

@@ -6,14 +6,14 @@
 #include "base/box.h"
 #include "tool.h"
 
-/* The most cells that are reported one by one. */
+/* Most cells that are reported one by one. */
 #define CELL_REPORT_MOST 10
 
 struct cell_report {
     int32_t bodies;         /* connected bodies, see cells_parts */
     double volume;          /* m3; in 2D area, m2 */
     double least_median[2]; /* least and median quality */
-    int64_t poor;           /* cells below the bound; the poorest of them: */
+    int64_t poor;           /* number of cells below the bound; the poorest of them: */
     int listed;
     struct poor_cell poorest[CELL_REPORT_MOST];
 };
@@ -28,6 +28,6 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 /* "0 0 0 to 0.1 0.1 0.2 m" */
 const char *cell_report_box(const struct box *box, char text[128]);
 
-/* Note where a tenth of the boundary or more is on parts about one cell thick. Exits with a message where
- * memory fails. */
+/* Note if a tenth of the boundary or more is on parts about one cell thick. Exits with a message on
+ * failure. */
 void tool_note_thin(const struct tool *tool, const struct cells *cells);

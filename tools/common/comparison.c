@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The value of a tolerance: a length, or a number of the field's own unit; 0 is allowed. Infinite when it is
+/* The value of a tolerance: a length, or a number in the field's own unit; 0 is allowed. Infinite if it is
  * not given. */
 static double tolerance_of(const struct tool *tool, const char *option)
 {
@@ -62,7 +62,7 @@ void sides_check(const struct tool *tool, const struct side *first, const struct
     }
 }
 
-/* Notes the first value that is not finite; returns whether there is one. */
+/* Note the first value that is not finite; returns whether there is one. */
 static bool has_unknown(const struct tool *tool, const struct side *side, const char *field)
 {
     for (int64_t i = 0; i < side->field.cells.node_count * side->field.cols; i++) {
@@ -102,8 +102,8 @@ static void regions_free(struct regions *regions)
     *regions = (struct regions){0};
 }
 
-/* *chosen[node_count], allocated: the nodes of the region `name`, an error that lists the regions if there is
- * none; NULL (all nodes) without a name. */
+/* (*chosen)[node_count], to be freed: the nodes of region `name`; NULL (all nodes) without a name.
+ * STATUS_INPUT, with a list of the regions, if there is none of that name. */
 static enum status regions_choose(const struct regions *regions, const char *name, bool **chosen,
                                   struct error *error)
 {
@@ -213,7 +213,7 @@ double iteration_error(const struct side *side)
     return known ? *(const double *)section->data : -1.0;
 }
 
-/* Statistics of the nodes of each region. */
+/* Print the statistics of the nodes of each region. */
 static enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;
@@ -266,7 +266,7 @@ static void write_map(struct tool *tool, struct side *a, const char *name, doubl
     tool_write(tool, stream, text);
 }
 
-/* Whether a value is within its tolerance; NaN is not. Notes if it is beyond. */
+/* Whether a value is within its tolerance, which NaN is not; else note it. */
 static bool is_within(const struct tool *tool, const char *name, double value, double tolerance)
 {
     bool within = value <= tolerance;

@@ -1,5 +1,4 @@
-/* Two streams with a nodal field each, what the fields differ by, and the lines that tell of it: what
- * fieldcmp and fielderr share. */
+/* The difference of nodal fields of two streams, and its output: shared by fieldcmp and fielderr. */
 #pragma once
 
 #include "stages/solved.h"
@@ -7,11 +6,11 @@
 
 #include "approx/field/field_compare.h"
 
-/* The regions of a stream's cells: their names, and which nodes belong to each; none where there are none. */
+/* The regions of a stream's cells, if there are any: their names, and the nodes of each. */
 struct regions {
     int64_t node_count;
     struct names names;
-    bool *member; /* node_count * names.count: a node is of the region of every cell at it */
+    bool *member; /* node_count * names.count: a node belongs to the region of every cell at it */
 };
 
 /* A stream and its field. */
@@ -23,7 +22,7 @@ struct side {
     struct solved solved;
 };
 
-/* What two fields differ by. */
+/* The difference of two fields. */
 struct findings {
     struct regions regions; /* of A */
     struct field_comparison comparison;
@@ -31,7 +30,7 @@ struct findings {
     double reference;                   /* largest norm of B's field */
 };
 
-/* What the options that both programs have ask for. */
+/* The options of both programs. */
 struct comparison_request {
     double tol_avg, tol_max; /* a length, or in the field's own unit; infinite: any */
     const char *field;
@@ -40,35 +39,35 @@ struct comparison_request {
     bool skip_outside, percentiles, text;
 };
 
-/* Exits for values that cannot be. */
+/* Parse these options; exits for invalid values. */
 struct comparison_request comparison_parse(const struct tool *tool);
 
 /* Read a stream and its field; exits on failure. */
 void side_read(const struct tool *tool, const char *file, const char *field, struct side *side);
 
-/* Exits for fields of other shapes. */
+/* Exits if the fields have different dimensions or columns. */
 void sides_check(const struct tool *tool, const struct side *first, const struct side *second,
                  const char *name);
 
-/* Compare at the nodes of A, or at those of one of its regions, as asked for; exits on failure. */
+/* Compare at the nodes of A, or of the requested region; exits on failure. */
 void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
                    const struct side *b, struct findings *findings);
 void findings_free(struct findings *findings);
 
-/* "name TAB value", "name.part TAB value". */
+/* Print "name TAB value", or "name.part TAB value". */
 void print_quantity(const char *name, const char *part, double value);
 
-/* The statistics of all nodes, how many, and where the largest is. */
+/* Print the statistics of all nodes, their number, and the place of the largest difference. */
 void print_findings(const struct findings *findings, const struct cells *cells, bool percentiles);
 
-/* And relative to the reference. */
+/* Print the statistics relative to the reference. */
 void print_relative(const struct findings *findings);
 
-/* The error that the iteration of a result has left, m, as mtled estimates it; negative: not known. */
+/* The error of the iteration in a result, as estimated by mtled, m; negative: not known. */
 double iteration_error(const struct side *side);
 
-/* Print the statistics of each region unless one was asked for, write the map that was asked for, section
- * `name`, free all, and end the program: returns its exit status, a verdict where a value is not a number or
- * beyond its tolerance, with a note. */
+/* End the program: print the statistics of each region unless one was requested, write the requested map with
+ * section `name`, and free everything. Returns the exit status: a verdict, with a note, if a value is not a
+ * number or beyond its tolerance. */
 int comparison_end(struct tool *tool, const struct comparison_request *request, struct side *a,
                    struct side *b, struct findings *findings, const char *name);

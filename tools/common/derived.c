@@ -20,8 +20,7 @@ void derived_free(struct derived *derived)
     *derived = (struct derived){0};
 }
 
-/* Append a section of zeros: BASE.WHAT, or WHAT alone when base is NULL, with `tail` behind it. Its data is
- * in the last item. */
+/* Append a section of zeros, BASE.WHATtail, or WHATtail if base is NULL. Its data is in the last item. */
 static enum status append(struct derived *derived, const char *base, const char *what, const char *tail,
                           enum element_type type, int64_t rows, int64_t cols, const char *attributes,
                           struct error *error)
@@ -46,7 +45,7 @@ static void *last_data(const struct derived *derived)
     return derived->items[derived->count - 1].data;
 }
 
-/* Row `row` of a symmetric tensor whose components lie in these columns, as a matrix. */
+/* A[9]: row `row` of a symmetric tensor, whose components are in the columns from[6]. */
 static void read_tensor(const struct section *section, const int64_t from[6], int64_t row, double A[9])
 {
     static const int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
@@ -106,7 +105,7 @@ static const struct invariant {
     const char *of, *base, *name; /* of section `of` and its frames: BASE.NAME, or NAME */
     int cols;
     const char *attributes;
-    const char *given; /* left out where the stream has this section */
+    const char *given; /* left out if the stream has this section */
     void (*compute)(const double A[9], double *row);
 } invariants[] = {
     {"stress", "stress", "von_mises", 1, "unit=Pa", NULL, von_mises},
@@ -116,7 +115,7 @@ static const struct invariant {
     {"strain", NULL, "J", 1, "unit=1", "volume_ratio", volume_ratio},
 };
 
-/* Does the stream have the section, in the frame that `tail` names? */
+/* Whether the stream has the section in the frame that `tail` names. */
 static bool has_section(const struct stream *stream, const char *name, const char *tail)
 {
     char full[128];

@@ -3,14 +3,14 @@
 
 #include "stages/views.h"
 
-/* Sections of their own, beside the stream's. */
+/* Sections in addition to those of the stream. */
 struct derived {
     struct section *items; /* count; all owned */
     int64_t count;
 };
 
-/* Append what follows from the symmetric tensors stress and strain, and from those of each frame
- * (X.frame.K gives X.NAME.frame.K), one row for each of their rows:
+/* Append fields derived from the symmetric tensors stress and strain, and from those of each frame (X.frame.K
+ * gives X.NAME.frame.K), with the same rows:
  *
  *   stress.von_mises   sqrt(3/2 s:s), s the deviator, Pa
  *   stress.principal   the principal stresses, Pa, the largest first

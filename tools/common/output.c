@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The temporary file of the output in progress, for the handlers below; NULL when there is none. */
+/* The temporary file of the output in progress, for the handlers below; NULL: none. */
 static char *volatile pending;
 
 static void remove_pending(void)
@@ -21,7 +21,7 @@ static void remove_pending(void)
     }
 }
 
-/* Remove the temporary file and let the signal do what it does by default. */
+/* Remove the temporary file and raise the signal with its default action. */
 static void on_signal(int number)
 {
     remove_pending();
@@ -29,7 +29,7 @@ static void on_signal(int number)
     raise(number);
 }
 
-/* A signal that is ignored, or that the tool handles itself, stays so. */
+/* Handle the signals that are neither ignored nor handled by the tool itself. */
 static void handle_signals(void)
 {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
@@ -41,7 +41,7 @@ static void handle_signals(void)
     }
 }
 
-/* Permissions of the file to be replaced, or those that a new file gets. */
+/* Permissions of the file to be replaced, or of a new file. */
 static mode_t file_mode(const struct stat *present)
 {
     if (present != NULL) {
@@ -89,7 +89,7 @@ static enum status open_temporary(struct output *output, const struct stat *pres
     return STATUS_OK;
 }
 
-/* Close and leave nothing behind; the file that had the name before stays as it was. */
+/* Close and remove the temporary file; the former file stays unchanged. */
 static void abandon(struct output *output)
 {
     if (output->descriptor >= 0) {
@@ -130,7 +130,7 @@ enum status output_end(struct output *output, enum status status, struct error *
         return fail_in(error, status, "%s", output->name);
     }
     output->descriptor = -1;
-    /* Some file systems tell only now that the space is used up. */
+    /* Some file systems report only now that there is no space. */
     if (output->temporary != NULL && fsync(descriptor) != 0) {
         status = fail_output(output, error);
     }
@@ -157,7 +157,7 @@ void target_open(const struct tool *tool, struct target *target, const char *nam
         return;
     }
     TOOL_TRY(tool, output_open(&target->output, name, &error));
-    int descriptor = dup(target->output.descriptor); /* the output closes its own */
+    int descriptor = dup(target->output.descriptor); /* the output closes the original */
     target->file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
     if (target->file == NULL) {
         int cause = errno;

@@ -1,13 +1,13 @@
-/* An output file that appears under its name only when it is whole. */
+/* An output file that appears under its name only when it is complete. */
 #pragma once
 
 #include "tool.h"
 
 struct output {
     int descriptor;   /* to write to */
-    const char *name; /* as the user named it; for messages, kept alive by the caller */
+    const char *name; /* given by the user, for messages; the caller's */
     char *target;     /* the file to replace, with symbolic links followed */
-    char *temporary;  /* its stand-in in the same folder, NULL when the target is a device or pipe */
+    char *temporary;  /* temporary file in the same folder; NULL if the target is a device or pipe */
 };
 
 /* Begin to write: a temporary file in the same folder, removed if the program ends by exit() or by SIGINT,
@@ -15,11 +15,11 @@ struct output {
  * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 
-/* End what was written with `status`: close, and give the file its name, or leave nothing behind where that
- * or the writing failed; the message then begins with its name. */
+/* Close the output and rename the file to its target; if this or the writing (`status`) failed, remove it.
+ * The message of a failure begins with the name. */
 MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
 
-/* A file that a tool prints to: its output file, or standard output. */
+/* The file to which a tool prints: its output file, or standard output. */
 struct target {
     FILE *file;       /* to print to */
     const char *name; /* NULL: standard output */
@@ -29,9 +29,9 @@ struct target {
 /* Begin the file `name`; NULL: standard output. Exits on failure. */
 void target_open(const struct tool *tool, struct target *target, const char *name);
 
-/* Give the file its name if the printing went well, which `status` and *error say and the file itself; exit
- * if not. */
+/* Rename the file to its target if printing succeeded, by `status` and by the state of the file; exits with
+ * *error if not. */
 void target_close(const struct tool *tool, struct target *target, enum status status, struct error *error);
 
-/* The same where printing itself does not fail. */
+/* The same with STATUS_OK. */
 void target_end(const struct tool *tool, struct target *target);

@@ -11,7 +11,7 @@ static bool is_one(const struct stat *a, const struct stat *b)
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* The folder of a name. */
+/* stat() of the folder of a name. */
 static bool stat_folder(const char *name, struct stat *folder)
 {
     const char *slash = strrchr(name, '/');
@@ -39,7 +39,7 @@ bool overwrite_is_same(const char *name, const char *other)
            stat_folder(other, &b) && is_one(&a, &b);
 }
 
-/* A stream may be replaced by what a filter makes of it. */
+/* Whether a file is a stream, which a filter may replace by its output. */
 static bool is_stream(const char *name)
 {
     char begin[6] = "";

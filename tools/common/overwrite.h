@@ -3,9 +3,9 @@
 
 #include "tool.h"
 
-/* Whether two names are of one file, which need not exist yet. */
+/* Whether two names refer to one file, which need not exist yet. */
 bool overwrite_is_same(const char *name, const char *other);
 
-/* Exits where the file that `option` names, with `suffix` appended, is an operand, or the value of another
- * option but -o. A stream that is the only file among the operands may be replaced by what is made of it. */
+/* Exits if the file named by `option`, with `suffix` appended, is an operand or the value of another option
+ * except -o. A stream that is the only file among the operands may be replaced by the output. */
 void overwrite_refuse(const struct tool *tool, const char *option, const char *suffix);

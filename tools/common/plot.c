@@ -17,14 +17,15 @@ static bool begins_with(const char *text, const char *prefix)
     return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-/* Does a section of this name (X of X.frame.K) describe the reference state, the same in all frames? */
+/* Whether a section of this name (X of X.frame.K) describes the reference state, which is the same in all
+ * frames. */
 static bool is_static(const char *name)
 {
     return begins_with(name, "cells.") || begins_with(name, "nodes.") || begins_with(name, "support.") ||
            begins_with(name, "facets.") || begins_with(name, "set.") || strcmp(name, "points.weight") == 0;
 }
 
-/* Is X, the part of a name in front of its first dot, one of these? NULL ends them. */
+/* Whether the part of a name before its first dot is in a NULL-terminated list. */
 static bool is_one_of(const char *name, const char *const *list)
 {
     size_t length = strcspn(name, ".");
@@ -36,7 +37,7 @@ static bool is_one_of(const char *name, const char *const *list)
     return false;
 }
 
-/* Lists, geometry and what belongs to neither nodes nor cells, whatever its number of rows. */
+/* Whether a section is a list, geometry, or of neither nodes nor cells, for any number of rows. */
 static bool is_structure(const char *name)
 {
     static const char *const exact[] = {"nodes.x", "cells", "points.x", "points.cell"};
@@ -50,7 +51,7 @@ static bool is_structure(const char *name)
     return is_one_of(name, first) || text_ends(name, ".ptr") || text_ends(name, ".idx");
 }
 
-/* Does a section of this name have a row for each integration point or cell? */
+/* Whether a section of this name has a row for each integration point or cell. */
 static bool is_of_points(const char *name)
 {
     static const char *const first[] = {"cells",    "points",       "stress", "strain",
@@ -58,7 +59,7 @@ static bool is_of_points(const char *name)
     return is_one_of(name, first);
 }
 
-/* Is the section a field on nodes or cells? */
+/* Whether a section is a field on nodes or cells. */
 static bool is_field(const struct vtk_mesh *mesh, const struct section *section, bool *of_cells)
 {
     bool fits_cells = mesh->node != NULL && section->rows == mesh->cell_count;
@@ -134,15 +135,15 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
 
 enum { COLUMNS_SIZE = 16384 };
 
-/* Is the section a table X.frames, a row for each frame and its time first? columns[COLUMNS_SIZE]: their
- * names. */
+/* Whether a section is a table X.frames, with a row for each frame and the time in the first column.
+ * columns[COLUMNS_SIZE]: the names of the columns. */
 static bool is_of_frames(const struct section *section, char columns[])
 {
     return text_ends(section->name, ".frames") && section->type == TYPE_F8 &&
            section_attribute(section, "cols", columns, COLUMNS_SIZE) && begins_with(columns, "time,");
 }
 
-/* The row at that time of a table X.frames, each column behind the time as the number X.COLUMN. */
+/* Add the row at this time of a table X.frames: each column after the time as the number X.COLUMN. */
 static void add_numbers(struct plot *plot, const struct section *section, const char *columns, double time)
 {
     const double *row = section->data, *end = row + section->rows * section->cols;
@@ -206,7 +207,7 @@ static enum status find_mesh(struct plot *plot, struct error *error)
     return STATUS_OK;
 }
 
-/* Fields: those of the stream, what follows from them, and the groups. */
+/* Find the fields: those of the stream, derived ones, and the groups. */
 static enum status find_fields(struct plot *plot, struct error *error)
 {
     RETURN_IF_ERROR(derived_add_invariants(&plot->stream, &plot->derived, error));

@@ -1,4 +1,4 @@
-/* What tovtk writes of a stream: a mesh, fields and frames. */
+/* The mesh, fields and frames that tovtk writes of a stream. */
 #pragma once
 
 #include "derived.h"
@@ -9,30 +9,30 @@ struct plot_label;
 
 struct plot {
     struct stream stream;
-    struct derived derived; /* fields that follow from the stream's */
+    struct derived derived; /* fields derived from those of the stream */
     struct cells cells;
     struct cell_regions regions;
-    struct vtk_mesh mesh;      /* these */
+    struct vtk_mesh mesh;      /* a view of the cells and regions */
     struct vtk_field *fields;  /* of the frame chosen last; room for every section */
-    struct plot_label *labels; /* the names of those of frames */
+    struct plot_label *labels; /* names of the fields of frames */
     int64_t field_count;
-    struct vtk_number *numbers; /* of the frame chosen last: its row of reactions.frames and the like */
+    struct vtk_number *numbers; /* of the frame chosen last: its rows of reactions.frames and the like */
     int64_t number_count;
     int64_t *frames; /* the numbers of the frames, ascending */
     int64_t frame_count;
 };
 
-/* Find mesh, fields, those of the groups too, and frames of plot->stream, the rest of *plot being zero.
- * plot_free also on failure. */
+/* Find mesh, fields, groups and frames of plot->stream; the other members of *plot are zero. To be freed also
+ * on failure. */
 MUST_CHECK enum status plot_find(struct plot *plot, struct error *error);
 
-/* Release all of it, the stream too. */
+/* Release everything, including the stream. */
 void plot_free(struct plot *plot);
 
-/* States to write: the frames, or the final state when there are none. */
+/* Number of states to write: the frames, or the final state if there are none. */
 int64_t plot_state_count(const struct plot *plot);
 
-/* Number i of the frames; FRAME_NONE, the final state, when there are none. */
+/* The number of frame i; FRAME_NONE, the final state, if there are none. */
 int64_t plot_frame(const struct plot *plot, int64_t i);
 
 /* Choose the fields and numbers of a frame, or of the final state for FRAME_NONE, which has no numbers. */

@@ -1,7 +1,6 @@
-/* The processes of a run: one, or those that mpirun has started. All do the same (base/ranks.h); the first
- * one alone writes and says what is to be said. tools/common/process.c is of one process, and costs nothing;
- * tools/mpi/process.c stands in its place in mtled-mpi, which mtled calls where mpirun has started several.
- */
+/* The processes of a run: one, or those started by mpirun. All do the same (base/ranks.h); only the first one
+ * writes and prints. tools/common/process.c implements one process; tools/mpi/process.c replaces it in
+ * mtled-mpi, which mtled executes if mpirun has started several processes. */
 #pragma once
 
 #include "base/ranks.h"
@@ -9,21 +8,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* To be called first in main. Takes from the command line what is MPI's. */
+/* To be called first in main. Removes MPI's arguments from the command line. */
 void process_begin(int *argc, char ***argv);
 
-/* How the processes talk; NULL: there is one. */
+/* The communication of the processes; NULL: there is one process. */
 const struct ranks *process_ranks(void);
 
-/* Is this the one that writes? */
+/* Whether this process writes and prints. */
 bool process_speaks(void);
 
-/* This process fails. True, after some seconds, when not all of the others do: then they wait for it in vain,
- * and it has to say why. */
+/* To be called if this process fails. Returns true, after some seconds, if not all others fail, too; this
+ * process must then print its message. */
 bool process_fails_alone(void);
 
-/* To be called last, and before exit(): the end of this process is in order. */
+/* To be called before exit(): this process ends regularly. */
 void process_end(void);
 
-/* A report on standard error of what was sent, by so many evaluations; by all together. */
+/* Report on standard error the data sent per evaluation. Collective. */
 void process_report(int64_t evaluations);

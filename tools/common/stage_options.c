@@ -26,9 +26,8 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     struct error error;
     enum status status;
     int dim;
-    int64_t node_count, unresolved;
-    const double *x;
-    tool_check(tool, stream_nodes(stream, &dim, &node_count, &x, &error), &error);
+    int64_t unresolved;
+    tool_check(tool, stream_nodes(stream, &dim, NULL, NULL, &error), &error);
     if (strcmp(stage, "ipoints") == 0) {
         struct ipoints_options options = ipoints_defaults();
         status = stage_ipoints(stream, &options, &unresolved, &error);

@@ -1,5 +1,5 @@
-/* What tools share that run stages: the options of basis and supports, -b, -w, --mu, --mu-unit, -k, -R; and
- * the stages that run with their defaults where their sections are missing. */
+/* Shared by tools that run stages: the options of basis and supports, -b, -w, --mu, --mu-unit, -k, -R; and
+ * running stages with their defaults if their sections are missing. */
 #pragma once
 
 #include "approx/mls/mls.h"
@@ -10,13 +10,12 @@
 #define MLS_OPTIONS "basis", "weight", "mu", "mu-unit"
 #define RADIUS_OPTIONS "factor", "radius"
 
-/* Apply those that were given; exits for values that cannot be. */
+/* Apply the options that were given; exits for invalid values. */
 void mls_parse(const struct tool *tool, struct mls *mls);
 
-/* Apply -k FACTOR or -R RADIUS; not both may be given. */
+/* Apply -k FACTOR or -R RADIUS; exits if both are given. */
 void radius_parse(const struct tool *tool, struct support_options *support);
 
-/* Run the defaults of every stage up to shapefn whose sections are missing, saying so once on standard error
- * and adding the provenance of the stages run. `upto` is "ipoints", "support" or "shapefn". Exits on failure.
- */
+/* Run every stage up to `upto` ("ipoints", "support" or "shapefn") whose sections are missing with its
+ * defaults, note this once, and add the provenance of these stages. Exits on failure. */
 void stage_fill(const struct tool *tool, struct stream *stream, const char *upto);

@@ -15,20 +15,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Of the whole process, like the descriptors they are about. */
-static char **arguments;         /* the command line, operands first; lives as long as the process */
+/* State of the process, like the standard descriptors. */
+static char **arguments;         /* the command line, operands first; never freed */
 static const char *process_name; /* tool->name, for the handler of SIGBUS */
-static const char *main_input;   /* the operand that stands in for standard input, or NULL */
+static const char *main_input;   /* the operand that replaces standard input, or NULL */
 static bool stdin_read;          /* standard input has been read */
 static bool stdout_closed;       /* standard output has been closed, its errors reported */
-static bool ending;              /* the end of the process is our own doing */
+static bool ending;              /* this program ends the process, not a library */
 
 static void print_message(const struct tool *tool, const char *format, va_list values)
 {
     char text[2 * sizeof(struct error)];
     struct error message;
     vsnprintf(text, sizeof text, format, values);
-    fail(&message, STATUS_OK, "%s", text); /* one line, whatever the names in it contain */
+    fail(&message, STATUS_OK, "%s", text); /* makes one line, whatever the names in it contain */
     fprintf(stderr, "%s: %s\n", tool->name, message.text);
 }
 
@@ -37,7 +37,7 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
     va_list values;
     bool said = process_speaks();
     for (int turn = 0; turn < 2;
-         turn++) { /* of several processes the first one speaks, or one that fails alone */
+         turn++) { /* of several processes the first one prints, or one that fails alone */
         if (turn == 0 ? said : process_fails_alone() && !said) {
             va_start(values, format);
             print_message(tool, format, values);
@@ -100,8 +100,8 @@ char *tool_numbered(const struct tool *tool, const char *what, const char *patte
               pattern);
 }
 
-/* A file opened later must not become standard input, output or error: fill the gaps, such that using them
- * fails. */
+/* Open missing standard descriptors so that using them fails: a file opened later must not become standard
+ * input, output or error. */
 static void fill_descriptors(void)
 {
     for (int descriptor = 0; descriptor <= 2; descriptor++) {
@@ -149,7 +149,7 @@ static void on_lost_mapping(int number)
     _exit((int)STATUS_SYSTEM);
 }
 
-/* libgomp ends the process with status 1 when it gets no memory; here 1 would be a verdict. */
+/* libgomp ends the process with status 1 if it gets no memory; here 1 would be a verdict. */
 static void on_foreign_exit(int status, void *unused)
 {
     (void)status, (void)unused;
@@ -168,15 +168,14 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
                           .argc = argc,
                           .argv = argv};
     fill_descriptors();
-    gsl_set_error_handler_off(); /* its functions return what failed */
-    /* A reader that has seen enough (head) ends us quietly, whatever our parent has set. */
+    gsl_set_error_handler_off(); /* its functions return errors */
+    /* If the reader closes the pipe (head), end quietly, whatever the parent process has set. */
     signal(SIGPIPE, SIG_DFL);
-    signal(SIGXFSZ, SIG_IGN); /* writing beyond a limit fails instead, with a message */
+    signal(SIGXFSZ, SIG_IGN); /* writing beyond the size limit then fails, with a message */
     process_name = tool->name;
     signal(SIGBUS, on_lost_mapping);
 #ifdef M_MMAP_THRESHOLD
-    /* Arrays of that many bytes are given back when they are freed; else the bound rises with what is freed.
-     */
+    /* Return arrays from this size on to the system when they are freed; by default the bound grows. */
     (void)mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
     (void)on_exit(on_foreign_exit, NULL);
@@ -234,7 +233,7 @@ void tool_read(const struct tool *tool, const char *file, struct stream *stream)
     }
 }
 
-/* The value of a silent option that is this argument or stands in it, or NULL. */
+/* The value of a silent option that is this argument or within it, or NULL. */
 static const char *silent_value(const struct tool *tool, const char *argument)
 {
     for (int i = 0; i < tool->silent_count; i++) {
@@ -245,8 +244,8 @@ static const char *silent_value(const struct tool *tool, const char *argument)
     return NULL;
 }
 
-/* What remains of an argument without the silent option in it, whose letter is the last of `length`: "-t" of
- * "-to" or "-toFILE"; NULL if nothing does. */
+/* The rest of an argument without the silent option in it, whose letter is the last of `length`: "-t" of
+ * "-to" or "-toFILE"; NULL if nothing remains. */
 static char *without_silent(const struct tool *tool, const char *argument, size_t length)
 {
     if (length <= 2 || argument[1] == '-') {
@@ -255,9 +254,9 @@ static char *without_silent(const struct tool *tool, const char *argument, size_
     return tool_memory(tool, strndup(argument, length - 1));
 }
 
-/* The command line without what changes nothing in the result: -o FILE and the like, and the operand that was
- * read in place of standard input. So the same input gives the same bytes however it comes and wherever the
- * output goes. */
+/* Add the command line without options that do not change the result, such as -o FILE, and without the
+ * operand that was read in place of standard input. So the same input gives the same bytes from any source
+ * and to any output. */
 static void add_provenance(const struct tool *tool, struct stream *stream)
 {
     int count = 0, rest_count = 0;
@@ -266,7 +265,7 @@ static void add_provenance(const struct tool *tool, struct stream *stream)
         char *argument = tool->argv[i];
         const char *value = silent_value(tool, argument);
         if (value != NULL) {
-            count -= value == argument; /* the option stands before it */
+            count -= value == argument; /* the option is the previous argument */
             char *rest = value > argument ? without_silent(tool, argument, (size_t)(value - argument))
                                           : without_silent(tool, kept[count], strlen(kept[count]));
             if (rest != NULL) {
@@ -320,7 +319,7 @@ static enum status write_output(const struct tool *tool, const struct stream *st
     return output_end(&output, stream_write(stream, output.descriptor, text, error), error);
 }
 
-/* Of several processes the first one writes, and all know how that went. */
+/* The first of several processes writes; all get its status. */
 void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
 {
     struct error error = {""};
@@ -328,7 +327,7 @@ void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
     tool_check(tool, (enum status)ranks_most(process_ranks(), (int64_t)status), &error);
 }
 
-/* Where what there is may go: NAME.part beside a file that is there or could be; not beside a device. */
+/* Open NAME.part for an incomplete result, beside a regular or new file, but not beside a device. */
 static int open_part(const char *output)
 {
     struct stat present;
@@ -350,7 +349,7 @@ void tool_write_stopped(const struct tool *tool, struct stream *stream, const ch
     if (descriptor < 0 || (tool->output == NULL && !text && isatty(STDOUT_FILENO))) {
         return;
     }
-    signal(SIGPIPE, SIG_IGN); /* our own status tells more */
+    signal(SIGPIPE, SIG_IGN); /* exit with our own status */
     add_provenance(tool, stream);
     if (stream_write_stopped(stream, reason, descriptor, text, &ignored) == STATUS_OK) {
         (void)fsync(descriptor);

@@ -12,7 +12,7 @@ const char *tool_value(const struct tool *tool, const char *option)
     return options_find(&tool->options, option)->value;
 }
 
-/* Parse the value of the option, where it is given. */
+/* Parse the value of the option if it is given. */
 #define PARSE_GIVEN(parse, ...)                                                                              \
     do {                                                                                                     \
         char what[32];                                                                                       \

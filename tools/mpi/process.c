@@ -11,18 +11,18 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Seconds that a process which fails waits for the others to fail as well. */
+/* Time that a failing process waits for the others to fail as well, s. */
 static const double most_wait = 10.0;
 
-/* Of the whole process. */
+/* State of the process. */
 static struct {
     struct ranks ranks;
     int *count, *place;        /* scratch: of each process */
-    MPI_Request *requests;     /* 2 of each, */
-    int begun;                 /* and how many of them are of the exchange that has begun */
-    MPI_Comm ends;             /* on which processes tell that they fail */
-    double sent, waited, spun; /* bytes; seconds of sending and waiting, and of the processor in these */
-    bool patient;              /* waiting processes sleep, else they spin */
+    MPI_Request *requests;     /* 2 for each process */
+    int begun;                 /* number of requests of the exchange in progress */
+    MPI_Comm ends;             /* communicator for failures of processes */
+    double sent, waited, spun; /* bytes sent; time of sending and waiting, and processor time of these, s */
+    bool patient;              /* waiting processes sleep; false: they spin */
     bool failing, alone, ended;
     MPI_Request failed;
 } own;
@@ -40,7 +40,7 @@ static double processor_seconds(clockid_t clock)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* What a message costs, with the waiting for it, goes to own.waited and own.spun. */
+/* Measures the time of a message, with waiting, which is added to own.waited and own.spun. */
 struct cost_of_message {
     double started, processor;
 };
@@ -64,7 +64,7 @@ static MPI_Datatype type_of(size_t size)
     return type;
 }
 
-/* Until these requests are done. */
+/* Wait until these requests are complete. */
 static void wait_for(int count, MPI_Request *requests)
 {
     static const int spins = 200, most_nap = 200; /* us */
@@ -121,7 +121,7 @@ static void begin(const struct ranks *ranks, size_t size, const void *send, cons
         }
     }
     own.begun = requests;
-    MPI_Type_free(&type); /* once these are done */
+    MPI_Type_free(&type); /* takes effect when the requests are complete */
     end_message(&message);
 }
 
@@ -172,7 +172,7 @@ static int64_t most(const struct ranks *ranks, int64_t value)
 
 void process_begin(int *argc, char ***argv)
 {
-    static char name[] = "mtled"; /* what is computed, and what is said of it, is the same */
+    static char name[] = "mtled"; /* the same provenance and messages */
     int provided;
     struct ranks *ranks = &own.ranks;
     *ranks = (struct ranks){.gather = gather,
@@ -227,7 +227,7 @@ bool process_fails_alone(void)
     return own.alone;
 }
 
-/* mpirun ends the others when a process ends without this. */
+/* If a process ends without this, mpirun ends the others. */
 void process_end(void)
 {
     if (!own.ended && !own.alone) {

@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Share of the tolerance that the subcells kept may add up to; the rest is for those that are split. */
+/* Share of the tolerance for the changes of the subcells that are kept; the rest is for those that are
+ * split. */
 static const double kept_share = 0.5;
 
 struct adaptive_options adaptive_defaults(int dim)
@@ -26,8 +27,9 @@ static int by_change(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Mark the subcells of one cell to be split: none when their changes sum to the tolerance; else all but
- * those of least change. *unresolved: whether only the last level is too coarse. */
+/* Mark the subcells of one cell to be split: none if the sum of their changes is within the tolerance; else
+ * all but those of least change. *unresolved: the sum is too large, but all subcells are at the last
+ * level. */
 static enum status mark_cell(const struct adaptive_options *options, struct leaf *leaf, int64_t count,
                              double norm, int64_t *marked, bool *unresolved, struct error *error)
 {
@@ -58,7 +60,7 @@ static enum status mark_cell(const struct adaptive_options *options, struct leaf
     return status;
 }
 
-/* Put the children of the marked subcells in their places. */
+/* Replace the marked subcells by their children. */
 static enum status split(int dim, int64_t marked, struct leaves *leaves, struct error *error)
 {
     if (marked == 0) {
@@ -104,7 +106,7 @@ static enum status start(const struct cells *cells, struct leaves *leaves, struc
     return status;
 }
 
-/* Mark what is to be split in all cells. */
+/* Mark the subcells to be split in all cells. */
 static enum status mark(const struct refinement *refinement, const struct leaves *leaves, int64_t *marked,
                         int64_t *unresolved, struct error *error)
 {
@@ -122,7 +124,7 @@ static enum status mark(const struct refinement *refinement, const struct leaves
     return STATUS_OK;
 }
 
-/* The rule's points in all subcells. */
+/* Place the rule's points in all subcells. */
 static enum status place_points(const struct refinement *refinement, const struct leaves *leaves,
                                 struct adaptive_points *points, struct error *error)
 {

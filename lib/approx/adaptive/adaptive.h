@@ -1,5 +1,5 @@
 /* Adaptive integration points: each background cell is subdivided until the integral of the products of
- * shape-function gradients, which is what a stiffness is made of, settles. */
+ * shape-function gradients, of which stiffnesses consist, converges. */
 #pragma once
 
 #include "approx/cells/cells.h"
@@ -8,11 +8,10 @@
 #define ADAPTIVE_MOST_LEVELS 10
 
 struct adaptive_options {
-    double tolerance; /* relative change admitted in a cell, > 0 */
-    int levels;       /* subdivisions of a cell at most, 0 .. ADAPTIVE_MOST_LEVELS */
-    int rule_points;  /* of the rule on each subcell (quadrature_cell_rule) */
-    struct support_options
-        support; /* the shape functions: their lists are made as support_build makes them */
+    double tolerance;               /* relative change admitted in a cell, > 0 */
+    int levels;                     /* most subdivisions of a cell, 0 .. ADAPTIVE_MOST_LEVELS */
+    int rule_points;                /* of the rule on each subcell (quadrature_cell_rule) */
+    struct support_options support; /* of the shape functions, see support_build */
 };
 
 /* Rules exact for quadratics (3 points in 2D, 4 in 3D), four levels (three in 3D), the default shape

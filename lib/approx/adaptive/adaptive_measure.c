@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The number of subcells that are measured at once. It bounds the memory, and does not affect the result. */
+/* Number of subcells that are measured at once. It bounds the memory and does not affect the result. */
 #define BATCH_LEAVES 256
 
-/* Children by pairs of vertices, whose midpoint (or the vertex itself) is a vertex of the child. The
- * octahedron within a tetrahedron is cut along the edge 02-13 (Bey 1995), which keeps the children of
- * children well shaped. */
+/* A child by pairs of vertices of its parent: its vertices are their midpoints, or the vertex where both are
+ * the same. The octahedron within a tetrahedron is cut along the edge 02-13 (Bey 1995), which keeps the
+ * children of children well shaped. */
 static const uint8_t triangle_children[4][3][2] = {
     {{0, 0}, {0, 1}, {0, 2}}, {{0, 1}, {1, 1}, {1, 2}}, {{0, 2}, {1, 2}, {2, 2}}, {{0, 1}, {1, 2}, {0, 2}}};
 static const uint8_t tetrahedron_children[8][4][2] = {
@@ -91,7 +91,7 @@ static enum status sample_leaves(const struct refinement *refinement, struct lea
                        sample->dphi, error);
 }
 
-/* matrix (n x n, lower half) += factor G G^T, the rows of G standing at `place`. */
+/* matrix (n x n, lower half) += factor G G^T. Row i of G belongs to row place[i] of the matrix. */
 static void add_products(int dim, const double *gradient, const int32_t *place, int64_t count, int64_t n,
                          double factor, double *matrix)
 {
@@ -121,7 +121,7 @@ static double norm_of(const double *matrix, int64_t n)
     return sqrt(2.0 * off + diagonal);
 }
 
-/* All nodes of the lists of points [first, last): into *united, of which there is room for all of them. */
+/* united[] = the union of the lists of the points [first, last); it has room for all of their entries. */
 static int64_t unite(const struct support_lists *lists, int64_t first, int64_t last, int32_t *united,
                      int32_t *scratch)
 {
@@ -134,7 +134,7 @@ static int64_t unite(const struct support_lists *lists, int64_t first, int64_t l
     return count;
 }
 
-/* |K| by the rule and |K - K by the children| of one sampled subcell of that volume. */
+/* *norm = |K| by the rule on a subcell, *change = |K - K by the rule on its children|. */
 static enum status measure(const struct refinement *refinement, const struct sample *sample, int64_t leaf,
                            double volume, double *norm, double *change, struct error *error)
 {

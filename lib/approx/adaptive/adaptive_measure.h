@@ -40,6 +40,6 @@ void adaptive_child(int dim, const double *vertex, int child, double *of_child);
 /* x[rule->points * dim]: the rule's points in a simplex of those vertices. */
 void adaptive_positions(const struct quadrature_rule *rule, int dim, const double *vertex, double *x);
 
-/* Measure the subcells that are not measured yet; those of level 0 also set their cell's norm. */
+/* Measure the subcells that have not been measured; those of level 0 also set the norm of their cell. */
 MUST_CHECK enum status adaptive_measure(struct refinement *refinement, struct leaves *leaves,
                                         struct error *error);

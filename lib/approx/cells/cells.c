@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* The order of a cell's faces: the vertex that is not of each. */
+/* The vertex opposite face number `face` of a cell. */
 static int opposite(int dim, int64_t face)
 {
     static const int of_triangle[3] = {2, 0, 1}, of_tetrahedron[4] = {3, 2, 0, 1};
@@ -188,7 +188,7 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
     return STATUS_OK;
 }
 
-/* Append the face at slot s of the cells, beyond which is that cell or none. */
+/* Append face s of the cells, with the cell `beyond` it, or -1. */
 static void add_face(const struct cells *cells, int64_t s, int64_t beyond, struct faces *faces)
 {
     int corners = cells->dim + 1;

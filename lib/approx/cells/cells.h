@@ -25,8 +25,8 @@ struct faces {
     int32_t *cell; /* count * 2: the first cell (the lower index), and the one beyond the face or -1 */
     int64_t row_count, own_count; /* rows of the face averages (face_rows.h); the first own_count of them
                                      belong to one face each */
-    int32_t *row; /* count * FACE_ROWS: the face's own row, repeated; or the rows of its edges, from each node
-                     to the next one; NULL: face f has row f */
+    int32_t *row; /* count * FACE_ROWS: the face's own row, repeated; or the rows of its edges, each from a
+                 node to the next one. NULL: face f has row f */
 };
 
 /* Check indices and that every volume is positive; the message names the first bad cell. */
@@ -39,7 +39,7 @@ double cell_volume(const struct cells *cells, int64_t cell);
  * negative. */
 void cell_barycentric(const struct cells *cells, int64_t cell, const double *x, double *coordinate);
 
-/* The places of a cell's dim + 1 vertices. */
+/* corner[dim + 1] = the coordinates of a cell's vertices. */
 void cell_corners(const struct cells *cells, int64_t cell, const double *corner[4]);
 
 /* Squared distance of x[dim] from the simplex of corner[0 .. order], order <= dim: a point, a segment, ... */
@@ -54,9 +54,8 @@ void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *fac
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);
 
-/* All faces of the cells, each once, those on the boundary before those between two cells, and else in the
- * order of their first cell; or only those on the boundary.
- * STATUS_INPUT when a face belongs to more than two cells. */
+/* All faces of the cells, each once; or only those on the boundary. Boundary faces come first; otherwise
+ * faces are in the order of their first cell. STATUS_INPUT if a face belongs to more than two cells. */
 MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                                    struct error *error);
 void faces_free(struct faces *faces);

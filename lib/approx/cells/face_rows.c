@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number the edges of faces in 3D in the order of their first use: edge[count * 3], that from each node to
- * the next one. */
+/* Number the edges of faces in 3D in the order of their first use: edge[count * 3], each from a node of the
+ * face to the next one. */
 static enum status number_edges(int64_t node_count, const struct faces *faces, int32_t *edge, int64_t *edges,
                                 struct error *error)
 {
@@ -64,7 +64,7 @@ enum status face_rows_number(int64_t node_count, const int32_t *side, struct fac
     RETURN_IF_ERROR(NEW_ARRAY(&edge, faces->count * 3, error));
     RETURN_IF_ERROR(number_edges(node_count, faces, edge, &edges, error));
     RETURN_IF_ERROR(NEW_ARRAY(&outer, node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&row_of, edges, error)); /* and 1 */
+    RETURN_IF_ERROR(NEW_ARRAY(&row_of, edges, error)); /* row + 1; 0: none yet */
     RETURN_IF_ERROR(NEW_ARRAY(&faces->row, faces->count * 3, error));
     mark_outer(side, faces, outer);
     faces->own_count = 0;
@@ -88,13 +88,13 @@ enum status face_rows_number(int64_t node_count, const int32_t *side, struct fac
     return STATUS_OK;
 }
 
-/* The rows of the edges of faces in 3D, also of faces that have one of their own: row[count * 3]; -1: none.
- */
+/* row[count * 3]: the rows of the edges of faces in 3D, also for faces that have a row of their own; -1:
+ * none. */
 static enum status rows_of_edges(int64_t node_count, const struct faces *faces, int32_t *row,
                                  struct error *error)
 {
     int64_t edges;
-    SCRATCH int32_t *edge = NULL, *row_of = NULL; /* and 1 */
+    SCRATCH int32_t *edge = NULL, *row_of = NULL; /* row + 1; 0: none */
     RETURN_IF_ERROR(NEW_ARRAY(&edge, faces->count * 3, error));
     RETURN_IF_ERROR(number_edges(node_count, faces, edge, &edges, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row_of, edges, error));
@@ -109,7 +109,7 @@ static enum status rows_of_edges(int64_t node_count, const struct faces *faces, 
     return STATUS_OK;
 }
 
-/* Remove repeated cells, and -1 for the outside, from each row; row r ended at ptr[r + 1]. */
+/* Remove repeated cells and -1 from each row. On entry row r ends at ptr[r + 1]. */
 static void keep_new_cells(int64_t rows, int64_t *ptr, int32_t *cell)
 {
     int64_t kept = 0, from = 0;
@@ -135,7 +135,7 @@ enum status face_rows_cells(int64_t node_count, const struct faces *faces, int64
     enum status status;
     bool shared = faces->row != NULL;
     int64_t *start = NULL;
-    int32_t *row = NULL; /* four of each face: its own, and those of its edges */
+    int32_t *row = NULL; /* four for each face: its own, and those of its edges */
     *cell = NULL;
     TRY(NEW_ARRAY(&start, faces->row_count + 2, error));
     TRY(NEW_ARRAY(&row, faces->count * 4, error));

@@ -1,10 +1,10 @@
 /* Rows of the table from which averages of a field over faces are computed, equation (6) of lib/README.md. In
- * 2D the average over a face is one row, from the values at two points. In 3D it is the mean of three rows.
- * In the interior these are the values at the midpoints of the face's edges, which all faces at an edge
- * share. A face with a node on the boundary, or on an interface where supports stop (support_options.side),
- * shares no row: its three rows are the same one, the average from the values at three points within the
- * face. Both rules are exact for quadratic fields. Near junctions of prescribed and free boundary, where the
- * field is singular, the points within the face are more accurate.
+ * 2D the average over a face is one row: the mean of the values at two points. In 3D it is the mean of three
+ * rows. In the interior, these are the values at the midpoints of the edges; all faces at an edge share its
+ * row. A face with a node on the boundary, or on an interface where supports stop (support_options.side), has
+ * a row of its own, which counts three times: the mean of the values at three points within the face. Both
+ * rules are exact for quadratic fields. Near junctions of prescribed and free boundary, where the field is
+ * singular, points within the face are more accurate.
  *
  * Rows of single faces come first, those of boundary faces before the others, in the order of the faces. The
  * rows of edges follow, in the order in which the faces first use them. */
@@ -42,8 +42,8 @@ static inline int64_t face_row_point(const struct faces *faces, int64_t r)
     return own * OWN_POINTS(faces->dim) + r - own;
 }
 
-/* Number the rows of faces whose nodes and cells are set. side: that of each cell, or NULL; node indices are
- * below node_count. */
+/* Set the rows of faces whose nodes and cells are set. side: of each cell, or NULL; node indices are below
+ * node_count. */
 MUST_CHECK enum status face_rows_number(int64_t node_count, const int32_t *side, struct faces *faces,
                                         struct error *error);
 
@@ -52,5 +52,5 @@ MUST_CHECK enum status face_rows_number(int64_t node_count, const int32_t *side,
 MUST_CHECK enum status face_rows_cells(int64_t node_count, const struct faces *faces, int64_t **ptr,
                                        int32_t **cell, struct error *error);
 
-/* The points, x[face_row_point(faces, row_count) * dim], by the places of the nodes. */
+/* x[face_row_point(faces, row_count) * dim]: the points of all rows; nodes: the coordinates of the nodes. */
 void face_rows_points(const struct faces *faces, const double *nodes, double *x);

@@ -8,12 +8,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Number the sets by falling size: part[item] from parent[item]. */
+/* Number the sets of parent[] by decreasing size: part[item] = the number of the item's set. */
 static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
                                 int32_t *count, struct error *error)
 {
     SCRATCH struct placed *parts = NULL; /* by the negative of their size */
-    SCRATCH int32_t *place = NULL;       /* of a root: its place among the parts, then its number */
+    SCRATCH int32_t *place = NULL; /* of the first item of a set: its place in parts[], then its number */
     *count = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&parts, items, error));
     RETURN_IF_ERROR(NEW_ARRAY(&place, items, error));
@@ -146,7 +146,7 @@ static void mark_items(int64_t count, int corners, const int32_t *item, const bo
     }
 }
 
-/* Shrinking a choice is growing what is not chosen. */
+/* To shrink a selection is to grow its complement. */
 static void invert(int64_t count, bool *chosen)
 {
     for (int64_t i = 0; i < count; i++) {
@@ -154,7 +154,7 @@ static void invert(int64_t count, bool *chosen)
     }
 }
 
-/* Extend the selection alternately from items to their nodes and from nodes to their items, beginning with
+/* Extend the selection alternately from items to their nodes and from nodes to their items, starting with
  * either. */
 enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t node_count,
                         int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,

@@ -1,7 +1,7 @@
 #include "approx/cells/quadrature.h"
 
-/* Points of one weight, whose barycentric coordinates are the same numbers in other orders: a letter for each
- * coordinate, a blank between points. */
+/* Points with one weight, whose barycentric coordinates are permutations of the same numbers: a letter for
+ * each coordinate, a blank between points. */
 struct orbit {
     const char *points;
     double weight, value[3]; /* of the letters a, b, c */

@@ -14,8 +14,8 @@ static double triangle_quality(double area, const double *const x[3])
     return area * fabs(area) * 16 / ((a + b + c) * a * b * c);
 }
 
-/* q = 3 r / R with r = 3 V / S, R = sqrt(p (p - a)(p - b)(p - c)) / (6 V), a, b, c the products of opposite
- * edges and p half their sum. */
+/* q = 3 r / R with r = 3 V / S, R = sqrt(p (p - a)(p - b)(p - c)) / (6 V); a, b, c are the products of
+ * opposite edges, and p is half their sum. */
 static double tetrahedron_quality(double volume, const double *const x[4])
 {
     double a = vector_distance(3, x[0], x[1]) * vector_distance(3, x[2], x[3]);

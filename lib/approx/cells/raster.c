@@ -4,13 +4,13 @@
 
 #include <math.h>
 
-/* Barycentric coordinates down to the negative of this are within: what lies on a face is in one of the two.
- */
+/* Barycentric coordinates above the negative of this count as inside, so that a point on a face is in one of
+ * its cells. */
 static const double within = 1e-9;
 
 enum { SLABS_MOST = 16 }; /* of the last axis, which threads share */
 
-/* A cell in the grid: barycentric coordinate a of a point y is at[a] + slope[a] . y. */
+/* A cell in grid units: barycentric coordinate a of a point y is at[a] + slope[a] . y. */
 struct simplex {
     double at[4], slope[4][3];
 };
@@ -30,7 +30,7 @@ static void range(const struct cells *cells, int64_t cell, int axis, int64_t siz
     *high = (int64_t)floor(fmax(fmin(most + within, (double)(size - 1)), -1));
 }
 
-/* False for a cell that is turned over, or flat. */
+/* Set *simplex from a cell; false if the cell is inverted or flat. */
 static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct simplex *simplex)
 {
     int dim = cells->dim;
@@ -59,7 +59,7 @@ static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct
     return true;
 }
 
-/* The grid points of row (., j, k) in a simplex: from *low to *high, which are given as those of its box. */
+/* Restrict *low to *high, on entry the range of the box, to the grid points of row (., j, k) in a simplex. */
 static void clip_row(const struct simplex *simplex, int dim, int64_t j, int64_t k, double margin,
                      int64_t *low, int64_t *high)
 {
@@ -80,7 +80,7 @@ static void clip_row(const struct simplex *simplex, int dim, int64_t j, int64_t 
     *high = first <= last ? (int64_t)last : 0;
 }
 
-/* One cell, as far as it lies in layers begin .. end - 1 of the last axis. */
+/* Draw the part of one cell in the layers begin .. end - 1 of the last axis. */
 static void draw(const struct simplex *simplex, const struct cells *cells, int64_t cell,
                  const int64_t size[3], int64_t begin, int64_t end, int32_t *owner, int64_t *doubly)
 {

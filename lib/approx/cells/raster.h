@@ -1,13 +1,12 @@
-/* Which cell each point of a regular grid lies in. */
+/* The cell that contains each point of a regular grid. */
 #pragma once
 
 #include "approx/cells/cells.h"
 
-/* owner[size[0] * size[1] * size[2]], the first axis quickest: the lowest of the cells that hold the grid
- * point of these indices, -1: none. cells->x are the nodes in units of the grid: its points are the whole
- * numbers from 0. size[2] = 1 in 2D. Only cells whose determinant has the given sign (1 or -1) are taken:
- * where the map to the grid mirrors, sound cells have -1; others are folded. *doubly: grid points that more
- * than one of them holds, beyond their faces. Threads share the work; the result does not depend on their
- * number. */
+/* owner[size[0] * size[1] * size[2]], first axis fastest: the lowest cell that contains the grid point, or
+ * -1. cells->x are in units of the grid, whose points have integer coordinates from 0; size[2] = 1 in 2D.
+ * Only cells whose determinant has the sign `sign` (1 or -1) count: -1 if the map to the grid mirrors; the
+ * others are inverted. *doubly: number of grid points inside more than one cell, faces excepted. Threaded;
+ * the result does not depend on the number of threads. */
 void raster_cells(const struct cells *cells, int sign, const int64_t size[3], int32_t *owner,
                   int64_t *doubly);

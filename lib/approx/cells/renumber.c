@@ -24,7 +24,7 @@ static int compare_keys(const void *left, const void *right)
     return (a->index > b->index) - (a->index < b->index);
 }
 
-/* Bits of the coordinates, interleaved. */
+/* The Morton code of a point: the bits of its coordinates, interleaved. */
 static uint64_t morton(int dim, const double *x, const double *low, double extent)
 {
     uint64_t place = 0, cell[3];

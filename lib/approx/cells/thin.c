@@ -6,12 +6,12 @@
 #include <math.h>
 #include <string.h>
 
-/* A facet counts as opposite where the scalar product of its normal and the ray is larger than this. */
+/* A facet is opposite if the scalar product of its normal and the ray is larger than this. */
 static const double facing = 0.5;
-/* The most cells that a ray passes: round-off might lead it in a circle. */
+/* Most cells that a ray passes: round-off might lead it in a circle. */
 enum { MOST_CELLS = 1000 };
 
-/* Mean length of the edges between `count` nodes: of a facet, or a cell. */
+/* Mean length of the edges of a facet or cell of `count` nodes. */
 static double mean_edge(int dim, const double *x, int count, const int32_t *node)
 {
     double sum = 0.0;
@@ -23,8 +23,8 @@ static double mean_edge(int dim, const double *x, int count, const int32_t *node
     return 2.0 * sum / (count * (count - 1));
 }
 
-/* The face, opposite vertex *face, through which the ray from x along `ray` leaves a cell: how far that is.
- * The face that it came in by does not count. normal[]: outward there, as long as the face is large. */
+/* The distance at which the ray from x along `ray` leaves a cell, through the face opposite vertex *face; the
+ * face by which it entered does not count. normal[]: area vector of this face, outward. */
 static double leave_cell(const struct cells *cells, int64_t cell, int entered, const double *x,
                          const double *ray, int *face, double *normal)
 {
@@ -46,8 +46,8 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
     return nearest;
 }
 
-/* The thickness at a facet of a cell, its vertex opposite `face`; INFINITY if it is not less than `bound`
- * times the facet's width, m, and than that many mean edges of the cells on the way. */
+/* The thickness at a facet of a cell, opposite its vertex `face`, m; INFINITY unless it is less than `bound`
+ * times the facet's width and `bound` times the mean edge of the cells on the ray. */
 static double thickness(const struct cells *cells, const int32_t *across, int64_t cell, int face,
                         const double *middle, const double *inward, double bound, double width)
 {

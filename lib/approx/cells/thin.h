@@ -4,13 +4,13 @@
 #include "approx/cells/cells.h"
 
 /* The thickness of a body at a boundary facet is the length of the ray from the facet's middle along its
- * inward normal to where it leaves the body, through a facet whose normal is opposite to within 60 degrees.
- * It is measured in lengths of the facet's edges (2D: of the facet). A facet counts as thin if the thickness
- * is below the bound in this measure and also in mean edge lengths of the cells on the ray, as behind long
- * facets of a boundary with few nodes there may be many cells. */
+ * inward normal to the point where it leaves the body, through a facet whose normal is opposite within 60
+ * degrees. Its unit is the mean edge of the facet (2D: the facet's length). A facet is thin if the thickness
+ * is below the bound in this unit and also in mean edges of the cells on the ray: behind the long facets of a
+ * boundary with few nodes there may be many cells. */
 struct thin_report {
-    double share;    /* part of the boundary, by area or length, where that is less than the bound */
-    double least;    /* the least thickness; the bound where there is none below it */
+    double share;    /* of thin facets in the boundary, by area or length */
+    double least;    /* least thickness; the bound if there is none below it */
     double place[3]; /* the middle of that facet, m */
 };
 

@@ -5,9 +5,9 @@
  * error is
  *
  *   u_h - u = (u_rh - u_h) / (r^p - 1). (29)
- *
- * p is known only between bounds: 2 where the solution is smooth, 1 and a little more where a corner or a
- * change from held to free makes it singular. Their middle is assumed; of three clouds it is observed.
+ * p is known only between bounds: 2 where the solution is smooth, slightly above 1 where a corner or a
+ * junction of prescribed and free boundary makes it singular. The mean of the bounds is assumed; from three
+ * clouds it is observed.
  *
  * Recovery (Zienkiewicz and Zhu, A simple error estimator and adaptive procedure for practical engineering
  * analysis, Int. J. Numer. Meth. Eng. 24 (1987), 337). The gradient of the linear interpolant in a cell is
@@ -18,12 +18,12 @@
 
 #include "approx/field/field.h"
 
-/* Bounds of the order, and the one that is assumed. */
+/* Bounds of the order, and the order that is assumed. */
 #define FIELD_ERROR_LEAST_ORDER 1.0
 #define FIELD_ERROR_MOST_ORDER 2.0
 #define FIELD_ERROR_ORDER 1.5
 
-/* Error of the finer one by the difference of two fields: 1 / (r^p - 1), ratio > 1, order > 0. */
+/* Error of the finer field by the difference of the two: 1 / (r^p - 1), ratio > 1, order > 0. */
 double field_error_share(double ratio, double order);
 
 /* Observed order from three fields: `fine` is the difference of the fine and the middle one, `coarse` that of
@@ -39,9 +39,10 @@ double field_error_ratio(const struct cells *fine, const struct cells *coarse);
  * NaN where no cell is left. */
 double field_error_mean(const struct cells *cells, const double *value);
 
-/* squared[cells->count] = integral over the cell of |G - grad u|^2, G the recovered gradient of u, linear in
- * the cell; its square root is the error of the cell, unit of u times m^(dim / 2 - 1). region[cells->count],
- * 0 .. region_count - 1, or NULL: all one. Errors: STATUS_INPUT for a value that is not finite. */
+/* squared[cells->count] = integral over the cell of |G - grad u|^2 with the recovered gradient G of u, linear
+ * in the cell. Its square root is the error of the cell, in the unit of u times m^(dim / 2 - 1).
+ * region[cells->count]: 0 .. region_count - 1, or NULL: one region. STATUS_INPUT for a value that is not
+ * finite. */
 MUST_CHECK enum status field_error_recovered(const struct cells *cells, const int32_t *region,
                                              int32_t region_count, int64_t cols, const double *values,
                                              double *squared, struct error *error);

@@ -8,11 +8,11 @@
 /* The order of the error of the gradient. */
 static const double gradient_order = 1.0;
 
-/* There is a corner, and no curve, where the normals of a facet and of a node at it are so far from each
- * other, radians, or where at the facet's other nodes they are so much nearer. */
+/* A node is at a corner, not on a curve, if the normals of the node and of a facet there differ by more than
+ * this angle, radians, or if the least such angle at the facet's nodes is below this share of it. */
 static const double corner_angle = 0.7, corner_share = 0.25;
 
-/* What a cell's size is multiplied by to have the error `equal`; size: the present one. */
+/* The factor on a cell's size, now `size`, that gives the cell the error `equal`. */
 static double cell_factor(const struct cells *cells, double squared, double size, double equal, double least)
 {
     double factor = SIZE_FIELD_MOST;
@@ -31,9 +31,8 @@ static double cell_size(const struct cells *cells, const double *spacing, int64_
     return sum / (cells->dim + 1);
 }
 
-/* The error that all cells are to have: sum e_K^2 falls to its share, as a cell's part of it falls by the
- * order of the error, twice; by bisection. Cells that already have the least size are left out, as refining
- * others cannot reduce their error. */
+/* The error e of all cells for which sum e_K^2 falls to its wanted share, by bisection. Cells that already
+ * have the least size are left out, as refining others cannot reduce their error. */
 static double equal_error(const struct cells *cells, const double *squared, const double *spacing,
                           const struct size_field_request *request)
 {
@@ -82,7 +81,7 @@ static enum status node_sizes(const struct cells *cells, const double *squared, 
     return STATUS_OK;
 }
 
-/* Sizes on the boundary do not grow, as the error estimate does not include the error of the boundary's
+/* Limit sizes on the boundary to the present ones: the estimate does not include the error of the boundary's
  * shape. */
 static void keep_boundary(const struct faces *faces, const double *spacing, double *size)
 {
@@ -129,8 +128,8 @@ static void boundary_angles(const struct cells *cells, const struct faces *faces
     }
 }
 
-/* A chord of length h is h^2 / (8 R) off a curve of radius R. The normal turns by d / R between a node and
- * the middle of a facet at it, d away. */
+/* Limit sizes by the sag of facets. A chord of length h has the sag h^2 / (8 R) on a curve of radius R. The
+ * normal turns by d / R between a node and the middle of a facet at the distance d. */
 static void limit_sag(const struct cells *cells, const struct faces *faces, const double *angle, double sag,
                       double *size)
 {
@@ -138,7 +137,7 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
     for (int64_t f = 0; f < faces->boundary_count; f++) {
         const int32_t *node = faces->node + f * dim;
         double middle[3],
-            least_angle = 0.0; /* at the nodes of the facet; small next to a corner of flat sides */
+            least_angle = 0.0; /* over the nodes of the facet; small next to a corner of flat sides */
         for (int k = 0; k < dim; k++) {
             least_angle = k == 0 ? angle[node[k]] : fmin(least_angle, angle[node[k]]);
         }
@@ -173,7 +172,7 @@ static void move_outward(const struct cells *cells, const double *normal, const 
     }
 }
 
-/* Let sizes change by at most the gradation along each edge. */
+/* Limit the change of sizes along each edge to the gradation. */
 static void limit_gradation(const struct cells *cells, double *size)
 {
     int dim = cells->dim;
@@ -198,7 +197,7 @@ static void limit_gradation(const struct cells *cells, double *size)
     }
 }
 
-/* Nodes of a mesh of these sizes, by those of the present one. */
+/* The number of nodes of a mesh of these sizes, predicted from the present one. */
 static double predicted_nodes(const struct cells *cells, const double *spacing, const double *size)
 {
     double sum = 0.0;

@@ -35,8 +35,8 @@ enum status field_spacing(const struct cells *cells, double *spacing, struct err
     return STATUS_OK;
 }
 
-/* centre[count * dim] and radius[count], m: a ball around each cell that holds all that is nearer to it than
- * `within` times the largest spacing of its nodes, size[count]. */
+/* centre[count * dim] and radius[count], m: a ball around each cell that contains all points nearer to it
+ * than `within` times size[count], the largest spacing of its nodes. */
 static void enclose(const struct cells *cells, const double *spacing, double within, double *centre,
                     double *radius, double *size)
 {
@@ -52,7 +52,7 @@ static void enclose(const struct cells *cells, const double *spacing, double wit
     }
 }
 
-/* cell[count]: the nearest cell to each point of x[count * dim], the first of several; -1: all are farther
+/* cell[count]: the cell nearest to each point of x[count * dim], the first of several; -1: all are farther
  * than `within` times the largest spacing of their nodes. */
 static enum status nearest_cells(const struct cells *cells, const double *spacing, double within,
                                  int64_t count, const double *x, int64_t *cell, struct error *error)
@@ -147,7 +147,7 @@ void field_evaluate(int64_t count, const int64_t *ptr, const int32_t *idx, const
     }
 }
 
-/* value[cols] at x[dim]: linear in a cell, of the values at its nodes. */
+/* value[cols] at x[dim]: linear interpolation of the values at the nodes of a cell. */
 static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
                                 const double *x, double *value)
 {

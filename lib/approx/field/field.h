@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-/* spacing[node_count], m: the mean length of the cell edges at each node; at a node of no cell, and without
+/* spacing[node_count], m: the mean length of the cell edges at each node; at nodes without cell, and without
  * cells, the mean distance to the nearest nodes. */
 MUST_CHECK enum status field_spacing(const struct cells *cells, double *spacing, struct error *error);
 
@@ -18,15 +18,14 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
                                      int64_t count, const double *x, bool *outside, struct error *error);
 
 /* The distance from the cells, in spacings, up to which fields are extrapolated: landmarks and nodes of
- * another mesh may lie a little beyond a curved boundary. */
+ * another mesh may lie slightly outside of a curved boundary. */
 #define FIELD_MARGIN 1.0
 
-/* result[count * cols] at x[count * dim]: linear in each cell, of values[node_count * cols] at its nodes. A
- * point beside the cells takes the continuation of the nearest one; STATUS_INPUT farther off than
- * FIELD_MARGIN.
+/* result[count * cols] at x[count * dim]: linear interpolation in each cell of values[node_count * cols].
+ * Outside of the cells, that of the nearest cell is continued; STATUS_INPUT farther away than FIELD_MARGIN.
  *
- * A displacement that inverts none of these cells hardly inverts one of a finer mesh. The solver's smooth
- * field may: near a corner its gradients vary within a cell. */
+ * An interpolated displacement that inverts none of these cells hardly inverts a cell of a finer mesh. The
+ * solver's smooth field may, as its gradients vary within a cell near corners. */
 MUST_CHECK enum status field_linear(const struct cells *cells, int64_t cols, const double *values,
                                     int64_t count, const double *x, double *result, struct error *error);
 
@@ -37,10 +36,9 @@ struct field_table {
 };
 
 /* Supports and shape functions at x[count * dim] on a cloud with radius[node_count], m. Where there are
- * cells, neighbours are those visible through them (visibility.h). Moving least squares fit: the nodal values
- * are taken as the parameters of the approximation, u_h = sum_j phi_j u_j, as everywhere in this library;
- * linear fields (quadratic ones with mls2) are reproduced. `what` names the points in messages. The shape
- * functions are *shapes, or options->mls where that is NULL. */
+ * cells, neighbours are those visible through them (visibility.h). Nodal values are taken as the parameters
+ * of the approximation, u_h = sum_j phi_j u_j; linear fields (quadratic ones with mls2) are reproduced.
+ * `what` names the points in messages. The shape functions are *shapes, or options->mls if that is NULL. */
 MUST_CHECK enum status field_table_build(const struct support_options *options, const struct mls *shapes,
                                          const struct cells *cells, const double *radius, int64_t count,
                                          const double *x, const char *what, struct field_table *table,

@@ -20,7 +20,7 @@ static bool same_place(int dim, const double *a, const double *b, double toleran
     return true;
 }
 
-/* Match nodes in any order through cell lists. */
+/* Match nodes in any order by a grid. */
 static enum status match_any_order(int dim, int64_t count, const double *a, const double *b, double tolerance,
                                    int32_t *match, bool *matched, struct error *error)
 {
@@ -136,7 +136,7 @@ double field_percentile(const struct field_statistics *statistics, double percen
                                  : NAN;
 }
 
-/* Drop the chosen nodes outside of B's body, or fail on the first; points: those that are kept. */
+/* Drop the chosen nodes outside of B's body, or fail on the first. points: the coordinates of those kept. */
 static enum status drop_outside(const struct nodal_field *a, const struct nodal_field *b,
                                 const double *spacing, bool skip, struct field_comparison *comparison,
                                 double *points, struct error *error)

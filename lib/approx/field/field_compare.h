@@ -3,9 +3,9 @@
 
 #include "approx/field/field.h"
 
-/* match[a_count]: for each node of cloud A the node of cloud B at the same place, each used once; *matched is
- * false (and match void) when the counts differ or a node of A has none. "Same" is within 1e-9 of the larger
- * extent of the clouds. */
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
+ * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
+ * match[] is then undefined. */
 MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
                                          const double *b, int32_t *match, bool *matched, struct error *error);
 
@@ -20,7 +20,7 @@ struct field_statistics {
     double *sorted;     /* count, ascending, for field_percentile */
 };
 
-/* Statistics of difference[index[i]], i < count. All of them are NaN if one difference is NaN, or if there is
+/* Statistics of difference[index[i]], i < count. They are NaN if one difference is NaN, or if there is
  * none. */
 MUST_CHECK enum status field_statistics(int64_t count, const int64_t *index, const double *difference,
                                         struct field_statistics *statistics, struct error *error);
@@ -29,22 +29,22 @@ void field_statistics_free(struct field_statistics *statistics);
 /* The value that `percent` of the differences do not exceed, linear between two. */
 double field_percentile(const struct field_statistics *statistics, double percent);
 
-/* A field in view: its nodes, with their cells where there are any, and values[cells.node_count * cols]. */
+/* A view of a field: its nodes, with their cells if there are any, and values[cells.node_count * cols]. */
 struct nodal_field {
     struct cells cells;
     int64_t cols;
     const double *values;
-    /* Parameters, supports and shape functions of a field u_h = sum phi_j d_j that was solved for; else NULL:
-     * the values are taken as the parameters of MMLS with the default supports. */
+    /* Parameters, supports and shape functions of a computed field u_h = sum phi_j d_j; NULL: the values are
+     * taken as parameters of MMLS with the default supports. */
     const double *parameters; /* d_j: cells.node_count * cols */
     const double *radius;     /* supports of the nodes, m */
     const struct support_options *support;
     const struct mls *shapes;
 };
 
-/* The difference of field A from field B at the nodes of A. */
+/* The difference of two fields at the nodes of A. */
 struct field_comparison {
-    bool coincide;      /* the two clouds do; else B was interpolated */
+    bool coincide;      /* the clouds coincide; else B was interpolated */
     int64_t count;      /* nodes compared */
     int64_t *node;      /* those nodes, ascending */
     int64_t outside;    /* nodes left out because they lie outside of B's cloud */

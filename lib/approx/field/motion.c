@@ -9,9 +9,10 @@
 #include <string.h>
 
 static const int newton_most = 30;
-static const double step_out = 1e-6; /* a barycentric coordinate below its negative: in the next cell */
+static const double step_out =
+    1e-6; /* a point with a barycentric coordinate below -step_out is in the next cell */
 
-/* Inverse of a dim x dim matrix, stored by rows of 3; its determinant. */
+/* Invert a dim x dim matrix, stored by rows of 3; returns its determinant. */
 static double invert(int dim, double m[3][3], double inverse[3][3])
 {
     if (dim == 2) {
@@ -33,7 +34,7 @@ static double invert(int dim, double m[3][3], double inverse[3][3])
     return d;
 }
 
-/* Columns: the edges of a cell from its first node. */
+/* The columns of m: the edges of a cell from its first node. */
 static void edges(const struct cells *cells, const double *x, int64_t cell, double m[3][3])
 {
     int dim = cells->dim;
@@ -55,7 +56,7 @@ static enum status choose_radii(const struct cells *cells, const struct support_
     return support_radii(options, cells->node_count, spacing, radius, error);
 }
 
-/* Gradients at the nodes, of the source, or of a fit. */
+/* Gradients at the nodes, of the source or of a fit. */
 static enum status find_gradients(const struct cells *cells, const double *u,
                                   const struct motion_source *source, double *gradient, struct error *error)
 {
@@ -138,7 +139,7 @@ int64_t motion_folded(const struct motion *motion, int64_t *first)
     return count;
 }
 
-/* N[dim + 1] of X in a cell. */
+/* N[dim + 1]: the linear shape functions of a cell at X. */
 static inline void shapes(const struct motion *motion, int dim, int64_t cell, const double *X, double *N)
 {
     const double *origin = motion->cells.x + motion->cells.node[cell * (dim + 1)] * dim;
@@ -153,7 +154,7 @@ static inline void shapes(const struct motion *motion, int dim, int64_t cell, co
     }
 }
 
-/* The moved place of X, and its gradient F unless NULL. */
+/* moved = X + u(X), and the deformation gradient F unless NULL. */
 static inline void place(const struct motion *motion, int dim, int64_t cell, const double *X, const double *N,
                          double *moved, double F[3][3])
 {
@@ -196,7 +197,7 @@ void motion_place(const struct motion *motion, int64_t cell, const double *X, do
     place(motion, motion->cells.dim, cell, X, N, moved, NULL);
 }
 
-/* The place by linear interpolation. */
+/* The X that linear interpolation in the cell maps to x. */
 static inline void linear_inverse(const struct motion *motion, int dim, int64_t cell, const double *x,
                                   double *X)
 {
@@ -220,7 +221,7 @@ static inline void linear_inverse(const struct motion *motion, int dim, int64_t 
     }
 }
 
-/* The cell that X lies in, or towards it: the one beyond the face of the most negative N; the same at the
+/* The next cell on the way to X: the one beyond the face with the most negative N; the same at the
  * boundary. */
 static inline int64_t next_cell(const struct motion *motion, int dim, int64_t cell, const double *N)
 {

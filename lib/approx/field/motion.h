@@ -1,17 +1,16 @@
-/* The deformation x = X + u(X) of a body, interpolated from nodal displacements, and its inverse.
- *
- * In a cell the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear N_a of the
- * cell's nodes and the gradients G_a there: of the field, where it is known, or of a quadratic moving least
- * squares fit. It takes the nodal values at the nodes, and is continuous across faces. It reproduces a
- * quadratic field of Hessian H where the G_a are its gradients, as linear interpolation gives sum_a N_a u_a =
- * u + sum_a N_a (X - X_a) H (X - X_a) / 2. */
+/* The deformation x = X + u(X) of a body, interpolated from nodal displacements, and its inverse. In a cell
+ * the displacement is u(X) = sum_a N_a(X) (u_a + G_a (X - X_a) / 2), with the linear shape functions N_a of
+ * its nodes and the gradients G_a there: those of the field if it is known, else those of a quadratic moving
+ * least squares fit. It interpolates the nodal values and is continuous across faces. It reproduces a
+ * quadratic field of Hessian H if the G_a are its gradients, as sum_a N_a u_a = u + sum_a N_a (X - X_a) H (X
+ * - X_a) / 2. */
 #pragma once
 
 #include "approx/cells/cells.h"
 #include "approx/support/support.h"
 
-/* The field u(X) = sum_j phi_j(X) parameters_j whose nodal values are given. Its gradients are used instead
- * of those of a fit. The arrays are the caller's. */
+/* The field u(X) = sum_j phi_j(X) parameters_j, whose gradients are used instead of those of a fit. The
+ * arrays are the caller's. */
 struct motion_source {
     const struct support_options *support;
     const struct mls *shapes; /* of phi */
@@ -28,24 +27,23 @@ struct motion {
     double *moved;    /* node_count * dim: x + u */
 };
 
-/* The cells and u must outlive it. source: NULL for the gradients of a fit of u. linear: no gradients, the
- * displacement is piecewise linear. STATUS_VERDICT where the cloud is too poor for a fit at some node, which
- * `linear` does without; STATUS_INPUT as cells_across. To be freed also on failure. */
+/* The cells and u must outlive the motion. source: NULL for the gradients of a fit of u. linear: no
+ * gradients, the displacement is piecewise linear. STATUS_VERDICT if the nodes do not admit a fit somewhere,
+ * which `linear` does not need; STATUS_INPUT as cells_across. To be freed also on failure. */
 MUST_CHECK enum status motion_build(const struct cells *cells, const double *u, bool linear,
                                     const struct motion_source *source, struct motion *motion,
                                     struct error *error);
 void motion_free(struct motion *motion);
 
-/* Cells whose moved nodes span no positive volume; *first receives the lowest of them. */
+/* The number of cells whose moved nodes span no positive volume; *first receives the lowest of them. */
 int64_t motion_folded(const struct motion *motion, int64_t *first);
 
-/* moved[dim]: the place that X[dim] in this cell moves to. */
+/* moved[dim] = X + u(X) for X[dim] in this cell. */
 void motion_place(const struct motion *motion, int64_t cell, const double *X, double *moved);
 
-/* X[dim]: the place that moves to x. `cell` contains x when it is spanned by its moved nodes. Newton's method
- * starts from the inverse of its linear interpolant, and goes on in the cell beyond a face where X lies
- * there. Returns whether |place(X) - x|
- * <= tolerance was reached; if not, X is the place by linear interpolation in this cell. *residual: |place(X)
- * - x| at the end, m. */
+/* X[dim]: the place that moves to x. The moved nodes of `cell` span a simplex that contains x. Newton's
+ * method starts from the inverse of the linear interpolant, and changes to the cell beyond a face if X leaves
+ * through it. *residual = |X + u(X) - x| at the end, m. Returns whether it is within the tolerance; if not, X
+ * is the place by linear interpolation in this cell. */
 bool motion_inverse(const struct motion *motion, int64_t cell, const double *x, double tolerance, double *X,
                     double *residual);

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Singular values below this share of the largest are noise: the points do not determine that combination. */
+/* Singular values below this share of the largest are noise: the points do not determine the combination. */
 static const double cut = 1e-5;
 
 enum { MOST_NEIGHBOURS = 24, MOST_MONOMIALS = 10 };
@@ -32,7 +32,7 @@ enum status scattered_fit_build(struct scattered_fit *fit, struct error *error)
             extent = fmax(extent, fabs(fit->x[i * dim + a] - fit->x[a]));
         }
     }
-    /* A start only: the search widens it. */
+    /* Only a start: the search widens it. */
     double radius = extent > 0.0 ? 2.0 * extent / pow((double)fit->count, 1.0 / dim) : 1.0;
     if (!(radius < 1e150)) {
         return fail(error, STATUS_INPUT, "interpolation of a table: its points are too far apart");
@@ -50,7 +50,7 @@ void scattered_fit_free(struct scattered_fit *fit)
     fit->x = fit->radius = NULL;
 }
 
-/* Insert a point among the nearest; of equally near ones the earlier row comes first. */
+/* Insert a point into the sorted list of the nearest; of equally near ones the earlier row comes first. */
 static void insert(struct nearest *nearest, int64_t most, int64_t row, double distance)
 {
     if (nearest->count == most && distance >= nearest->distance[most - 1]) {
@@ -80,8 +80,8 @@ static int64_t count_usable(const struct scattered_fit *fit, const struct index_
     return count;
 }
 
-/* The nearest points that are connected or not yet checked: those within a radius, which is doubled until
- * there are enough. */
+/* The nearest points that are connected or not yet checked, within a radius that is doubled until there are
+ * enough. */
 static enum status find_nearest(const struct scattered_fit *fit, const double *x, struct nearest *nearest,
                                 struct error *error)
 {
@@ -110,8 +110,8 @@ static enum status find_nearest(const struct scattered_fit *fit, const double *x
     return STATUS_OK;
 }
 
-/* Mean spacing of the points around row `row`, in the table's unit: n of them within a radius r have pi r^2 /
- * n of the plane each, or 4/3 pi r^3 / n of space, if they lie throughout the body; on its boundary they are
+/* Mean spacing of the points around row `row`, in the table's unit: each of n points within a radius r has
+ * the area pi r^2 / n or the volume 4/3 pi r^3 / n, if they lie throughout the body; on its boundary they are
  * closer. */
 static enum status spacing_around(const struct scattered_fit *fit, int64_t row, double *spacing,
                                   struct error *error)
@@ -129,7 +129,8 @@ static enum status spacing_around(const struct scattered_fit *fit, int64_t row, 
     return status;
 }
 
-/* The nearest connected points: the connections of the nearest ones are checked until all of them exist. */
+/* The nearest connected points: the nearest ones are checked, and unconnected ones replaced, until all are
+ * connected. */
 static enum status find_reached(const struct scattered_fit *fit, int32_t from, const double *x,
                                 struct nearest *nearest, struct error *error)
 {
@@ -163,7 +164,7 @@ static void monomials(int dim, const double *xi, double *p)
     }
 }
 
-/* Columns of a weighted fit, decomposed: U s V^T, those singular values below the cut set to 0. */
+/* Columns of a weighted fit and their decomposition U s V^T; singular values below the cut are set to 0. */
 struct part {
     gsl_matrix *U, *V;
     gsl_vector *s;
@@ -185,8 +186,8 @@ static void part_free(struct part *part)
     gsl_vector_free(part->s);
 }
 
-/* U holds the columns, and receives the left singular vectors. largest: of the singular values, 0: their own.
- */
+/* Decompose the columns in U, which receives the left singular vectors. largest: singular value to which the
+ * cut refers; 0: the largest one. */
 static enum status part_decompose(struct part *part, double largest, struct error *error)
 {
     gsl_vector *work = gsl_vector_alloc(part->s->size);
@@ -277,8 +278,8 @@ static void fill_columns(const struct scattered_fit *fit, const double *x, const
     }
 }
 
-/* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit what the linear ones
- * leave, so that linear fields come out exactly however few the points are. */
+/* phi[i]: the weight of neighbour i in the value at x. The quadratic monomials fit the remainder of the
+ * linear fit, so that linear fields are exact however few the points are. */
 static enum status weights_of(const struct scattered_fit *fit, const double *x, const struct nearest *nearest,
                               double *phi, struct error *error)
 {

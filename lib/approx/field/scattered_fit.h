@@ -1,10 +1,8 @@
 /* Scattered-data fit: moving least squares on measured points that may lie on a curve or a surface, or be
- * few.
- *
- * At each x the nearest points, weighted by the quartic spline, are fitted by the linear basis in local
+ * few. At each x the nearest points, weighted by the quartic spline, are fitted by the linear basis in local
  * scaled coordinates, and the remainder by the quadratic monomials. Combinations of monomials that the points
- * do not determine (singular values below a cut) are left out, so that the fit is constant along directions
- * in which nothing was measured. Linear fields are reproduced, however few the points. */
+ * do not determine (singular values below a cut) are left out. So the fit is constant along directions in
+ * which there are no points. Linear fields are reproduced, however few the points are. */
 #pragma once
 
 #include "approx/points/point_grid.h"
@@ -22,19 +20,19 @@ struct scattered_fit {
     double unit;       /* m; scales coordinates and values */
     struct edge_paths
         *paths;         /* unless NULL, only rows connected to a node are used (scattered_fit_evaluate) */
-    double *x, *radius; /* what scattered_fit_build() makes: the points, count * dim, in a grid */
+    double *x, *radius; /* set by scattered_fit_build: the points, count * dim, in a grid */
     struct point_grid grid;
 };
 
-/* Sort the points into a grid: the other members are set. STATUS_INPUT for coordinates that are not finite
- * or too far apart for a grid. */
+/* Sort the points into a grid. The other members are the caller's. STATUS_INPUT for coordinates that are not
+ * finite or too far apart for a grid. */
 MUST_CHECK enum status scattered_fit_build(struct scattered_fit *fit, struct error *error);
 void scattered_fit_free(struct scattered_fit *fit);
 
-/* values[value_count] at x[dim] (m), a place near node `from`. With `paths` only rows connected to that node
- * are used (edge_paths.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest
- * point and *spacing the mean spacing of the points around that one (m; 0 for a single one), so that a caller
- * can refuse to extrapolate far. */
+/* values[value_count] at x[dim], m, near node `from`. With `paths` only rows connected to that node are used
+ * (edge_paths.h); STATUS_INPUT if there are none. *distance receives the distance to the nearest point, and
+ * *spacing the mean spacing of the points around that one, m (0 for a single point), so that a caller can
+ * refuse to extrapolate far. */
 MUST_CHECK enum status scattered_fit_evaluate(const struct scattered_fit *fit, int32_t from, const double *x,
                                               double *values, double *distance, double *spacing,
                                               struct error *error);

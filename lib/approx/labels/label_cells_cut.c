@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A cut edge of a cell, and its rank among the cuts of the cell: edges of larger order[0] are cut first;
- * among equal ones those of lower order[1], then those of lower number. */
+/* A cut edge of a cell, and its rank among the cuts of the cell: edges with larger order[0] are cut first;
+ * among equal ones those with lower order[1], then those with lower number. */
 struct bisection {
     int32_t end[2], node;
     double order[2];
@@ -17,8 +17,8 @@ static bool on_interface(const struct cutting *cutting, int32_t node)
     return node >= cutting->lattice->node_count || cutting->lattice->on[node];
 }
 
-/* The label of a piece: that of its points off the interfaces, or the one at its middle where there are none;
- * where points off the interfaces are all left out, the piece is left out, too, so that gaps stay open. */
+/* The label of a piece: that of its points off the interfaces, or else that at its middle. A piece whose
+ * points off the interfaces are all left out is left out, too, so that gaps stay open. */
 static int32_t label_of(const struct cutting *cutting, const int32_t *node)
 {
     const struct lattice *lattice = cutting->lattice;
@@ -55,10 +55,9 @@ static enum status append(struct cutting *cutting, const int32_t *node, struct e
     return STATUS_OK;
 }
 
-/* Neighbours must agree on the order of the edges of a common face. Long edges go first, and of equal
- * diagonals of cubes, two of which meet in a face, the one whose ends stand at an even place: the parity rule
- * of Labelle and Shewchuk 2007, section 3. In the plane faces are edges: there the shorter diagonal goes
- * first. */
+/* The order in which edges are cut. Neighbours must agree on it for the edges of a common face. Long edges
+ * are first; of two equal diagonals of cubes in a face, the one whose ends are at an even place (the parity
+ * rule of Labelle and Shewchuk 2007, section 3). In 2D faces are edges, and the shorter diagonal is first. */
 static void set_order(const struct cutting *cutting, const int32_t *node, struct bisection *bisection)
 {
     const struct lattice *lattice = cutting->lattice;
@@ -154,7 +153,7 @@ static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct
     return status;
 }
 
-/* Collect the second cuts of all cells and find where they lie. */
+/* Collect the second cuts of all cells and locate them. */
 static enum status find_seconds(struct cutting *cutting, struct error *error)
 {
     const struct lattice *lattice = cutting->lattice;

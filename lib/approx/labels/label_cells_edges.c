@@ -6,9 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A cut within so much of an edge's length moves the point. Edges along the axes and diagonals of cubes:
- * Labelle and Shewchuk 2007, section 3, for the best bound of the angles; diagonals of sides, where leaves of
- * two sizes meet, and triangles: between these. */
+/* A cut moves a point if it is nearer than this share of the edge's length. For edges along the axes and half
+ * diagonals of cubes: Labelle and Shewchuk 2007, section 3, for the best bound of the angles. For diagonals
+ * of sides, where leaves of two sizes meet, and for triangles: values between these. */
 static const double near_axis = 0.24999, near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
 
 static int compare_keys(const void *left, const void *right)
@@ -17,7 +17,7 @@ static int compare_keys(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* Count the edges of cells between points of different labels; store them, too, if the arrays exist. */
+/* Count the edges of cells between points of different labels; store them if the array exists. */
 static int64_t collect(const struct lattice *lattice, uint64_t *key)
 {
     int corners = lattice->dim + 1;
@@ -79,10 +79,9 @@ bool same_side(const struct lattice *lattice, int32_t a, int32_t b)
     return a == b || (!lattice->keep[a] && !lattice->keep[b]);
 }
 
-/* The function whose zero is the interface between two labels: the share of the one less that of the other.
- * Between the body and what is left out it is that of the body's label with the largest share less that of
- * the others', so that a layer of a third label at the surface, too thin for the lattice, does not move the
- * surface. */
+/* The function whose zero is the interface between two labels: the difference of their shares. Between the
+ * body and its outside, it is the difference of the largest shares of labels of the body and of others, so
+ * that a thin layer of a third label at the surface does not move the surface. */
 static double difference(const struct lattice *lattice, const struct label_mix *mix, int32_t a, int32_t b)
 {
     if (lattice->keep[a] != lattice->keep[b]) {
@@ -92,8 +91,8 @@ static double difference(const struct lattice *lattice, const struct label_mix *
     return label_share(mix, a) - label_share(mix, b);
 }
 
-/* The fraction of the way from p to q at which this difference ceases to be positive (`strictly`), or begins
- * to be negative. */
+/* The fraction of the way from p to q at which this difference ceases to be positive (`strictly`), or becomes
+ * negative. */
 static double change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b,
                      bool strictly)
 {
@@ -130,7 +129,7 @@ static double length_of(const struct lattice *lattice, int64_t edge)
 
 double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b)
 {
-    /* Where a third label lies between the two, their shares are equal, 0, over a stretch: its middle. */
+    /* If a third label lies between the two, both shares are 0 over an interval: take its middle. */
     return (change(lattice, p, q, a, b, true) + change(lattice, p, q, a, b, false)) / 2;
 }
 
@@ -142,8 +141,8 @@ static double cut_of(const struct lattice *lattice, int64_t edge)
                           lattice->label[end[1]]);
 }
 
-/* A point has moved onto an interface: the edges that end there are cut no more, but those to a third label
- * that the interface with that is far from. */
+/* A point was moved onto an interface: the edges that end there are no longer cut, except those to a third
+ * label whose interface is far away. */
 static void take_cuts(struct lattice *lattice, int64_t node, int32_t beyond)
 {
     for (int64_t i = lattice->edge_ptr[node]; i < lattice->edge_ptr[node + 1]; i++) {

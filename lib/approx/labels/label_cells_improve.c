@@ -8,13 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes of interfaces are moved as long as the cells at them score at least this, or as before. */
+/* Nodes of interfaces are moved as long as the cells at them keep this score, or their own if it is lower. */
 static const double goal = 1.3;
-/* Cells that score less are improved. In the end nodes that are more than so many voxels off their interface
- * are brought nearer to it, down to that score. */
+/* Cells with a lower score are improved. In the end, nodes farther than last_slack voxels from their
+ * interface are moved towards it, while scores stay above last_score. */
 static const double least_score = 1.25, last_score = 1.02, last_slack = 0.55;
-/* Nodes that were separated move towards the middle of their own cells, by this share of the distance and at
- * most so many voxels. */
+/* Separated nodes move towards the middle of their own cells by this share of the distance, at most this many
+ * voxels. */
 static const double separation = 0.25, most_separation = 0.5;
 enum { FIT_SWEEPS = 4 };
 
@@ -31,7 +31,7 @@ static double label_cells_score(const struct label_cells *mesh, int64_t cell)
             fmin(angles[0] / LABEL_CELLS_LEAST_ANGLE, (180 - angles[1]) / (180 - LABEL_CELLS_MOST_ANGLE));
         return fmin(of_angles, cell_quality(&cells, cell) / POOR_QUALITY);
     }
-    /* Inverted: its volume, of the product of its edges at one corner. */
+    /* Inverted: its volume over the product of its edges at one corner. */
     double product = 1;
     for (int k = 1; k <= dim; k++) {
         product *= vector_distance(dim, x[k], x[0]);
@@ -77,7 +77,7 @@ void star_move(const struct shaping *shaping, int64_t node, const double target[
 
 /* ---- onto the interfaces ---- */
 
-/* Of the labels that meet at a node, how many are kept. */
+/* The number of kept labels among those that meet at a node. */
 static int kept_labels(const struct shaping *shaping, int64_t node)
 {
     int count = 0;
@@ -109,8 +109,8 @@ static void move_there(const struct shaping *shaping, double voxel, int64_t node
     }
 }
 
-/* Nodes on the rim of a part, where three labels meet, and others that are off their interface. In a gap
- * between labels that no cell fills, the label there counts as well. */
+/* Move nodes on the rim of a part, where three labels meet, and nodes that are off their interface, to their
+ * places. In a gap between labels that no cell fills, the label there counts, too. */
 static void fit(const struct shaping *shaping)
 {
     const struct labels *labels = &shaping->labels;
@@ -139,7 +139,7 @@ static void fit(const struct shaping *shaping)
         if (!(rim[0] != 0 && star_make_room(shaping, goal, n, target))) {
             move_there(shaping, voxel, n, target);
         }
-        /* Where the line on which labels meet cannot be reached, the surface counts, or the interface. */
+        /* If the line on which labels meet cannot be reached, use the surface or the interface. */
         memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
         if (node_project(shaping, n, target)) {
             move_there(shaping, voxel, n, target);
@@ -183,8 +183,8 @@ static void separate(const struct shaping *shaping)
     }
 }
 
-/* How far a node of interfaces is off them, m: on the boundary from the surface of the body, elsewhere from
- * where the label there gives way to another one that meets at the node, or to a gap that cells fill. */
+/* The distance of a node from its interfaces, m: on the boundary from the surface of the body; elsewhere from
+ * the place where the label there ends at another one of the node, or at a gap that cells fill. */
 static double distance(const struct shaping *shaping, int64_t node)
 {
     const struct labels *labels = &shaping->labels;
@@ -208,7 +208,8 @@ static double distance(const struct shaping *shaping, int64_t node)
     return least;
 }
 
-/* Where a node that is still off its rim or interface belongs; false where it is near or there is none. */
+/* target[]: the place of a node that is still off its rim or interface; false if it is near, or there is no
+ * such place. */
 static bool find_astray(const struct shaping *shaping, int64_t node, double target[3])
 {
     int dim = shaping->mesh->dim;
@@ -226,8 +227,7 @@ static bool find_astray(const struct shaping *shaping, int64_t node, double targ
            node_project(shaping, node, target);
 }
 
-/* Bring nodes that are still off their rim or interface as near as cells within the bounds of the angles
- * allow. */
+/* Move nodes that are still off their rim or interface as near to it as the bounds of the angles allow. */
 static void settle(const struct shaping *shaping)
 {
     struct label_cells *mesh = shaping->mesh;

@@ -1,4 +1,4 @@
-/* Places where parts of the body share no more than a node or an edge. */
+/* Places where parts of the body share only a node or an edge. */
 #include "approx/labels/label_cells_private.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Crevices at an angle whose cosine is larger are filled at the tip: 60 degrees, the least angle of the
- * lattice's own cells. Under load the walls of sharper ones pass through each other. */
+/* The tips of crevices with a larger cosine are filled: 60 degrees, the least angle of the lattice's own
+ * cells. Under load the walls of sharper crevices pass through each other. */
 static const double sharpest = 0.5;
 
 /* Number the groups of cells at a node that are connected by faces at it; returns the number of groups.
@@ -59,7 +59,7 @@ static int32_t count_groups(struct label_cells_keeping *keeping, const struct la
 
 /* ---- joining ---- */
 
-/* Cells that change sides together, taken into the body or left out of it, and their labels then. */
+/* Cells that are added to the body or removed from it together, and their new labels. */
 enum { CHANGE_MOST = 16 };
 struct change {
     int count;
@@ -67,7 +67,7 @@ struct change {
     int32_t label[CHANGE_MOST];
 };
 
-/* The number of groups at the nodes of the cells, each node once, less one for each node. */
+/* The number of groups at the nodes of the cells minus one, summed over the nodes. */
 static int64_t pinches_about(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                              const struct change *change)
 {
@@ -156,7 +156,7 @@ static void find_link(struct label_cells_keeping *keeping, const struct label_ce
     forget_groups(keeping, star, node);
 }
 
-/* The label beyond a face of a cell where the body ends; 0 where it does not. */
+/* The label beyond a face of a cell at which the body ends; 0 if there is no such face. */
 static int32_t label_beyond(const struct label_cells_keeping *keeping, int64_t cell)
 {
     for (int k = 0; k <= keeping->cells.dim; k++) {
@@ -262,8 +262,8 @@ static bool join_at(struct label_cells_keeping *keeping, const struct label_cell
 
 void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star)
 {
-    /* It ends: a change at a node leaves fewer nodes by which alone parts hang together, and a crevice that
-     * is filled no more of them. */
+    /* This ends: a change at a node leaves fewer nodes at which parts share only a node or an edge, and a
+     * filled crevice adds none. */
     for (bool changed = true; changed;) {
         changed = fill_crevices(keeping, star);
         for (int64_t n = 0; n < keeping->mesh->node_count; n++) {
@@ -277,8 +277,8 @@ void label_cells_join(struct label_cells_keeping *keeping, const struct label_ce
 
 /* ---- cutting apart ---- */
 
-/* Give the cells of each body at a node but the first a node of their own, at the same place. Returns how
- * many bodies there are; without `fresh` they are counted only. */
+/* Give the cells of each body at a node, except the first, a node of their own at the same place. Returns the
+ * number of bodies; without `fresh` they are only counted. */
 static int32_t part_bodies(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                            int64_t node, bool fresh)
 {

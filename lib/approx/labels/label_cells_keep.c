@@ -3,7 +3,6 @@
 #include "base/lists.h"
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- stars ---- */
@@ -52,7 +51,7 @@ void star_free(struct label_cells_star *star)
 
 /* ---- the boundary ---- */
 
-/* Count the boundary facets of the wanted cells; store them, too, if the arrays exist. */
+/* Count the boundary facets of the wanted cells; store them if the arrays exist. */
 static int64_t find_facets(const struct label_cells_keeping *keeping, int32_t *facet, int32_t *side)
 {
     int dim = keeping->cells.dim;
@@ -114,8 +113,7 @@ enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struc
     return label_cells_compact(mesh, error);
 }
 
-/* The connected body of wanted cells that holds a cell: its volume and how many cells it has. Gives these the
- * number. */
+/* Number the connected body of wanted cells that contains a cell. Returns its volume; *count: its cells. */
 static double fill_body(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t *count)
 {
     int corners = keeping->cells.dim + 1;
@@ -139,8 +137,7 @@ static double fill_body(struct label_cells_keeping *keeping, int64_t first, int3
     return volume;
 }
 
-/* Of the connected bodies leave out those about a single point of the lattice, which has no more cells about
- * it than that, or all but the largest. */
+/* Leave out connected bodies around a single point of the lattice, or all but the largest body. */
 static void keep_bodies(struct label_cells_keeping *keeping, bool largest_only)
 {
     struct label_cells *mesh = keeping->mesh;

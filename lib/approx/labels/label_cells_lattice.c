@@ -20,7 +20,7 @@ struct points {
     struct error *error;
 };
 
-/* Place of a point in halves of the finest edge. */
+/* Coordinates of a point in halves of the finest edge. */
 static void place_of(const struct points *points, int64_t point, int32_t place[3])
 {
     bool centre = point >= points->corners;
@@ -51,8 +51,8 @@ static void coordinates(const struct points *points, int64_t point, double x[])
     }
 }
 
-/* The lattice stands fast in the world, its coarsest cubes at multiples of their edge, with two beyond the
- * labels and their smoothing on each side. */
+/* Size the lattice. It is fixed in world coordinates: its coarsest cubes are at multiples of their edge, with
+ * two beyond the labels and their smoothing on each side. */
 static enum status size_points(struct points *points, struct error *error)
 {
     const struct labels *labels = points->lattice->labels;
@@ -147,7 +147,7 @@ static enum status add_tetrahedron(void *context, const int32_t corner[4][3])
     return add_cell(points, point);
 }
 
-/* The two triangles above the edge from each point to the next in its row. */
+/* Add the two triangles above the edge from each point to the next in its row. */
 static enum status add_triangles(struct points *points)
 {
     for (int64_t p = 0; p < points->total; p++) {
@@ -163,7 +163,7 @@ static enum status add_triangles(struct points *points)
     return STATUS_OK;
 }
 
-/* The finest cubes that an interface of a label of fine[] (NULL: of any) passes. */
+/* Mark the finest cubes that contain an interface of a label of fine[] (NULL: of any). */
 static void find_wanted(const struct points *points, const bool *fine, const int64_t cubes[3], bool *wanted)
 {
 #pragma omp parallel for schedule(static)
@@ -185,7 +185,7 @@ static void find_wanted(const struct points *points, const bool *fine, const int
     }
 }
 
-/* The centres of the finest cubes that lie in the body. */
+/* Mark the finest cubes whose centres lie in the body. */
 static void find_inside(const struct points *points, const int64_t cubes[3], bool *inside)
 {
 #pragma omp parallel for schedule(static)
@@ -255,7 +255,7 @@ static enum status make_nodes(struct points *points, struct error *error)
     return STATUS_OK;
 }
 
-/* The levels that the finest cubes need, at interfaces and for sizes. */
+/* Count the levels of cubes needed at interfaces and for sizes. */
 static enum status count_levels(const struct label_cells_options *options, struct points *points,
                                 struct error *error)
 {

@@ -5,7 +5,7 @@
 #include "base/sets.h"
 #include "base/vector.h"
 
-/* The grid of the labels without the axis across a slice. */
+/* The grid of the labels; for a slice without the axis across it. */
 struct grid {
     int64_t size[3];
     int axis[3]; /* of the labels' grid */
@@ -44,8 +44,8 @@ static int sign_of(const struct labels *labels, const struct grid *grid)
     return determinant3(edge[0], edge[1], edge[2]) > 0 ? 1 : -1;
 }
 
-/* Whether a cell of the label lies at a voxel or at one that touches it; of a label that is not kept, whether
- * no cell does, or the grid ends there. */
+/* Whether a cell of the label contains a voxel or one that touches it. For a label that is not kept: whether
+ * one of these voxels is in no cell, or beyond the grid. */
 static bool is_near(const struct grid *grid, const struct label_cells *mesh, const int32_t *owner,
                     int64_t voxel, int32_t label, bool kept)
 {
@@ -66,7 +66,7 @@ static bool is_near(const struct grid *grid, const struct label_cells *mesh, con
     return false;
 }
 
-/* owner[voxels]: the cell that each voxel's centre lies in, -1: none. */
+/* owner[voxels]: the cell that contains the voxel's centre, or -1. */
 static enum status own_voxels(const struct labels *labels, const struct label_cells *mesh,
                               const struct grid *grid, int32_t *owner, struct error *error)
 {
@@ -106,7 +106,7 @@ enum status label_cells_lost(const struct labels *labels, const bool *keep, cons
     return STATUS_OK;
 }
 
-/* Voxel number k of those with a common face, 0 to 5; -1 beyond the grid. */
+/* Neighbour k, 0 to 5, of a voxel by faces; -1 beyond the grid. */
 static int64_t beside(const struct grid *grid, int64_t voxel, int k)
 {
     const int64_t *n = grid->size;
@@ -116,8 +116,8 @@ static int64_t beside(const struct grid *grid, int64_t voxel, int k)
     return place < 0 || place >= n[k / 2] ? -1 : voxel + (place - at[k / 2]) * stride[k / 2];
 }
 
-/* Voxels of the labels that are kept take the body of their neighbours, ring by ring: body[voxels], -1 at
- * first where no cell is. Bodies that meet so are joined in set[]. */
+/* Voxels of kept labels without a cell (body[] = -1) take the body of their neighbours, ring by ring. Bodies
+ * that meet are joined in set[]. */
 static enum status flood(const struct labels *labels, const bool *keep, const struct grid *grid,
                          int32_t *body, int32_t *set, struct label_cells_apart *apart, struct error *error)
 {

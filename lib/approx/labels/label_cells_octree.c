@@ -19,7 +19,7 @@ static int64_t index_of(const int64_t count[3], const int64_t at[3])
     return (at[2] * count[1] + at[1]) * count[0] + at[0];
 }
 
-/* Mark what touches a marked cube: along each axis in turn. */
+/* Mark all cubes that touch a marked one, along each axis in turn. */
 static enum status dilate(const int64_t count[3], bool *marked, struct error *error)
 {
     SCRATCH bool *before = NULL;
@@ -37,8 +37,8 @@ static enum status dilate(const int64_t count[3], bool *marked, struct error *er
     return status;
 }
 
-/* Replace the wishes of the cubes of a level by those of their parents, in place: the index of a parent is
- * not larger than that of its children. */
+/* Replace the wishes of the cubes of a level by those of their parents, in place: the index of a parent is at
+ * most that of its children. */
 static void hand_up(const int64_t fine[3], const int64_t coarse[3], uint8_t *wish)
 {
     for (int64_t i = 0; i < cubes(fine); i++) {
@@ -61,8 +61,8 @@ enum status octree_make(int levels, const int64_t count[3], uint8_t *wish, struc
         }
     }
     for (int l = levels - 1; l > 0; l--) {
-        /* Cubes that touch one that is split, or a wish that says so, are of this level at least: their
-         * parents are split. */
+        /* Cubes that touch a split one, or a wish with `around`, have at least this level: their parents are
+         * split. */
         const int64_t *fine = octree->count[l], *coarse = octree->count[l - 1];
         RETURN_IF_ERROR(NEW_ARRAY(&marked, cubes(fine), error));
         for (int64_t i = 0; i < cubes(fine); i++) {
@@ -97,7 +97,7 @@ static bool is_split(const struct octree *octree, int level, const int64_t at[3]
            octree->split[level][index_of(octree->count[level], at)];
 }
 
-/* Whether there is a cube of that level there, as a leaf or split. */
+/* Whether the octree has a cube of this level there, as a leaf or split. */
 static bool exists(const struct octree *octree, int level, const int64_t at[3])
 {
     const int64_t parent[3] = {at[0] / 2, at[1] / 2, at[2] / 2};
@@ -122,7 +122,7 @@ static void centre_of(const int64_t at[3], int32_t size, int32_t centre[3])
     }
 }
 
-/* Corner of the side: 0 to 3 around it. */
+/* Corner 0 to 3 of the side, in cyclic order. */
 static void corner_of(const struct side *side, int corner, int32_t point[3])
 {
     static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -132,8 +132,8 @@ static void corner_of(const struct side *side, int corner, int32_t point[3])
     point[f] = (int32_t)(2 * (side->at[f] + around[corner][1])) * side->size;
 }
 
-/* Two leaves of one size: a tetrahedron for each edge of the side between them, or two where the edge is
- * halved by smaller leaves at it. */
+/* Two leaves of one size: a tetrahedron for each edge of their common side, or two if smaller leaves halve
+ * the edge. */
 static enum status between_equals(const struct side *side, const int64_t beyond[3])
 {
     static const int outward[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
@@ -167,8 +167,8 @@ static enum status between_equals(const struct side *side, const int64_t beyond[
     return STATUS_OK;
 }
 
-/* The neighbour of the leaf is larger: the side is cut along the diagonal from the middle of the larger side;
- * a tetrahedron of each triangle with each of the two centres. */
+/* The neighbour of the leaf is larger: its side is cut along the diagonal from the middle of the larger side.
+ * Each triangle makes a tetrahedron with each of the two centres. */
 static enum status join_larger(const struct side *side, const int64_t beyond[3])
 {
     const int64_t larger[3] = {beyond[0] / 2, beyond[1] / 2, beyond[2] / 2};

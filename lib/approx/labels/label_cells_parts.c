@@ -1,5 +1,5 @@
-/* Parts of a label, which only give names to facets: their rims are lines on the boundary, and within the
- * body they have no interface. */
+/* Parts of a label. They only name facets: their rims are lines on the boundary, and there is no interface
+ * between them within the body. */
 #include "approx/labels/label_cells_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A facet that is alone at a node turns the rim there; beyond this angle, degrees, once the nodes are on
- * their line, it is too flat for the cell behind it. */
+/* A facet that is the only one of its part at a node turns the rim there. If its angle is larger than this,
+ * degrees, once the nodes are on the rim, it is too flat for the cell behind it. */
 static const double most_angle = 120.0;
 
 static bool is_part_of(const struct label_cells_options *options, int32_t a, int32_t b)
@@ -23,8 +23,8 @@ struct facets_at {
     int32_t *facet; /* facet_count * dim */
 };
 
-/* The largest angle of a facet, degrees, once all corners are where the labels meet; 180 where one cannot be
- * put there. */
+/* The largest angle of a facet, degrees, with its corners moved to the line where the labels meet; 180 if a
+ * corner cannot be moved there. */
 static double angle_on_line(const struct shaping *shaping, int64_t facet, const uint16_t label[3])
 {
     const struct label_cells *mesh = shaping->mesh;
@@ -46,8 +46,8 @@ static double angle_on_line(const struct shaping *shaping, int64_t facet, const 
     return most;
 }
 
-/* The facet that is alone at a node among facets of one other part of the same label, whose label *beyond
- * receives; -1 where there is none. */
+/* The facet that is the only one of its part at a node where the others belong to one other part of the same
+ * label; *beyond receives the label of that part. -1: none. */
 static int64_t find_lone(const struct label_cells_options *options, const struct label_cells *mesh,
                          const struct facets_at *at, int64_t node, int32_t *beyond)
 {
@@ -55,7 +55,7 @@ static int64_t find_lone(const struct label_cells_options *options, const struct
     if (last - first < 3) {
         return -1;
     }
-    /* Of three facets two have the label of all the others. */
+    /* At least two of three facets have the label of all but one. */
     int32_t label[3];
     for (int k = 0; k < 3; k++) {
         label[k] = mesh->side[2 * (int64_t)at->facet[first + k]];
@@ -95,7 +95,7 @@ static void straighten(const struct label_cells_options *options, const struct s
     }
 }
 
-/* The two parts whose facets meet at a node, and what lies beyond. */
+/* rim[3]: the two parts whose facets meet at a node, and the label beyond the boundary. */
 static void find_rim(const struct label_cells_options *options, const struct label_cells *mesh,
                      const struct facets_at *at, int64_t node, uint16_t rim[3])
 {

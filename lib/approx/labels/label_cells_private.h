@@ -20,8 +20,8 @@ struct lattice {
     /* Edges between points of different labels: */
     int64_t edge_count;
     int32_t *end; /* edge_count * 2, the lower node first; ascending */
-    double
-        *cut; /* edge_count: where it is cut, as a fraction from its first end; 0: it is not, as an end is */
+    double *cut;  /* edge_count: place of the cut, as a fraction from the first end; 0: not cut, as an end is
+                     on the interface */
     int64_t *edge_ptr; /* node_count + 1: the edges at each node, */
     int32_t *edge_idx;
     bool *on;       /* node_count: moved onto an interface */
@@ -33,21 +33,21 @@ MUST_CHECK enum status lattice_make(const struct labels *labels, const struct la
                                     struct lattice *lattice, struct error *error);
 void lattice_free(struct lattice *lattice);
 
-/* Whether two labels are one to the body: the same, or both left out. */
+/* Whether there is no interface between two labels: they are the same, or both are left out. */
 bool same_side(const struct lattice *lattice, int32_t a, int32_t b);
 
 /* The fraction of the way from p, of label a, to q, of label b, at which the interface lies. */
 double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a,
                       int32_t b);
 
-/* Find where edges are cut, and move points that lie near a cut onto it. */
+/* Locate the cuts of edges, and move points near a cut onto it. */
 MUST_CHECK enum status lattice_cut(struct lattice *lattice, struct error *error);
 
 /* The edge between two nodes, -1 when it is not cut. */
 int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q);
 
-/* Cut the lattice's cells into cells of one label each, outside with them. (*between)[cell_count], allocated:
- * cells all of whose nodes lie on interfaces. */
+/* Cut the lattice's cells into cells of one label each, including the outside. (*between)[cell_count], to be
+ * freed: cells all of whose nodes lie on interfaces. */
 MUST_CHECK enum status lattice_cells(const struct lattice *lattice, struct label_cells *mesh, bool **between,
                                      struct error *error);
 
@@ -56,12 +56,12 @@ enum { OCTREE_MOST_LEVELS = 8 };
 struct octree {
     int levels;                           /* level 0 is the coarsest, levels - 1 the finest */
     int64_t count[OCTREE_MOST_LEVELS][3]; /* cubes of each level along each axis */
-    bool *split[OCTREE_MOST_LEVELS]; /* of each cube: whether it, or the one that it would be in, is split;
-                                        NULL for the finest */
+    bool *split[OCTREE_MOST_LEVELS]; /* of each cube of a level: whether it is split, if it exists; NULL for
+                                        the finest */
 };
 
-/* The refinement that is wanted at a cube of the finest level: the level at least, and whether all cubes that
- * touch it must have that level, too. */
+/* The wanted refinement at a cube of the finest level: the least level, and whether all cubes that touch it
+ * must have that level, too. */
 #define OCTREE_WISH(level, around) ((uint8_t)(2 * (level) + (around)))
 
 /* Refine an octree so that wish[] of the finest cubes holds, and cubes that touch differ by at most one
@@ -70,24 +70,25 @@ MUST_CHECK enum status octree_make(int levels, const int64_t count[3], uint8_t *
                                    struct error *error);
 void octree_free(struct octree *octree);
 
-/* Call visit(context, corner) for each tetrahedron between the leaves: four points, each x, y, z in halves of
- * the finest cube's edge. Stops when it fails. */
+/* Call visit(context, corner) for each tetrahedron between the leaves: four points, x, y, z in halves of the
+ * finest cube's edge. Stops on the first failure. */
 typedef enum status octree_visitor(void *context, const int32_t corner[4][3]);
 MUST_CHECK enum status octree_cells(const struct octree *octree, octree_visitor *visit, void *context);
 
-/* The level of an octree, 0 for cubes of edge `spacing`, whose cells' edges are nearest to `size` by ratio.
- */
+/* The level of an octree whose cells have edges nearest to `size` by ratio; level 0 has cubes of edge
+ * `spacing`. */
 int size_level(double spacing, double size);
 
-/* Raise wish[] of the finest cubes (count[3], the first one's centre at low[3], their edge, m) to the levels
- * that the sizes ask for; cubes beyond the sizes' cells keep theirs. inside[cubes]: whether the centre lies
- * in the body. *unsized: the share of these that lies beyond, of which there must be less than all. */
+/* Raise wish[] of the finest cubes to the levels that the sizes need. There are count[3] cubes of this edge,
+ * the centre of the first at low[3], m. Cubes outside of the cells with sizes keep their wish. inside[cubes]:
+ * whether the centre lies in the body. *unsized: the share of these outside of the cells with sizes;
+ * STATUS_INPUT if it is 1. */
 MUST_CHECK enum status sizes_wish(const struct label_cells_options *options, int levels,
                                   const int64_t count[3], const double low[3], double edge,
                                   const bool *inside, uint8_t *wish, double *unsized, struct error *error);
 
-/* Directions in which a place is searched for: along the axes and between them, and one of no length. Returns
- * the length of direction[dim]. */
+/* Directions of a search, along the axes and between them, and one of length zero: their number; and
+ * direction[dim] with its length. */
 static inline int label_cells_directions(int dim)
 {
     return dim == 2 ? 9 : 27;
@@ -102,7 +103,7 @@ static inline double label_cells_direction(int dim, int number, double direction
     return vector_length(dim, direction);
 }
 
-/* Cells at each node and the labels that meet there. */
+/* The cells at each node, and the labels that meet there. */
 enum { LABEL_CELLS_MOST_LABELS = 8 };
 struct label_cells_star {
     int64_t *ptr;  /* node_count + 1 */
@@ -110,36 +111,36 @@ struct label_cells_star {
     uint16_t (*label)[LABEL_CELLS_MOST_LABELS];
     uint8_t *labels; /* node_count: labels that meet; 1: not on an interface */
 };
-/* Labels are those of cells that are wanted[cell_count] and of facets, with whole[] in place of each; NULL:
- * of all cells, as they are. */
+/* The labels are those of cells with wanted[cell_count] (NULL: of all cells) and of facets, replaced by
+ * whole[] unless that is NULL. */
 MUST_CHECK enum status star_make(const struct label_cells *mesh, const bool *wanted, const int32_t *whole,
                                  struct label_cells_star *star, struct error *error);
 void star_free(struct label_cells_star *star);
 
-/* The labels with whole[] in place of each: result->label is allocated, or that of `labels` where there are
- * no parts. */
+/* The labels, each replaced by whole[]: result->label is to be freed, or is that of `labels` if there are no
+ * parts. */
 MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
                                             struct labels *result, struct error *error);
 
-/* Which cells make the body, and its boundary. */
+/* The cells of the body. */
 struct label_cells_kept {
     bool *wanted;    /* cell_count: of the body; the others lie around it */
     bool *apart;     /* node_count: nodes that have others at the same place */
-    double *dropped; /* labels->count: the volume of bodies that are left out, m3 */
+    double *dropped; /* labels->count: the volume of bodies left out, m3 */
 };
 
-/* Choose the cells of labels that are wanted, without specks, join or cut apart what hangs together by nodes
- * or edges alone, and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces. */
+/* Choose the cells of wanted labels, without specks; join or cut apart parts that share only nodes or edges;
+ * and find the boundary. between[cell_count]: cells all of whose nodes lie on interfaces. */
 MUST_CHECK enum status label_cells_keep(const struct labels *labels,
                                         const struct label_cells_options *options, const bool *between,
                                         struct label_cells *mesh, struct label_cells_kept *kept,
                                         struct error *error);
 void label_cells_kept_free(struct label_cells_kept *kept);
 
-/* Drop the cells that are not wanted, and the nodes of none. */
+/* Drop the cells that are not wanted, and nodes without cells. */
 MUST_CHECK enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struct error *error);
 
-/* Number the nodes anew, without those of no cell. */
+/* Renumber the nodes without those that have no cell. */
 MUST_CHECK enum status label_cells_compact(struct label_cells *mesh, struct error *error);
 
 /* The cells that are kept, and scratch. */
@@ -155,12 +156,12 @@ struct label_cells_keeping {
     int32_t *from;  /* cell_count */
 };
 
-/* Resolve places where parts share no more than a node or an edge (non-manifold boundary): add cells all of
- * whose nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
+/* Resolve places where parts share only a node or an edge (non-manifold boundary): add cells all of whose
+ * nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
  * interface. */
 void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star);
 
-/* Cut bodies, whose numbers stand in group[], apart where they touch by a node or an edge. */
+/* Separate the bodies, numbered in group[], where they share only a node or an edge. */
 MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping,
                                              const struct label_cells_star *star, struct error *error);
 
@@ -177,38 +178,38 @@ struct shaping {
     double reach;       /* and how far a node may be off its rim: the spacing, m */
 };
 
-/* (*rim)[node_count], allocated: the two parts whose facets meet at a node, and what lies beyond; zeros where
- * no rim is. In 3D facets are first named anew, mesh->side, where the rim turns so sharply at a node that
- * no cell has room behind it: where a facet is the only one of its part there, and flat on the rim. */
+/* (*rim)[node_count], to be freed: the two parts whose facets meet at a node, and the label beyond the
+ * boundary; zeros off rims. In 3D facets are first renamed (mesh->side) where the rim turns so sharply at a
+ * node that no cell has room behind it: where a facet is the only one of its part at the node, and too flat
+ * on the rim. */
 MUST_CHECK enum status label_cells_rims(const struct label_cells_options *options,
                                         const struct shaping *shaping, uint16_t (**rim)[3],
                                         struct error *error);
 
-/* The poorest score of the cells at a node: the score of a cell is 1 where its angles just keep within the
- * bounds, or its quality (approx/cells/quality.h) is just not poor, and negative where it is inverted. Cells
- * around the body need only not be inverted. */
+/* The poorest score of the cells at a node, and the score of a cell: at least 1 if its angles are within the
+ * bounds and its quality (approx/cells/quality.h) is not poor, negative if it is inverted. Cells around the
+ * body must only not be inverted. */
 double star_score(const struct shaping *shaping, int64_t node);
 double shaping_score(const struct shaping *shaping, int64_t cell);
 
-/* Move a node to `target`, where the cells at it would score less than before and than `least`, by also
- * moving the body's nodes around it. Nodes on interfaces stay on them; nodes of rims and nodes that have
- * others at the same place are not moved. Returns false, with all nodes as before, where that does not help.
- */
+/* Move a node to `target`, where the cells at it alone would score less than before and than `least`, by also
+ * moving the nodes around it. Nodes on interfaces stay on them; nodes of rims and nodes with others at the
+ * same place are not moved. Returns false, with all nodes unchanged, if that does not help. */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
-/* Move x onto the interface of the labels; false where there is none near. */
+/* Move x onto the interface of the labels; false if there is none near. */
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
 
-/* Move x onto what a node lies on: on the boundary the surface of the body, elsewhere where all labels of the
- * node meet. False where there is none near. */
+/* Move x to the place of a node: on the boundary to the surface of the body, elsewhere to the place where all
+ * labels of the node meet. False if there is none near. */
 bool node_project(const struct shaping *shaping, int64_t node, double x[]);
 
-/* Move x to where all the labels meet, each of them no farther than `reach`, m, or six voxels. False where
- * there is no such place. */
+/* Move x to the place where all the labels meet, no farther from each than `reach`, m, or six voxels. False
+ * if there is no such place. */
 bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
                   const uint16_t label[], double x[]);
 
-/* Move x onto a rim: that of a ball, or where the three labels meet. False where there is none near. */
+/* Move x onto a rim: that of a ball, or the line where the three labels meet. False if there is none near. */
 bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[]);
 
 /* The label beyond an interface: one label, or any that is kept, or any that is not. */
@@ -218,27 +219,27 @@ struct interface_beyond {
     bool kept;
 };
 
-/* Distance of a place from the interface to what lies beyond, m: 0 within that; infinity where there is none
+/* Distance of a place from the interface to the labels `beyond`, m: 0 within these; infinity if there is none
  * within six voxels. */
 double interface_distance(const struct labels *labels, const double x[],
                           const struct interface_beyond *beyond);
 
-/* Gradient of a cell's volume with respect to the place of its corner k: normal to the face opposite. */
+/* Gradient of a cell's volume with respect to the position of its corner k. */
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
 
-/* Move the nodes of cells that score less than `least`, those of interfaces within these or at most `slack`,
- * m, off, until they score more. */
+/* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay within
+ * `slack`, m, of these. */
 void label_cells_repair(const struct shaping *shaping, double least, double slack);
 
-/* Move nodes: where labels meet onto their interfaces, those apart[] away from the others at the same place,
- * poor cells into shape, and interfaces for the volumes of labels. */
+/* Move nodes where labels meet onto the interfaces; separate nodes at one place (apart[]); improve poor
+ * cells; and correct the volumes of labels. */
 MUST_CHECK enum status label_cells_improve(const struct labels *labels,
                                            const struct label_cells_options *options,
                                            const struct label_cells_kept *kept, struct label_cells *mesh,
                                            struct error *error);
 
-/* Correct the volumes of labels, those of their voxels less what is dropped, by small moves of interfaces,
- * without the nodes that are apart. */
+/* Correct the volumes of labels by small moves of interfaces: they become those of their voxels minus what is
+ * dropped. Nodes with apart[] do not move. */
 MUST_CHECK enum status label_cells_volumes(const struct shaping *shaping,
                                            const struct label_cells_options *options, struct error *error);
 

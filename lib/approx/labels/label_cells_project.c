@@ -1,4 +1,4 @@
-/* The place of the nearest interface, and how far off it is. */
+/* Projection onto the nearest interface, and the distance from it. */
 #include "approx/labels/label_cells_private.h"
 #include "base/dense.h"
 #include "base/vector.h"
@@ -6,10 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-/* Below this share the interface is searched for: the share is too flat there for Newton's method. */
+/* Where a share is below this, the interface is searched for: the share is too flat for Newton's method. */
 static const double least_share = 0.1;
 
-/* The step of least length that makes the linearised differences zero; false where they do not change. */
+/* The shortest step for which the linearised differences of the shares vanish; false if these do not
+ * change. */
 static bool newton_step(const struct labels *labels, int count, const uint16_t label[], const double x[],
                         double step[3])
 {
@@ -79,11 +80,11 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
     return beyond->label >= 0 ? label == beyond->label : beyond->keep[label] == beyond->kept;
 }
 
-/* How far an interface is searched for, voxels. */
+/* Largest distance of a search for an interface, voxels. */
 static const double most_voxels = 6.0;
 
-/* The least distance, in steps of a tenth of a voxel, at which a label beyond lies in some direction, and
- * that place; infinity where there is none within `reach`. */
+/* The least distance, in steps of a tenth of a voxel, at which there is a label beyond in some direction, and
+ * place[]; infinity if there is none within `reach`. */
 static double search_beyond(const struct labels *labels, const double x[],
                             const struct interface_beyond *beyond, double reach, double place[3])
 {
@@ -121,9 +122,8 @@ static bool search_change(const struct labels *labels, const struct interface_be
     return true;
 }
 
-/* Move x onto the surface of the body, whatever label lies there: where the largest share of a label that is
- * kept equals that of the others. Far from it and where Newton's method fails it is searched for. False where
- * there is none near. */
+/* Move x onto the surface of the body, where the largest shares of kept and of other labels are equal. Far
+ * from it, and if Newton's method fails, it is searched for. False if there is none near. */
 static bool project_to_surface(const struct labels *labels, const bool *keep, double reach, double x[])
 {
     const struct interface_beyond other = {-1, keep, !keep[labels_at(labels, x)]};
@@ -147,7 +147,7 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
     if (interface_project(labels, star->labels[node], star->label[node], x)) {
         return true;
     }
-    /* Not where all meet, but two of them, the nearest. */
+    /* Instead of the place where all meet, the nearest interface of two of them. */
     uint16_t pair[2] = {(uint16_t)labels_at(labels, x), 0};
     double best[3] = {0}, least = INFINITY;
     for (int i = 0; i < star->labels[node]; i++) {
@@ -186,7 +186,7 @@ double interface_distance(const struct labels *labels, const double x[],
     if (there >= 0 && interface_project(labels, 2, pair, place)) {
         least = vector_distance(labels->dim, place, x);
     }
-    /* Newton's method does not go to the nearest place. */
+    /* Newton's method need not find the nearest place. */
     memcpy(place, x, (size_t)labels->dim * sizeof *place);
     if (!(least < labels_voxel(labels) / 2) &&
         search_change(labels, beyond, most_voxels * labels_voxel(labels), place)) {
@@ -195,8 +195,8 @@ double interface_distance(const struct labels *labels, const double x[],
     return least;
 }
 
-/* Move x onto the rim that a ball cuts into the surface of the body, which is no farther than `reach`: in
- * turn onto the surface and along it onto the ball. */
+/* Move x onto the rim where a ball cuts the surface of the body, within `reach`, by alternating moves onto
+ * the surface and along it onto the ball. */
 static bool ball_project(const struct shaping *shaping, const struct label_ball *ball, double x[])
 {
     const struct labels *labels = &shaping->labels;
@@ -253,7 +253,7 @@ bool line_project(const struct labels *labels, const bool *keep, double reach, i
     if (interface_project(labels, count, label, x)) {
         return true;
     }
-    /* Far from there: to each of the labels in turn, and back onto the surface. */
+    /* Far away: move to each of the labels in turn, and back onto the surface. */
     bool boundary = false;
     for (int i = 0; i < count; i++) {
         boundary = boundary || !keep[label[i]];

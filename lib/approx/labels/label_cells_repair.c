@@ -6,7 +6,7 @@
 
 enum { SWEEPS = 10, STEPS = 5 };
 
-/* Mean length of the edges of the cells at a node that end there. */
+/* Mean length of the edges that end at a node. */
 static double edge_length(const struct shaping *shaping, int64_t node)
 {
     const struct label_cells *mesh = shaping->mesh;
@@ -24,8 +24,8 @@ static double edge_length(const struct shaping *shaping, int64_t node)
     return sum / (double)count;
 }
 
-/* Put a place onto the interface of a node, or leave it where it is no farther from there than the slack, m.
- * False where there is no interface near. */
+/* Move place[] onto the interface of a node, unless it is within the slack, m. False if there is no interface
+ * near. */
 static bool keep_to_interface(const struct shaping *shaping, int64_t node, double slack, double place[3])
 {
     int dim = shaping->mesh->dim;
@@ -42,8 +42,8 @@ static bool keep_to_interface(const struct shaping *shaping, int64_t node, doubl
     return true;
 }
 
-/* Try steps in all directions, along the axes and between them, of falling length; nodes of interfaces stay
- * there, but for the slack. Takes the best of each length that improves the poorest cell at the node. */
+/* Try steps of decreasing length in all directions, along the axes and between them; nodes of interfaces stay
+ * within the slack. Takes the best step of each length if it improves the poorest cell at the node. */
 static bool search(const struct shaping *shaping, double slack, int64_t node)
 {
     int dim = shaping->mesh->dim;
@@ -94,7 +94,7 @@ void label_cells_repair(const struct shaping *shaping, double least, double slac
 
 enum { ROOM_MOST = 64, ROOM_SWEEPS = 3 };
 
-/* The nodes around a node that may move, and their places. */
+/* The nodes around a node that may move, and their positions. */
 struct room {
     int count;
     int64_t node[ROOM_MOST];
@@ -124,7 +124,7 @@ static void find_room(const struct shaping *shaping, int64_t node, struct room *
     }
 }
 
-/* The poorest cell at the node and at those around it. */
+/* The poorest score of the cells at the node and at those around it. */
 static double room_score(const struct shaping *shaping, int64_t node, const struct room *room)
 {
     double least = star_score(shaping, node);

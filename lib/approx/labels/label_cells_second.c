@@ -5,7 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A second cut is at least so far from both ends, as a share of the edge: nearer to the cut there is none. */
+/* Least distance of a second cut from both ends, as a share of the edge; nearer to the first cut there is
+ * none. */
 static const double near_cut = 0.25;
 
 /* Whether an edge between two corners of a piece leads from a cut to a third label. */
@@ -61,8 +62,8 @@ enum status cutting_again(struct cutting *cutting, struct cutting_pieces *pieces
     return STATUS_OK;
 }
 
-/* Where a second cut lies, as a share of the way from the cut: where the label of the point begins. 0: near
- * the cut. */
+/* The place of a second cut, as a share of the way from the first cut: the place where the label of the point
+ * begins. 0: near the first cut. */
 static double second_change(const struct cutting *cutting, const struct second_cut *second)
 {
     const struct lattice *lattice = cutting->lattice;

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-/* Mean length of the edges of the lattice's tetrahedra, two along axes and four half diagonals, by that of a
- * cube's edge: what cells_node_spacing finds. */
+/* Mean edge of the lattice's tetrahedra, two edges along axes and four half diagonals, by the edge of a cube,
+ * as cells_node_spacing computes it. */
 static const double mean_edge = 0.91068;
 
 int size_level(double spacing, double size)

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Interfaces are moved off their place by at most so much of a voxel for the sake of the labels' volumes. */
+/* Largest move of an interface to correct the volumes of labels, voxels. */
 static const double most_offset = 0.55;
 enum { SWEEPS = 12 };
 
@@ -24,12 +24,13 @@ void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, d
 
 struct volumes {
     const struct shaping *shaping;
-    const int32_t *whole; /* labels->count: the label whose part each is, of which the arrays below are */
-    double *wanted;       /* labels->count: of the voxels, m3; 0: not to be kept */
-    double *pressure;     /* labels->count */
-    double *matrix;       /* labels->count squared */
-    bool *movable;        /* nodes: of interfaces that are near them */
-    double *place;        /* nodes: on their interface */
+    const int32_t
+        *whole;       /* labels->count: the label of which each is a part; the arrays below are of wholes */
+    double *wanted;   /* labels->count: volume of the voxels, m3; 0: not to be preserved */
+    double *pressure; /* labels->count */
+    double *matrix;   /* labels->count squared */
+    bool *movable;    /* nodes: of interfaces that are near them */
+    double *place;    /* nodes: on their interface */
 };
 
 /* Gradients of the volumes of the labels at a node: one row for each label of its star. */
@@ -58,7 +59,7 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
     }
 }
 
-/* The inverse of the area of the interfaces at a node: with it equal pressures give equal steps. */
+/* The inverse of the area of the interfaces at a node. With this weight equal pressures give equal steps. */
 static double node_weight(int dim, double G[LABEL_CELLS_MOST_LABELS][3])
 {
     double most = 0;
@@ -68,9 +69,8 @@ static double node_weight(int dim, double G[LABEL_CELLS_MOST_LABELS][3])
     return most > 0 ? 1 / most : 0;
 }
 
-/* The least moves of the nodes on interfaces, each weighted by its area, that correct the volumes to first
- * order are sums of the volumes' gradients: find the factors of these. False when there is nothing to
- * correct. */
+/* The least moves of the nodes on interfaces, weighted by area, that correct the volumes to first order are
+ * linear combinations of the volumes' gradients. Find the factors; false if there is nothing to correct. */
 static bool find_pressures(struct volumes *volumes)
 {
     int32_t count = volumes->shaping->labels.count;
@@ -152,7 +152,7 @@ static void voxel_volumes(const struct labels *labels, const bool *keep, double 
     const double(*m)[4] = labels->to_voxel;
     double det = 0, across = 1;
     for (int d = 0; d < 3; d++) {
-        if (labels->dim == 2 && labels->size[d] == 1) { /* areas: a slice's thickness is no matter */
+        if (labels->dim == 2 && labels->size[d] == 1) { /* areas do not depend on the slice's thickness */
             across = sqrt(m[d][0] * m[d][0] + m[d][1] * m[d][1] + m[d][2] * m[d][2]);
         }
         det += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);

@@ -10,7 +10,7 @@ struct stencil {
     double weight[3][4], slope[3][4];
 };
 
-/* World coordinates of a point: all three. */
+/* The three world coordinates of a point. */
 static void place(const struct labels *labels, const double x[], double world[3])
 {
     if (labels->dim == 3) {
@@ -46,7 +46,7 @@ static void stencil_at(const struct labels *labels, const double x[], struct ste
             stencil->count[d] = 1;
             continue;
         }
-        /* Far from the grid all is outside: the index stays within bounds. */
+        /* Far from the grid all is outside; keep the index within bounds. */
         v = fmin(fmax(v, -4), (double)labels->size[d] + 4);
         double base = floor(v), t = v - base, r = 1 - t;
         stencil->first[d] = (int64_t)base - 1;

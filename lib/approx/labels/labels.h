@@ -18,8 +18,8 @@ struct labels {
     int64_t size[3];
     const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
     int32_t count;
-    const struct label_ball *ball; /* count: balls that labels which are parts of others are made by, the
-                                      later the higher; NULL: none */
+    const struct label_ball *ball; /* count: the ball that defines each label that is a part; later ones take
+                                      precedence; NULL: none */
     double to_voxel[3][4];         /* (world, m, 1) to voxel index, voxel centres */
     int dim;
     int axis[2];
@@ -43,20 +43,20 @@ void labels_mix(const struct labels *labels, const double x[], struct label_mix 
 /* The share of a label in a mix; 0 when it is absent. */
 double label_share(const struct label_mix *mix, int32_t label);
 
-/* The label of the largest share at a point, of equal ones the lowest. */
+/* The label with the largest share at a point; of equal shares the lowest label. */
 int32_t labels_at(const struct labels *labels, const double x[]);
 
-/* The label of the largest share in a mix among those with keep[label] == kept; -1 where all shares of these
- * are zero. */
+/* The label with the largest share in a mix among those with keep[label] == kept; -1 if all these shares are
+ * zero. */
 int32_t label_largest(const struct label_mix *mix, const bool *keep, bool kept);
 
-/* Share of label a less that of b at a point, and its gradient[dim], 1/m. */
+/* Share of label a minus that of b at a point, and its gradient[dim], 1/m. */
 double labels_difference(const struct labels *labels, const double x[], int32_t a, int32_t b,
                          double gradient[]);
 
-/* The labelled world box: of the voxels, faces included, whose label is not 0; low > high when there are
- * none. dim coordinates, m. */
+/* The box in world coordinates of the voxels whose label is not 0, with their faces: dim coordinates, m. low
+ * > high if there are none. */
 void labels_box(const struct labels *labels, double low[], double high[]);
 
-/* Least extent of a voxel along an axis of the grid with more than one voxel, m. */
+/* Least size of a voxel along the axes of the grid with more than one voxel, m. */
 double labels_voxel(const struct labels *labels);

@@ -47,11 +47,11 @@ void mls_work_free(struct mls_work *work)
     *work = (struct mls_work){0};
 }
 
-/* Rows of scratch: those of mls_orthogonal, which are more than those of the kernels, then phi. */
+/* Rows of scratch: those of mls_orthogonal, which needs more than the kernels, then phi. */
 enum { ROW_OF_VALUES = MLS_ROWS, SCRATCH_ROWS = MLS_ROWS + 1 };
 _Static_assert((int)MLS_KERNEL_ROWS <= (int)MLS_ROWS, "scratch of the kernels");
 
-/* Scratch for `count` neighbours. */
+/* Scratch for `count` neighbours, or NULL (memory). */
 static double *work_reserve(struct mls_work *work, int64_t count)
 {
     if (count > work->capacity) {

@@ -46,7 +46,7 @@ enum mls_verdict {
     MLS_ILL_CONDITIONED /* the moment matrix is singular or too close to it */
 };
 
-/* Why, in a few words. */
+/* The reason, in a few words. */
 const char *mls_verdict_text(enum mls_verdict verdict);
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
@@ -69,9 +69,9 @@ struct mls_support {
                             NULL: all neighbours are visible */
 };
 
-/* Values phi[count] and full gradients dphi[count * dim] (per unit of x) at a point, of which one may be
- * NULL. Every result is checked: unity and linear reproduction hold to 1e-10 (relative to s) whenever the
- * verdict is MLS_GOOD. The same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
+/* Values phi[count] and full gradients dphi[count * dim] (per unit of x) at a point; one of them may be NULL.
+ * If the verdict is MLS_GOOD, partition of unity and linear reproduction were checked to 1e-10 (relative to
+ * s). The results have the same bits on every processor. Returns STATUS_OK with the verdict, or STATUS_SYSTEM
  * (memory). */
 MUST_CHECK enum status mls_evaluate(const struct mls *mls, const struct mls_support *support,
                                     struct mls_work *work, double *phi, double *dphi,

@@ -28,7 +28,7 @@ KERNEL_INLINE void load_vector(int dim, const struct mls_point *point, int row, 
     }
 }
 
-/* Differences of coordinates and radii, side by side; the largest radius. */
+/* Differences of coordinates, and radii, in rows; the largest radius. */
 KERNEL_INLINE void gather(const struct mls_support *support, int dim, struct mls_point *point)
 {
     double *xi = point->row, *radius = point->row + ROW_RATIO * point->stride;
@@ -79,7 +79,8 @@ KERNEL_INLINE void gather_images(const struct mls_support *support, int dim, str
         slope[j] = relative < 1.0 ? slope_over_r * square : 0.0;                                             \
     }
 
-/* Scale the coordinates; weights, and slopes: grad w = -slope xi / s, or the image for xi. */
+/* Scale the coordinates; set weights, and slopes: grad w = -slope xi / s, with the image in place of xi
+ * around corners. */
 KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, bool images,
                          struct mls_point *point)
 {
@@ -104,7 +105,7 @@ KERNEL_INLINE void weigh(enum weight_function function, double widen, int dim, b
     }
 }
 
-/* The coordinates of neighbours j on, and their monomials. */
+/* The coordinates of LANES neighbours from j on, and their monomials. */
 KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point, int64_t j, lanes *xi,
                                   lanes *p)
 {
@@ -112,8 +113,8 @@ KERNEL_INLINE void load_monomials(int dim, int m, const struct mls_point *point,
     monomials(dim, m, xi, p);
 }
 
-/* Moment matrix. The product of the monomials comes first, so that the entries of x and y and of 1 and xy are
- * the same number. */
+/* The moment matrix. The product of two monomials is formed before the weight is applied, so that equal
+ * entries, as of x and y and of 1 and xy, have the same bits. */
 KERNEL_INLINE void assemble(int dim, int m, const struct mls_point *point, struct mls_system *system)
 {
     lanes sum[MLS_MAX_BASIS][MLS_MAX_BASIS];
@@ -153,9 +154,9 @@ KERNEL_INLINE double larger_defect(double worst, double defect)
     return fabs(defect) <= worst ? worst : isnan(defect) ? INFINITY : fabs(defect);
 }
 
-/* phi_j = w_j p_j.c into ROW_PHI, slope_j p_j.c into ROW_SLOPE; where gradients are wanted, the right sides
- * of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a per lane, with images
- * for xi_a those. Returns the largest defect of sum phi p = p(0), p linear. */
+/* Store phi_j = w_j p_j.c in ROW_PHI and slope_j p_j.c in ROW_SLOPE. With `gradients`, set the right-hand
+ * sides of their coefficients, e_a - (d_a M) c = e_a + sum_j slope_j xi_a p_j.c p_j, one a for each lane;
+ * with `images`, image_a in place of xi_a. Returns the largest defect of sum phi p = p(0), p linear. */
 KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, bool images,
                             const struct mls_point *point, lanes *right)
 {
@@ -199,8 +200,8 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
     return worst;
 }
 
-/* s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (the image for xi_a) into ROW_GRADIENT + a. Returns the
- * largest defect of sum grad phi p = grad p(0), p linear. */
+/* Store s d_a phi_j = w_j p_j.g_a - slope_j xi_a p_j.c (image_a in place of xi_a with `images`) in
+ * ROW_GRADIENT + a. Returns the largest defect of sum grad phi p = grad p(0), p linear. */
 KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool images,
                                const struct mls_point *point)
 {
@@ -236,7 +237,7 @@ KERNEL_INLINE double gradients(int dim, int m, const lanes *coefficient, bool im
     return worst;
 }
 
-/* Gradients side by side, per unit of x. */
+/* Copy the gradients from rows to dphi[count * dim], per unit of x. */
 KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double *dphi)
 {
     const double *row = point->row + ROW_GRADIENT * point->stride;
@@ -251,9 +252,9 @@ KERNEL_INLINE void put_gradients(int dim, const struct mls_point *point, double 
 KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
                                    bool images, double *scratch, int64_t stride, double *phi, double *dphi)
 {
-    /* With pivots above this the condition is good, as the matrix is small: no estimate is needed. */
+    /* With larger pivots the condition of this small matrix is good; no estimate is needed. */
     static const double safe_pivot = 1e-5;
-    /* With H a pivot may be smaller, but not too small for the normal equations. */
+    /* With H pivots may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;
     static const double most_defect = 1e-13;
     struct mls_point point = {.count = support->count,
@@ -290,7 +291,7 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     return true;
 }
 
-/* What is known when compiling: dimension, number of monomials, whether there are images. */
+/* The compiler knows the dimension, the number of monomials, and whether there are images. */
 #define EVALUATE(dim, m)                                                                                     \
     (support->image == NULL ? kernel_evaluate(mls, support, dim, m, false, scratch, stride, phi, dphi)       \
                             : kernel_evaluate(mls, support, dim, m, true, scratch, stride, phi, dphi))

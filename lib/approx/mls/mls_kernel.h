@@ -1,9 +1,8 @@
-/* Moving least squares by the normal equations, in vectors of the compiler; private to lib/approx.
- *
- * Sums over the neighbours run in the same partial sums whatever the instructions, and no multiplication
- * is fused with an addition (the Makefile says so for lib/approx): every processor gives the same bits. Where
- * the normal equations lose digits, by a small pivot or a defect of the linear reproduction, the point is
- * left to the orthogonal factorisation of mls_orthogonal(). */
+/* Moving least squares by the normal equations, in vectors of the compiler; private to lib/approx. Sums over
+ * the neighbours have the same partial sums for every instruction set, and no multiplication is fused with an
+ * addition (set by the Makefile for lib/approx): every processor gives the same bits. Where the normal
+ * equations lose digits, as shown by a small pivot or a defect of the linear reproduction, mls_orthogonal()
+ * evaluates the point. */
 #pragma once
 
 #include "approx/mls/mls.h"
@@ -20,7 +19,7 @@ enum mls_row {
     MLS_KERNEL_ROWS = ROW_IMAGE + 3
 };
 
-/* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, where not NULL; false when that is
- * left to mls_orthogonal(). scratch[MLS_KERNEL_ROWS * stride]. */
+/* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, unless NULL; false if
+ * mls_orthogonal() is needed. scratch[MLS_KERNEL_ROWS * stride]. */
 bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
                 double *phi, double *dphi);

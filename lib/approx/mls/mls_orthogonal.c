@@ -1,5 +1,5 @@
-/* MLS at points whose moment matrix may be ill-conditioned, by orthogonal (QR) factorisation of the weighted
- * monomials. It loses half as many digits as the normal equations. */
+/* Moving least squares by orthogonal (QR) factorisation of the weighted monomials, for points whose moment
+ * matrix may be ill-conditioned. It loses half as many digits as the normal equations. */
 #include "approx/mls/mls_orthogonal.h"
 
 #include "approx/mls/weight.h"
@@ -18,14 +18,14 @@ struct mls_local {
     double *orthogonal; /* [m][stride]: scratch of the orthogonal factorization, count + m used */
     double *weight;     /* w_j */
     double *slope;      /* grad w_j = -slope_j image_j / s */
-    double *image;      /* [dim][stride]: where the neighbour seems to be; xi_j but around corners */
+    double *image;      /* [dim][stride]: image of the neighbour (mls_support); xi_j unless around a corner */
     double *projection; /* p_j . c */
     double *row;        /* scratch */
     double matrix[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* moment matrix with H, m x m */
     double regularisation[MLS_MAX_BASIS];         /* diagonal of H */
 };
 
-/* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M); Q stands in local->orthogonal. */
+/* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M); Q is in local->orthogonal. */
 struct mls_factor {
     double scaling[MLS_MAX_BASIS];               /* 1 / D */
     double lower[MLS_MAX_BASIS * MLS_MAX_BASIS]; /* R^T */
@@ -159,8 +159,8 @@ static double reciprocal_condition(int m, int size, const struct mls_local *loca
     return 1.0 / (norm[0] * norm[1]);
 }
 
-/* Judge the condition of the moment matrix: that of the linear block always, that of the whole unless
- * `modified` (there H bounds it, and the reproduction is checked afterwards). Sets `scaling`. */
+/* Check the condition of the linear block of the moment matrix, and unless `modified` that of the whole
+ * matrix (with MMLS H bounds it, and the reproduction is checked afterwards). Sets `scaling`. */
 static enum mls_verdict judge(int m, int dim, bool modified, const struct mls_local *local, double *scaling)
 {
     for (int k = 0; k < m; k++) {

@@ -27,7 +27,7 @@ KERNEL_INLINE void monomials(int dim, int m, const lanes *xi, lanes *value)
     }
 }
 
-/* *value = c . p(xi), p the basis of m monomials, in products of as few factors as can be. */
+/* *value = c . p(xi), p the basis of m monomials, with as few products as possible. */
 KERNEL_INLINE void polynomial(int dim, int m, const double *c, const lanes *xi, lanes *value)
 {
     lanes sum = {0.0};

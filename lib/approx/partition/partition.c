@@ -104,7 +104,7 @@ static enum status prepare(const struct partition *partition, struct body_part_w
     return STATUS_OK;
 }
 
-/* Does the support of node j, not widened, reach the box? */
+/* Whether the support of node j, not widened, reaches the box. */
 static bool reaches(const struct partition *partition, int32_t j, const struct box *box)
 {
     const struct point_grid *grid = partition->grid;
@@ -117,7 +117,7 @@ static bool reaches(const struct partition *partition, int32_t j, const struct b
     return square < grid->radius[j] * grid->radius[j];
 }
 
-/* The marks of a node while part p is built are stored as MARKS * p plus the mark; other values are of other
+/* The mark of a node while part p is built is stored as MARKS * p plus the mark; other values belong to other
  * parts. */
 enum { SEEN = 1, NEEDED = 2, MARKS = 3 };
 
@@ -127,7 +127,7 @@ static int mark_of(const int32_t *mark, int64_t i, int32_t part)
     return value > 0 && value < MARKS ? (int)value : 0;
 }
 
-/* Append to `list`, from `node`, what is not yet there. */
+/* Append a node to the list unless it has been seen. */
 static enum status see_node(struct body_part_work *work, int32_t part, int32_t node, struct index_list *list,
                             struct error *error)
 {
@@ -161,7 +161,7 @@ static enum status list_reaching(const struct partition *partition, int32_t part
     return STATUS_OK;
 }
 
-/* The cells at all nodes of the list from number `from` on, and their vertices behind the list. */
+/* Append the cells at all nodes of the list from number `from` on, and their vertices to the list. */
 static enum status add_cells(const struct partition *partition, int32_t part, struct body_part_work *work,
                              struct index_list *nodes, int64_t from, struct index_list *found,
                              struct error *error)
@@ -188,7 +188,7 @@ static enum status add_cells(const struct partition *partition, int32_t part, st
     return STATUS_OK;
 }
 
-/* What an evaluation needs of others. */
+/* Count the nodes of other parts that an evaluation needs, and these parts. */
 static void count_needed(const struct partition *partition, int32_t part, struct body_part_work *work,
                          struct body_part *body)
 {

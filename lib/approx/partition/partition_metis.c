@@ -58,7 +58,7 @@ static enum status build_graph(const struct cells *cells, const struct cell_star
     for (int64_t c = 0; c < cells->count; c++) {
         sum += work[c];
     }
-    /* METIS adds the weights up in idx_t. */
+    /* METIS sums the weights in idx_t. */
     double scale = sum > 1e9 ? 1e9 / sum : 1.0;
     for (int64_t n = 0; n < cells->node_count; n++) {
         mark[n] = 0;

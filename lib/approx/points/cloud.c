@@ -68,7 +68,7 @@ static enum status count_nodes(const struct cloud_options *options, int64_t *cou
     return STATUS_OK;
 }
 
-/* Place of a node in the lattice. */
+/* index[dim]: the indices of a node in the lattice. */
 static void lattice_index(const struct cloud_options *options, int64_t node, int64_t index[])
 {
     for (int a = 0; a < options->dim; a++) {
@@ -148,7 +148,7 @@ static double least_area(const double *x, const int32_t triangles[2][3])
     return fmin(cell_volume(&cells, 0), cell_volume(&cells, 1));
 }
 
-/* The square whose lowest corner is `node`. */
+/* Split the square whose lowest corner is `node`. */
 static void split_square(const struct cloud_options *options, const double *x, int64_t node, int32_t *cells)
 {
     int32_t a = (int32_t)node;
@@ -162,8 +162,8 @@ static void split_square(const struct cloud_options *options, const double *x, i
     memcpy(cells, swap ? other : usual, sizeof usual);
 }
 
-/* The cube whose lowest corner is `node`: each tetrahedron is a walk from the lowest to the highest corner
- * along the axes in one of the six orders; odd orders are mirrored. Neighbouring cubes conform. */
+/* Split the cube whose lowest corner is `node`. Each tetrahedron is a path from the lowest to the highest
+ * corner along the axes, in one of their six orders; odd orders are mirrored. Neighbouring cubes conform. */
 static void split_cube(const struct cloud_options *options, int64_t node, int32_t *cells)
 {
     static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
@@ -227,7 +227,7 @@ static bool all_positive(const struct cloud *cloud)
 
 /* ---- facets ---- */
 
-/* The side of the box that a boundary face lies on: 2 * axis, + 1 at the high end. */
+/* The side of the box that contains a boundary face: 2 * axis, + 1 at the high end. */
 static int side_of(const struct cloud_options *options, const int32_t face[])
 {
     for (int side = 0; side < 2 * options->dim; side++) {

@@ -1,4 +1,4 @@
-/* Analytic clouds of nodes in a box, with background cells where they come from a lattice. */
+/* Analytic clouds of nodes in a box; those on a lattice have background cells. */
 #pragma once
 
 #include "base/status.h"
@@ -33,10 +33,10 @@ struct cloud {
     int32_t *facet_set; /* facet_count, ascending: 2 * axis, + 1 at the high end */
 };
 
-/* Make a cloud. The squares of a lattice are split into two triangles, along the diagonal from low to high;
- * in a jittered one along the other where that gives the larger least area, so that jitter up to 0.5 leaves
- * all positive. Cubes are split into six tetrahedra (Kuhn); where jitter (above about 0.15) turns one of them
- * over, the cloud has neither cells nor facets. STATUS_INPUT for options out of range or more than 2^31 - 1
+/* Make a cloud. The squares of a lattice are split into two triangles along the diagonal from low to high; in
+ * a jittered lattice along the diagonal that gives the larger least area, so that all areas are positive for
+ * jitter up to 0.5. Cubes are split into six tetrahedra (Kuhn); if jitter (above about 0.15) inverts one of
+ * them, the cloud has neither cells nor facets. STATUS_INPUT for options out of range or more than 2^31 - 1
  * nodes or cells. */
 MUST_CHECK enum status cloud_make(const struct cloud_options *options, struct cloud *cloud,
                                   struct error *error);

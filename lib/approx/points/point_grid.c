@@ -55,7 +55,7 @@ static int64_t choose_bins(struct point_grid_level *level, int dim, const double
     return total;
 }
 
-/* bin[node_count]: scratch. */
+/* Sort the nodes of one level into bins. bin[node_count]: scratch. */
 static enum status build_level(struct point_grid *grid, int number, const uint8_t *level_of_node,
                                int32_t *bin, struct error *error)
 {
@@ -139,14 +139,15 @@ void point_grid_free(struct point_grid *grid)
     *grid = (struct point_grid){0};
 }
 
-/* The square of how far a place along an axis is from a bin, in bins. */
+/* The squared distance of a coordinate along an axis from a bin, in bins. */
 static inline double gap2(int64_t bin, double at)
 {
     double gap = fmax(fmax((double)bin - at, at - (double)(bin + 1)), 0.0);
     return gap * gap;
 }
 
-/* Count, or with a list file, the bins that the support at a place of a level touches. */
+/* Count the bins that the support of the node at `slot` of a level meets; with a list, append the slot to
+ * each. */
 static void file_bins(const struct point_grid_level *level, int dim, int32_t slot, int64_t *start,
                       int32_t *list)
 {
@@ -175,7 +176,7 @@ static void file_bins(const struct point_grid_level *level, int dim, int32_t slo
 
 enum status point_grid_list_touching(struct point_grid *grid, struct error *error)
 {
-    SCRATCH int32_t *slot = NULL; /* of each node of a level: 1 more than its place there */
+    SCRATCH int32_t *slot = NULL; /* of each node of a level: its place there + 1 */
     for (int l = 0; l < grid->level_count; l++) {
         struct point_grid_level *level = &grid->level[l];
         int64_t bins = level->bins[0] * level->bins[1] * level->bins[2];
@@ -204,8 +205,8 @@ enum status index_list_reserve(struct index_list *list, int64_t count, struct er
     return GROW_ARRAY(&list->index, list->count + count, &list->capacity, error);
 }
 
-/* Append those of the places [first, last) of a level whose supports meet the box; or, with a list of places,
- * those of slot[first .. last) whose supports contain the point `low`. */
+/* Append the places [first, last) of a level whose supports meet the box; or, with slot[], the places
+ * slot[first .. last) whose supports contain the point `low`. */
 static inline __attribute__((always_inline)) void query_run(const struct point_grid_level *level, int dim,
                                                             const int32_t *slot, int64_t first, int64_t last,
                                                             const double *low, const double *high,
@@ -231,7 +232,7 @@ static inline __attribute__((always_inline)) void query_run(const struct point_g
     list->count += found;
 }
 
-/* The same for each kind. */
+/* The same, compiled for each dimension and kind. */
 static void query_any_run(const struct point_grid_level *level, int dim, const int32_t *slot, int64_t first,
                           int64_t last, const double *low, const double *high, double factor,
                           struct index_list *list)
@@ -252,7 +253,7 @@ enum status point_grid_list_places(const struct point_grid *grid, const struct p
                                    struct index_list *list, struct error *error)
 {
     int64_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
-    double reach = level->largest_radius * factor * (1.0 + 1e-9); /* rounding at the edges of bins */
+    double reach = level->largest_radius * factor * (1.0 + 1e-9); /* for round-off at the edges of bins */
     for (int a = 0; a < grid->dim; a++) {
         double end = level->origin[a] + level->bin * (double)level->bins[a];
         if (high[a] + reach < level->origin[a] || low[a] - reach > end) {
@@ -261,7 +262,7 @@ enum status point_grid_list_places(const struct point_grid *grid, const struct p
         from[a] = bin_along(level, a, low[a] - reach);
         to[a] = bin_along(level, a, high[a] + reach);
     }
-    /* The bins of a row follow each other. (Leaving out those beyond the ball costs more than it saves.) */
+    /* The bins of a row are consecutive. Omitting those beyond the ball costs more than it saves. */
     for (int64_t k = from[2]; k <= to[2]; k++) {
         for (int64_t j = from[1]; j <= to[1]; j++) {
             int64_t row = (k * level->bins[1] + j) * level->bins[0];
@@ -292,7 +293,7 @@ enum status point_grid_query_box(const struct point_grid *grid, const double *lo
     return STATUS_OK;
 }
 
-/* The same for a point, by what touches its bins. */
+/* The same for a point, by the lists of supports that meet its bin. */
 static enum status query_touching(const struct point_grid *grid, const double *x, double factor,
                                   struct index_list *list, struct error *error)
 {
@@ -308,7 +309,7 @@ static enum status query_touching(const struct point_grid *grid, const double *x
             *i = level->node[*i];
         }
         if (own > index && end > own) {
-            (void)sorted_union(index, own - index, own, end - own, end); /* no node is of two levels */
+            (void)sorted_union(index, own - index, own, end - own, end); /* no node is in two levels */
             memcpy(index, end, (size_t)(end - index) * sizeof *index);
         }
     }

@@ -1,4 +1,4 @@
-/* Choosing nodes, facets and cells by where they are. */
+/* Choosing nodes, facets and cells by their positions. */
 #pragma once
 
 #include "base/status.h"
@@ -25,27 +25,27 @@ struct shape {
     } kind;
     double a[3], b[3];
     double size;
-    double slack; /* how far beyond its boundary a point may lie, for round-off, m */
+    double slack; /* points within this distance of the shape count as inside, m, for round-off */
 };
 
 /* Mean of the corners of an item. */
 void item_centre(const struct items *items, int64_t item, double *centre);
 
-/* chosen[items->count]: those whose centre lies in the shape; for SHAPE_PLANE those with all corners in it.
- */
+/* chosen[items->count]: items whose centre lies in the shape; for SHAPE_PLANE items with all corners in
+ * it. */
 void items_in_shape(const struct items *items, const struct shape *shape, bool *chosen);
 
 /* chosen[items->count]: facets (corners = dim) whose outward normal is within `degrees` of a direction. */
 void items_facing(const struct items *items, const double *direction, double degrees, bool *chosen);
 
-/* Pieces to be near to: points (corners = 1), segments (2) or triangles (3) in dim dimensions. */
+/* Points (corners = 1), segments (2) or triangles (3) in dim dimensions. */
 struct pieces {
     int dim, corners;
     int64_t count;
     const double *x; /* count * corners * dim, m */
 };
 
-/* chosen[items->count]: those whose centre is within `reach` (positive, m) of a piece. */
+/* chosen[items->count]: items whose centre is within `reach` (positive, m) of a piece. */
 MUST_CHECK enum status items_near(const struct items *items, const struct pieces *pieces, double reach,
                                   bool *chosen, struct error *error);
 

@@ -23,7 +23,7 @@ static enum status allocate(int dim, int64_t parts, int64_t samples, struct boun
     return NEW_ARRAY(&averages->sample_point, samples, error);
 }
 
-/* A dense row over the nodes with the list of its nonzeros, in which one average at a time is accumulated. */
+/* A dense row over the nodes with a list of its nonzeros, to accumulate one average at a time. */
 struct dense_row {
     double *value;
     int32_t *touched;
@@ -42,7 +42,7 @@ static enum status row_add(struct dense_row *row, int32_t node, double value, st
     return STATUS_OK;
 }
 
-/* Append the row, divided by `whole`, to the averages' CSR lists, and clear it. */
+/* Append the row, divided by `whole`, to the CSR lists of the averages, and clear it. */
 static enum status row_finish(struct dense_row *row, double whole, int64_t part, int64_t *capacity,
                               struct boundary_averages *averages, struct error *error)
 {
@@ -63,7 +63,7 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
 }
 
 /* The weight of quadrature point g in the value at corner `vertex` of the linear function through the points
- * of a facet. A facet has as many points as corners, arranged in the same way. */
+ * of a facet. A facet has one point for each corner, in the same order. */
 static double extrapolated(const struct quadrature_rule *rule, int dim, int g, int vertex)
 {
     double own = rule->barycentric[0], other = (1.0 - own) / (dim - 1);
@@ -80,7 +80,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
     struct quadrature_rule rule = quadrature_face_rule(dim);
     const int32_t *face = table->faces->node + face_of[corner->facet] * dim;
     double normal[3], size, x[9];
-    int vertex = 0; /* the face may start at another node than the facet */
+    int vertex = 0; /* the face may start at a different node than the facet */
     while (vertex + 1 < dim && face[vertex] != corner->node) {
         vertex++;
     }
@@ -133,8 +133,8 @@ static void put_place(int dim, int64_t a, const double *x, struct boundary_avera
     memcpy(averages->sample_x + sample * dim, x, (size_t)dim * sizeof *x);
 }
 
-/* The parts over which averages are taken: one for each node, or each node and side, and, with `sides`, the
- * whole sides behind them. */
+/* The parts over which averages are taken: one for each node, or each node and side; with `sides` followed by
+ * the whole sides. */
 static enum status collect_parts(const struct face_table *table, const struct facet_set *set,
                                  const int64_t *face_of, bool split, struct boundary_sides *sides,
                                  struct corner *corners, int64_t *parts, struct error *error)
@@ -156,7 +156,7 @@ static enum status collect_parts(const struct face_table *table, const struct fa
     return STATUS_OK;
 }
 
-/* All kinds of averages; node_lists == NULL: boundary averages. */
+/* Build averages of any kind; without node_lists boundary averages, else node values. */
 static enum status build(const struct face_table *table, const struct facet_set *set, bool split,
                          bool at_corner, struct boundary_sides *sides, const struct neighbours *node_lists,
                          const double *node_phi, struct boundary_averages *averages, struct error *error)
@@ -235,7 +235,7 @@ enum status boundary_nodes_build(const struct face_table *table, const struct fa
     return build(table, set, false, false, NULL, node_lists, node_phi, averages, error);
 }
 
-/* The values of one point, as they are, as average `a`. */
+/* Set average `a` to the values of one point. */
 static void put_values(struct boundary_averages *averages, int64_t a, const int32_t *idx, const double *phi,
                        int64_t length)
 {

@@ -1,11 +1,9 @@
 /* Boundary averages: means of a field over the facets around a boundary node, weighted by its linear hat
- * function. Constraints and contact act on them.
- *
- * The average at a boundary node a is Phi_a u = integral(N_a u_h ds) / integral(N_a ds) over the facets of a
- * set, equation (17) of lib/README.md. Where the boundary turns sharply at a node, or an interface at which
- * supports stop meets it, there is one average for each side, so that the multipliers can carry a traction
- * that jumps there: with the quadrature that smooths the cells the linear patch test then holds to round-off.
- */
+ * function. Constraints and contact act on them. The average at a boundary node a is Phi_a u = integral(N_a
+ * u_h ds) / integral(N_a ds) over the facets of a set, equation (17) of lib/README.md. Where the boundary
+ * turns sharply at a node, or an interface at which supports stop meets it, there is one average for each
+ * side, so that the multipliers can carry a traction that jumps there. With the quadrature of the smoothed
+ * cells, the linear patch test then holds to round-off. */
 #pragma once
 
 #include "approx/cells/cells.h"
@@ -40,14 +38,14 @@ struct boundary_averages {
     int64_t *ptr;          /* count + 1 */
     int32_t *idx;          /* neighbours, ascending */
     double *phi;           /* their weights, sum 1 */
-    int64_t *sample_ptr;   /* count + 1: the quadrature points that each average is made of */
+    int64_t *sample_ptr;   /* count + 1: quadrature points (samples) of each average */
     double *sample_x;      /* sample_ptr[count] * dim, m */
     double *sample_share;  /* their shares, sum 1 for each average */
     int64_t *sample_point; /* of boundary averages: the index of each sample among the points of
                               boundary_points_build of the same set */
 };
 
-/* Build the averages of a facet set; ordered by node, then by facet. STATUS_INPUT when a facet is no face of
+/* Build the averages of a facet set, ordered by node, then by facet. STATUS_INPUT if a facet is not a face of
  * the table. */
 MUST_CHECK enum status boundary_averages_build(const struct face_table *table, const struct facet_set *set,
                                                struct boundary_averages *averages, struct error *error);
@@ -58,21 +56,20 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
  * and the averages are to be freed, also on failure. */
 struct boundary_sides {
     int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
-    int64_t group_count;        /* of groups */
-    int64_t *group; /* averages.count: of split boundary averages the side, else the piece of the set,
-                       connected by nodes, that each average lies on */
-    bool *flat;     /* averages.count: all of its facets have one normal, to a thousandth */
+    int64_t group_count;
+    int64_t *group; /* averages.count: with `split` the side of each average, else the piece of the set,
+                       connected by nodes, that contains it */
+    bool *flat;     /* averages.count: all of its facets have the same normal, to a thousandth */
 };
 MUST_CHECK enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set,
                                             bool split, struct boundary_averages *averages,
                                             struct boundary_sides *sides, struct error *error);
 void boundary_sides_free(struct boundary_sides *sides);
 
-/* Values at the nodes, extrapolated from the quadrature points of the facets: on each facet of the set at a
- * node the linear function through its quadrature points is evaluated at the node, and the mean over these
- * facets, weighted by their size, is taken. The surface with these corners is continuous and follows a linear
- * field exactly. A uniform traction on it is distributed over the nodes as the quadrature of (17) distributes
- * it. One entry per node; areas and normals as above. */
+/* Values at the nodes, extrapolated from the quadrature points of the facets: the mean over the facets of the
+ * set at a node, weighted by their size, of the linear function through a facet's quadrature points. The
+ * surface with these corners is continuous and follows a linear field exactly. It distributes a uniform
+ * traction over the nodes like the quadrature of (17). One entry per node; areas and normals as above. */
 MUST_CHECK enum status boundary_corners_build(const struct face_table *table, const struct facet_set *set,
                                               struct boundary_averages *averages, struct error *error);
 
@@ -82,8 +79,8 @@ MUST_CHECK enum status boundary_nodes_build(const struct face_table *table, cons
                                             const struct neighbours *node_lists, const double *node_phi,
                                             struct boundary_averages *averages, struct error *error);
 
-/* Node values at any nodes[count], wherever they lie: one entry each, of one sample; no areas and normals
- * (0). x, lists and phi are those of all nodes. */
+/* Node values at nodes[count], anywhere in the body: one entry with one sample for each; areas and normals
+ * are 0. x, lists and phi are those of all nodes. */
 MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32_t *nodes, int64_t count,
                                            const struct neighbours *lists, const double *phi,
                                            struct boundary_averages *averages, struct error *error);

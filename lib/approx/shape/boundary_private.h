@@ -3,7 +3,7 @@
 
 #include "approx/shape/boundary.h"
 
-/* face_of[i]: the index in the table of facet i of the set. STATUS_INPUT where a facet is no face of the
+/* face_of[i]: the index in the table of facet i of the set. STATUS_INPUT if a facet is not a face of the
  * table, or has a node that does not exist. */
 MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set,
                                            int64_t *face_of, struct error *error);
@@ -11,11 +11,11 @@ MUST_CHECK enum status boundary_find_faces(const struct face_table *table, const
 /* Outward unit normal (three components, in 2D the last one 0) and size, m or m2, of a facet. */
 void boundary_unit_normal(const struct face_table *table, const int32_t *facet, double *normal, double *size);
 
-/* A corner of a facet, and the part that it belongs to. */
+/* A corner of a facet, and the part to which it belongs. */
 struct corner {
     int32_t node;
     int32_t vertex; /* of the facet */
-    int32_t side;   /* of an interface, that the facet is on */
+    int32_t side;   /* side of an interface on which the facet is */
     int64_t facet;  /* of the set */
     int64_t part;
 };
@@ -26,10 +26,10 @@ void boundary_collect_corners(const struct face_table *table, const struct facet
                               const int64_t *face_of, bool split, struct corner *corners,
                               int64_t *part_count);
 
-/* Append to the corners[2 * set->count * dim], sorted by part, those of whole sides: a part with all corners
- * of its facets for each side. Sides are the parts of a set within which facets that share an edge (2D: a
- * node) turn by less than 45 degrees, pieces those that hang together by nodes. group[set->count]: with
- * `split` the side, else the piece of each facet, numbered as they come. */
+/* Append to corners[2 * set->count * dim], sorted by part, a part for each side with all corners of its
+ * facets. Sides are parts of the set within which facets that share an edge (2D: a node) turn by less than 45
+ * degrees; pieces are parts connected by nodes. group[set->count]: with `split` the side, else the piece of
+ * each facet, numbered in the order of the facets. */
 MUST_CHECK enum status boundary_add_sides(const struct face_table *table, const struct facet_set *set,
                                           bool split, struct corner *corners, int64_t *part_count,
                                           int64_t *group, int64_t *group_count, struct error *error);

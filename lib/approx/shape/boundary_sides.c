@@ -1,4 +1,4 @@
-/* The facets of a set: which faces of the table they are, their normals, and the sides that they form. */
+/* The facets of a set: their faces in the table, their normals, and the sides that they form. */
 #include "approx/shape/boundary_private.h"
 
 #include "base/lists.h"
@@ -64,8 +64,8 @@ static bool share_edge(int dim, const int32_t *a, const int32_t *b)
     return shared >= dim - 1;
 }
 
-/* Whether two facets that meet at a node, given by their nodes, are of one side: in 3D they must share an
- * edge, in 2D they meet anyway. */
+/* Whether two facets that meet at a node, given by their nodes, are on one side; in 3D they must share an
+ * edge. */
 static bool of_one_side(const struct face_table *table, const int32_t *a, const int32_t *b)
 {
     double na[3], nb[3], size;

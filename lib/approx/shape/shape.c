@@ -27,8 +27,8 @@ struct images {
     double *offset;
 };
 
-/* Set support->image where neighbours [first, last) of the lists, those of the next point, are seen around
- * corners. */
+/* Set support->image if some of the neighbours [first, last) of the lists, those of the next point, are seen
+ * around corners. */
 static enum status find_images(int dim, const struct neighbours *lists, int64_t first, int64_t last,
                                struct images *images, struct mls_support *support, struct error *error)
 {
@@ -49,7 +49,7 @@ static enum status find_images(int dim, const struct neighbours *lists, int64_t 
     return STATUS_OK;
 }
 
-/* What a table is made of, and its points. */
+/* The input of a table, and its points. */
 struct tabulation {
     const struct mls *mls;
     const double *nodes, *radius;
@@ -58,7 +58,7 @@ struct tabulation {
     const char *what;
 };
 
-/* phi and, unless NULL, dphi of points [first, last), from the first pair of these on. */
+/* phi and, unless NULL, dphi of the points [first, last); the arrays begin with the first pair of these. */
 static enum status tabulate(const struct tabulation *table, int64_t first, int64_t last, double *phi,
                             double *dphi, struct error *error)
 {
@@ -96,7 +96,7 @@ done:
     return status;
 }
 
-/* The failure of the first chunk that failed, independent of the number of threads. */
+/* The failure of the first chunk that failed, for any number of threads. */
 struct failure {
     int64_t chunk;
     enum status status;
@@ -132,7 +132,7 @@ enum status shape_table(const struct mls *mls, const double *nodes, const double
     return failure.status;
 }
 
-/* Points of a row of averages: where they begin in the lists, and the weights of their values. */
+/* The points of a row of averages: the first one in the lists, and the weights of their values. */
 struct row_points {
     int64_t first;
     int count;
@@ -150,8 +150,8 @@ static struct row_points points_of_row(const struct faces *faces, int64_t r)
     return row;
 }
 
-/* Merge the lists of the points of row r, ascending, into idx, and the values phi of its pairs, weighted,
- * into mean; or, where idx is NULL, count only. Returns the length. */
+/* Merge the ascending lists of the points of row r into idx, and the weighted values phi of their pairs into
+ * mean; if idx is NULL, only count. Returns the length. */
 static int64_t merge_row(const struct neighbours *lists, const struct faces *faces, int64_t r,
                          const double *phi, int32_t *idx, double *mean)
 {

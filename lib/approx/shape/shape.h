@@ -10,10 +10,10 @@
 struct around {
     int64_t count;
     const int64_t *pair;  /* count: places in idx, ascending */
-    const double *offset; /* count * dim: from the point to where the neighbour seems to be, m */
+    const double *offset; /* count * dim: from the point to the neighbour's image (mls_support), m */
 };
 
-/* Lists of neighbours in view (CSR), as support_build makes them. */
+/* A view of lists of neighbours (CSR), made by support_build. */
 struct neighbours {
     int64_t count;
     const int64_t *ptr; /* count + 1 */
@@ -26,14 +26,13 @@ struct neighbours {
 struct neighbours support_view(const struct support_lists *lists);
 
 /* phi[ptr[count]] and, unless NULL, dphi[ptr[count] * dim] (1/m) at the points x[count * dim]. `what` names
- * the points in messages. STATUS_VERDICT, naming the first point whose moment matrix is singular,
- * ill-conditioned, or has too few neighbours. Threaded; the same bits for any number of threads. */
+ * the points in messages. STATUS_VERDICT, naming the first such point, if a point has too few neighbours or
+ * an ill-conditioned moment matrix. Threaded; the same bits for any number of threads. */
 MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
                                    const struct neighbours *neighbours, const double *x, const char *what,
                                    double *phi, double *dphi, struct error *error);
 
-/* Rows that averages of the shape functions over faces of cells are made of (face_rows.h), on lists of their
- * own. */
+/* The rows of averages of the shape functions over faces (face_rows.h), as CSR. */
 struct face_averages {
     int64_t count;        /* of rows */
     int64_t *ptr;         /* count + 1 */
@@ -42,10 +41,9 @@ struct face_averages {
     double *boundary_phi; /* values at the points of faces on the boundary, following their lists */
 };
 
-/* The rows of the averages of the shape functions over faces, with the points x (face_rows_points). By
- * the divergence theorem the mean gradient over a cell is the sum over its faces of such an
- * average times the outward normal, per volume: gradients that are smoothed over smoothed cells, for which
- * the linear patch test holds to round-off (Chen et al. 2001, on background cells). Errors and threads as
+/* The rows of the averages of the shape functions over faces, from their points x (face_rows_points). By the
+ * divergence theorem, the mean gradient over a cell is the sum over its faces of the average times the area
+ * vector, divided by the volume (Chen et al. 2001, here on background cells). Errors and threads as
  * shape_table. */
 MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
                                            const struct neighbours *neighbours, const double *x,

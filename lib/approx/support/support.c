@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points of one unit of work: fixed, so that the result cannot depend on the number of threads. */
+/* Points of one chunk of work: fixed, so that the result does not depend on the number of threads. */
 static const int64_t chunk_points = 512;
 
 struct support_options support_defaults(int dim)
@@ -73,7 +73,8 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                 body->visibility != NULL ? " reach through the cells" : "", stray);
 }
 
-/* Fill the worker's list with the neighbours of the points [first, last); their numbers go to lists->ptr. */
+/* Append the neighbours of the points [first, last) to the worker's list; lists->ptr receives their
+ * numbers. */
 static enum status build_chunk(const struct search *search, int64_t first, int64_t last,
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
@@ -96,7 +97,7 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
     return STATUS_OK;
 }
 
-/* Append a worker's neighbours around corners to those of the lists, whose pairs are `before` so far. */
+/* Append a worker's neighbours around corners to those of the lists, which have `before` pairs so far. */
 static enum status append_around(int dim, const struct worker *worker, int64_t before,
                                  struct support_lists *lists, struct error *error)
 {
@@ -115,7 +116,8 @@ static enum status append_around(int dim, const struct worker *worker, int64_t b
     return STATUS_OK;
 }
 
-/* Append the list of the points [first, last), which follow those of `all`; sum the counts and take stock. */
+/* Append a worker's list of the points [first, last) to `all`; turn counts into lists->ptr, and update the
+ * statistics. */
 static enum status append_chunk(int dim, struct support_lists *lists, int64_t first, int64_t last,
                                 const struct worker *worker, struct index_list *all, struct error *error)
 {
@@ -137,8 +139,8 @@ static enum status append_chunk(int dim, struct support_lists *lists, int64_t fi
     return STATUS_OK;
 }
 
-/* All chunks, appended to `all` in their order whichever thread has built them. Of several that fail the
- * first tells. */
+/* Build all chunks and append them to `all` in order. The failure of the first chunk that failed is
+ * reported. */
 static enum status build_chunks(const struct search *search, struct support_lists *lists,
                                 struct index_list *all, struct error *error)
 {
@@ -211,7 +213,7 @@ enum status support_build_among(const struct support_options *options, int64_t b
         }
     }
     TRY(build_chunks(&search, lists, &all, error));
-    lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* no longer than it need be */
+    lists->idx = array_grow(all.index, all.count, sizeof *all.index); /* release what is not used */
     if (lists->idx == NULL) {
         TRY(fail_memory(error, "neighbour list"));
     }

@@ -9,20 +9,19 @@
 struct support_options {
     double radius;         /* constant support radius, m; 0: factor times the local spacing */
     double factor;         /* support radius / local node spacing */
-    int64_t least, most;   /* neighbours: widen until `least`; keep the `most` nearest (0: all) */
-    bool widen;            /* widen where the moment matrix is unfit or a gradient too large */
+    int64_t least, most;   /* neighbours: widen until there are `least`; keep the `most` nearest (0: all) */
+    bool widen;            /* widen where the moment matrix is ill-conditioned or a gradient too large */
     double gradient_bound; /* largest |grad phi| h admitted, h the mean spacing within the support */
     enum visibility_rule visibility; /* whether neighbours must be visible through the cells */
-    const int32_t
-        *side; /* with cells: the side of the interfaces that each cell is on, from 0; supports stop at
-                  interfaces. NULL: no interfaces. Used by support_space.h; support_build ignores it */
-    const int32_t *owner; /* with cells and sides: the part that each node belongs to (partition.h). */
-    int32_t part;   /* Supports of points of other parts do not stop at interfaces, as the halo may hold too
-                       little of a side. owner NULL: the whole body. support_build ignores both */
-    struct mls mls; /* what the lists are for */
+    struct mls mls;                  /* the shape functions for which the lists are made */
+    /* Used by support_space.h only: */
+    const int32_t *side;  /* of each cell: its side of the interfaces at which supports stop; NULL: none */
+    const int32_t *owner; /* with sides: the part of each node (partition.h); NULL: the whole body */
+    int32_t part; /* supports of points of other parts do not stop at interfaces, as the halo may contain too
+                     little of a side */
 };
 
-/* Factor 1.8 of the local spacing, in 3D 2; widening on, the default MLS. */
+/* Radii of 1.8 times the local spacing, in 3D 2 times; with widening, and the default MLS. */
 struct support_options support_defaults(int dim);
 
 /* Neighbour lists of `count` points (CSR). */
@@ -39,8 +38,8 @@ struct support_lists {
     double *around_offset;
 };
 
-/* spacing[node_count], m: mean distance to the 2 dim nearest other nodes. For clouds without cells (with
- * them: cells_node_spacing). */
+/* spacing[node_count], m: mean distance to the 2 dim nearest other nodes, for clouds without cells (with
+ * cells: cells_node_spacing). */
 MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *spacing,
                                      struct error *error);
 
@@ -48,12 +47,12 @@ MUST_CHECK enum status nodes_spacing(int dim, int64_t node_count, const double *
 MUST_CHECK enum status support_radii(const struct support_options *options, int64_t node_count,
                                      const double *spacing, double *radius, struct error *error);
 
-/* The lists of points x[count * dim]; `what` names them in messages. With `visibility` neighbours must be
- * visible through the cells, or connected around corners within their radius (visibility.h), and `places` are
- * the cells that the points lie in; with visibility NULL all nodes within their radius are neighbours.
- * Threads share the work; the result does not depend on their number. STATUS_VERDICT, naming the point, when
- * widening up to eightfold does not help; without options->widen unfit supports are left for the shape
- * functions to report. STATUS_INPUT for coordinates that are not finite. */
+/* The neighbour lists of points x[count * dim]; `what` names these in messages. With `visibility`, neighbours
+ * must be visible through the cells, or connected around corners within their radius (visibility.h), and
+ * `places` are the cells that contain the points; with visibility NULL all nodes within their radius are
+ * neighbours. Threaded; the result does not depend on the number of threads. STATUS_VERDICT, naming the
+ * point, if widening up to eightfold does not help; without options->widen the shape functions report
+ * inadmissible supports. STATUS_INPUT for coordinates that are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      const struct visibility *visibility,
                                      const struct visibility_places *places, int64_t count, const double *x,

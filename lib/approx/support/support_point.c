@@ -18,7 +18,7 @@ static double neighbour_distance2(const struct point_grid *grid, const double *x
                          : vector_distance2(grid->dim, x, grid->x + (int64_t)node * grid->dim);
 }
 
-/* Keep the `most` nearest of the neighbours in index[count], of equally near ones those of lower index;
+/* Keep the `most` nearest of the neighbours index[count], of equally near ones those with lower index;
  * image[count * dim] or NULL. */
 static enum status keep_nearest(const struct point_grid *grid, const double *x, int64_t most, int32_t *index,
                                 double *image, int64_t *count, struct worker *worker, struct error *error)
@@ -50,8 +50,8 @@ static enum status keep_nearest(const struct point_grid *grid, const double *x, 
     return STATUS_OK;
 }
 
-/* Mean spacing of the nodes in a support: the edge of the cube (square) that each of them has to itself. A
- * list cut to the nearest reaches only as far as its farthest node. */
+/* Mean spacing of the nodes in a support: the edge of the cube (square) with the volume per node. A list
+ * limited to the nearest extends only to its farthest node. */
 static double spacing_within(const struct support_options *options, const struct point_grid *grid,
                              const double *x, const int32_t *index, const double *image, int64_t count,
                              double widen)
@@ -105,8 +105,8 @@ static enum status judge(const struct support_options *options, const struct poi
     return STATUS_OK;
 }
 
-/* Record the neighbours of the list from `first` on that are connected around corners: those whose image is
- * not at the node. */
+/* Record the neighbours of the list from `first` on that are connected around corners: their image is not at
+ * the node. */
 static enum status note_around(const struct point_grid *grid, const double *x, const double *image,
                                int64_t first, struct worker *worker, struct error *error)
 {

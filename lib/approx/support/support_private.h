@@ -13,7 +13,7 @@ struct search {
     const struct support_body *body;
     const int32_t *body_of; /* of each point; NULL: the first */
     struct visibility_places places;
-    struct visibility_shadows *shadows; /* body_count: of its points, within reach */
+    struct visibility_shadows *shadows; /* body_count: shadows that may contain points of each body */
     const double *x;
     const char *what;
 };

@@ -27,8 +27,8 @@ static double mean_of_least(double *distance, int64_t count, int64_t wanted)
     return sum / (double)wanted;
 }
 
-/* Mean distance of a node from the nearest nodes, found in neighbourhoods that are doubled until they hold
- * enough. */
+/* Mean distance of a node from the nearest nodes, found in a neighbourhood that is doubled until it has
+ * enough nodes. */
 static enum status spacing_of(const struct point_grid *grid, int64_t node, struct index_list *list,
                               double *spacing, struct error *error)
 {
@@ -64,7 +64,7 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
         return fail(error, STATUS_INPUT, "nodes.x: %lld nodes at one place have no spacing",
                     (long long)node_count);
     }
-    /* A first guess of the neighbourhood's size, doubled where it holds too few. */
+    /* A first guess of the neighbourhood's size; it is doubled where there are too few nodes. */
     RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
     for (int64_t n = 0; n < node_count; n++) {
         radius[n] = 2.0 * extent / pow((double)node_count, 1.0 / dim);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes and cells of one side; local_node[node_count]: scratch, -1 at first and at the end. */
+/* Copy the nodes and cells of one side. local_node[node_count]: scratch, -1 before and after. */
 static enum status cut_out(const struct support_space *space, const int32_t *cell, struct support_side *side,
                            int32_t *local_node, struct error *error)
 {
@@ -40,13 +40,13 @@ static enum status cut_out(const struct support_space *space, const int32_t *cel
     return STATUS_OK;
 }
 
-/* The sides, with the whole behind them where there is one. */
+/* The number of sides; the whole body, if needed, is one more. */
 static int64_t sides_in(const struct support_space *space)
 {
     return space->side_count + (space->owner != NULL);
 }
 
-/* Cut the body along its interfaces. */
+/* Divide the body into its sides. */
 static enum status cut(struct support_space *space, struct error *error)
 {
     SCRATCH int64_t *first = NULL;
@@ -121,7 +121,7 @@ void support_space_free(struct support_space *space)
     *space = (struct support_space){0};
 }
 
-/* The side of each point whose cells are known, and its cells there; -1: none known. */
+/* side[count]: of each point whose cells are known; -1: not known. */
 static void sides_of_cells(const struct support_space *space, const struct visibility_places *places,
                            int64_t count, int32_t *side)
 {
@@ -147,7 +147,7 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
     }
 }
 
-/* Nodes of other parts, and points in no own cell of the part, belong to the side that is the whole. */
+/* Assign nodes of other parts, and points in no own cell of the part, to the side that is the whole body. */
 static void sides_of_others(const struct support_space *space, const struct visibility_places *places,
                             int64_t count, int32_t *side)
 {
@@ -163,7 +163,7 @@ static void sides_of_others(const struct support_space *space, const struct visi
     }
 }
 
-/* The side of each point that has none yet: that of the nearest cell. */
+/* Assign each point without side to that of the nearest cell. */
 static enum status locate_sides(const struct support_space *space, int64_t count, const double *x,
                                 int32_t *side, struct error *error)
 {
@@ -195,8 +195,8 @@ static enum status locate_sides(const struct support_space *space, int64_t count
     return STATUS_OK;
 }
 
-/* The places of points on their sides: the node that each is there, or its cells there. ptr, item: what they
- * are kept in, the caller's to free. */
+/* The places of points on their sides: nodes or cells, by their numbers there. *ptr and *item hold them, to
+ * be freed. */
 static enum status places_on_sides(const struct support_space *space, const struct visibility_places *places,
                                    int64_t count, const int32_t *side, int64_t **ptr, int32_t **item,
                                    struct visibility_places *within, struct error *error)

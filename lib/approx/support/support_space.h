@@ -1,10 +1,8 @@
-/* The nodes of a body with their support radii, and their visibility through its cells.
- *
- * Where cells have sides (support_options.side), each side is a body of its own, with the nodes of the
- * interface: a neighbour of a point is a node of the cells on the point's side. So shape functions have a
- * kink at an interface, as a displacement has where the stiffness jumps. What lies on an interface, a point
- * of a face or a node, takes the lowest of the sides that meet there: the field there has the same value from
- * every side. */
+/* The nodes of a body with their support radii, and their visibility through its cells. If cells have sides
+ * (support_options.side), each side is a body of its own, with the nodes of the interface: a neighbour of a
+ * point is a node of the cells on the point's side. So shape functions have a kink at an interface, like a
+ * displacement where the stiffness jumps. Points of faces and nodes on an interface take the lowest of the
+ * sides that meet there, so that the field has a single value there. */
 #pragma once
 
 #include "approx/support/support.h"
@@ -26,8 +24,8 @@ struct support_space {
     bool by_cells;            /* neighbours must be visible through the cells; else all within their radius */
     const int32_t *cell_side; /* the caller's: cells.count, or NULL: one side */
     int64_t side_count;
-    struct support_side *side; /* side_count; for a part of a body with sides one more, the whole: for points
-                                  that are not its own */
+    struct support_side *side; /* side_count; for a part of a body with sides followed by the whole, for
+                              points that are not its own */
     const int32_t *owner;      /* the caller's: cells.node_count, or NULL: no part, or no sides */
     int32_t part;
     int32_t *place; /* cells.count, with several sides: the number of each cell on its side */
@@ -40,7 +38,7 @@ MUST_CHECK enum status support_space_build(const struct support_options *options
                                            struct error *error);
 void support_space_free(struct support_space *space);
 
-/* The lists of points x[count * dim], which lie in these cells (NULL: to be found): see support_build. */
+/* The lists of points x[count * dim] in the cells of `places` (NULL: not known): see support_build. */
 MUST_CHECK enum status support_space_lists(const struct support_options *options,
                                            const struct support_space *space,
                                            const struct visibility_places *places, int64_t count,

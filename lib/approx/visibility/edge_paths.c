@@ -105,7 +105,7 @@ enum status edge_paths_reach(struct edge_paths *paths, int64_t place, bool *reac
         double limit = most_detour * vector_distance(dim, x, visibility->cells.x + (int64_t)node * dim);
         if (!sees && paths->searched < limit) {
             RETURN_IF_ERROR(
-                search(paths, 1.5 * limit, error)); /* farther than needed here, for the next queries */
+                search(paths, 1.5 * limit, error)); /* farther than needed, for the next queries */
         }
         paths->verdict[place] = sees || paths->length[node] <= limit ? PATH_GOOD : PATH_NONE;
     }

@@ -1,4 +1,4 @@
-/* Which places are connected to a node, so that measured values do not act across gaps and slits.
+/* Places that are connected to a node, so that measured values do not act across gaps and slits.
  *
  * A place belongs to the node nearest to it. It is connected to another node when the straight segment
  * between the two nodes stays within the cells (see visibility.h), or when the shortest path along edges of
@@ -15,11 +15,11 @@ struct edge_paths {
     struct visibility visibility; /* its cells only */
     struct visibility_work work;
     int64_t place_count;
-    int32_t *node;    /* place_count: to which each place belongs; -1 where no node is in a cell */
+    int32_t *node;    /* place_count: the node to which each place belongs; -1: no node is in a cell */
     uint8_t *verdict; /* place_count, enum path_verdict: whether each place is connected to `from` */
-    int32_t from;     /* -1: none yet */
-    double searched;  /* shortest paths from there are known up to this length, m; negative: none */
-    double *length;   /* node_count: their lengths, infinite beyond */
+    int32_t from;     /* the node; -1: none yet */
+    double searched;  /* shortest paths from it are known up to this length, m; negative: none */
+    double *length;   /* node_count: their lengths; infinite: longer */
     struct queue queue;
 };
 
@@ -30,7 +30,7 @@ MUST_CHECK enum status edge_paths_build(const struct cells *cells, int64_t place
                                         struct error *error);
 void edge_paths_free(struct edge_paths *paths);
 
-/* Set the node `from`; what is known of it is kept if it is the same as before. */
+/* Set the node `from`; the paths known so far are kept if it is the same as before. */
 void edge_paths_begin(struct edge_paths *paths, int32_t from);
 
 MUST_CHECK enum status edge_paths_reach(struct edge_paths *paths, int64_t place, bool *reached,

@@ -32,7 +32,7 @@ enum status visibility_begin(const struct visibility *visibility, const struct v
     return STATUS_OK;
 }
 
-/* Mark the candidates that are out of sight; *hidden counts them. A node checked before keeps its mark. */
+/* Mark the candidates that are hidden; *hidden: their number. A node that was checked keeps its mark. */
 static enum status mark_hidden(const struct visibility *visibility, const struct visibility_shadows *shadows,
                                double widen, const int32_t *index, int64_t count,
                                struct visibility_work *work, int64_t *hidden, struct error *error)
@@ -69,7 +69,7 @@ static enum status mark_hidden(const struct visibility *visibility, const struct
     return STATUS_OK;
 }
 
-/* Keep the neighbours within reach, with their images. */
+/* Keep the neighbours whose paths are short enough, and set their images. */
 static enum status keep(const struct visibility *visibility, double widen, int32_t *index, int64_t *count,
                         struct visibility_work *work, struct error *error)
 {

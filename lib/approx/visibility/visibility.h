@@ -1,35 +1,35 @@
-/* Which nodes are visible from a point, or connected to it, through the cells of the body, so that supports
- * do not act across gaps.
+/* Nodes that are visible from a point, or connected to it, through the cells of the body, so that supports do
+ * not act across gaps.
  *
- * A node is in sight of a point when the straight segment between them stays within the cells, from face to
- * face (visibility: Belytschko, Lu and Gu 1994). Around a re-entrant corner the distance is the length of the
- * shortest path through the body (diffraction: Organ, Fleming, Terry and Belytschko 1996), which grows
- * continuously from the straight one, so that the weights do. A node to
- * which every path is longer than its support radius is no neighbour. Paths bend at re-entrant nodes, in 3D
- * also within re-entrant edges. Cells that have only a node in common are not connected by it; the node
- * itself sees what each of these cells sees. */
+ * A node is visible from a point if the straight segment between them stays within the cells, passing from
+ * face to face (visibility: Belytschko, Lu and Gu 1994). Around a re-entrant corner the distance is the
+ * length of the shortest path through the body (diffraction: Organ, Fleming, Terry and Belytschko 1996). It
+ * is a continuous function of the point, and so are the weights. A node is not a neighbour if every path to
+ * it is longer than its support radius. Paths bend at re-entrant nodes, in 3D also within re-entrant edges.
+ * Cells that share only a node are not connected by it; the node itself sees what each of these cells
+ * sees. */
 #pragma once
 
 #include "approx/cells/cells.h"
 #include "approx/points/point_grid.h"
 
-/* Which nodes within their radius are neighbours: those visible or connected through the cells, where there
- * are cells; or all. */
+/* The neighbours among the nodes within their radius: if there are cells, those visible or connected through
+ * these; or all. */
 enum visibility_rule { VISIBILITY_CELLS, VISIBILITY_DISTANCE, VISIBILITY_RULE_COUNT };
 
 /* Names for command lines and headers: "cells", "distance". */
 extern const char *const visibility_names[VISIBILITY_RULE_COUNT];
 
-/* A facet of the boundary: its plane is normal . x = offset, the body where it is less. */
+/* A facet of the boundary in the plane normal . x = offset; the body is on the side of lower values. */
 struct visibility_facet {
     int32_t node[3], cell;
     double normal[3], offset;
-    double dual[2][3], from[2]; /* dual . x - from: the second and third barycentric coordinates of x there */
+    double dual[2][3], from[2]; /* dual . x - from: the second and third barycentric coordinates of x */
     double middle[3], radius;   /* of a ball around it */
 };
 
-/* A facet that may hide a node from points of its support: the node is beyond the facet, or on it without
- * being its own. */
+/* A facet that may hide a node from points of its support: the node is beyond the facet, or on it but not a
+ * node of it. */
 struct visibility_shadow {
     int32_t facet, node;
 };
@@ -49,11 +49,11 @@ struct visibility {
     bool *corner;                     /* node_count: paths may bend there */
     int64_t *edge_ptr; /* node_count + 1: 3D: the other ends of the re-entrant edges at each node (CSR) */
     int32_t *edge;
-    int64_t *seen_ptr; /* node_count + 1: the corners that a node, within its radius, is in sight of (CSR) */
+    int64_t *seen_ptr; /* node_count + 1: the corners within its radius from which a node is visible (CSR) */
     int32_t *seen;
-    double *seen_length; /* with `seen`: how far, m */
+    double *seen_length; /* for each of `seen`: the distance, m */
     int64_t
-        *hidden_ptr; /* node_count + 1: what is hidden from each node, of nodes nearer than their radius */
+        *hidden_ptr; /* node_count + 1: the nodes nearer than their radius that are hidden from each node */
     int32_t *hidden;
 };
 
@@ -65,18 +65,18 @@ MUST_CHECK enum status visibility_build_cells(const struct cells *cells, struct 
                                               struct error *error);
 void visibility_free(struct visibility *visibility);
 
-/* The cells that points lie in; all members zero: not known, they are searched for. A point outside of all
+/* The cells that contain points. All members zero: not known; they are searched for. A point outside of all
  * cells sees what the nearest place in a cell sees; a point far from all cells sees all nodes near it. */
 struct visibility_places {
-    bool nodes;             /* point p is node p, */
-    const int32_t *node;    /* or, unless NULL, that node */
-    const int32_t *cell;    /* else, unless NULL: a cell for each row, -1 for none; */
-    const int64_t *ptr;     /* or, unless NULL, the cells of row r from ptr[r] to ptr[r + 1] */
-    int64_t points_per_row; /* of rows of points, */
-    int64_t long_rows;      /* of the first so many, others have one point; 0: of all */
+    bool nodes;          /* point p is node p; */
+    const int32_t *node; /* or, unless NULL, node[p]; */
+    const int32_t *cell; /* else, unless NULL: one cell for each row of points, -1: none; */
+    const int64_t *ptr;  /* or, unless NULL: the cells of row r are cell[ptr[r]] to before cell[ptr[r + 1]] */
+    int64_t points_per_row; /* of the first long_rows rows; the others have one point */
+    int64_t long_rows;      /* 0: all rows */
 };
 
-/* The row of point p; *first: its first point. */
+/* The row of point p; *first: the first point of the row. */
 static inline int64_t visibility_places_row(const struct visibility_places *places, int64_t p, int64_t *first)
 {
     int64_t row = p / places->points_per_row, rest = p - places->long_rows * places->points_per_row;
@@ -88,7 +88,7 @@ static inline int64_t visibility_places_row(const struct visibility_places *plac
     return row;
 }
 
-/* The cells of point p that are known: *count of them. */
+/* The known cells of point p, *count of them. */
 static inline const int32_t *visibility_places_cells(const struct visibility_places *places, int64_t p,
                                                      int64_t *count)
 {
@@ -102,14 +102,14 @@ static inline const int32_t *visibility_places_cells(const struct visibility_pla
     return places->cell + first;
 }
 
-/* The shadows that may hold each of some points (CSR): its number s in reach->shadow, or ~s for one that
- * certainly does. */
+/* The shadows that may contain each of some points (CSR): the number s in visibility->shadow, or ~s if the
+ * shadow certainly does. */
 struct visibility_shadows {
     int64_t *ptr;
     int32_t *shadow;
 };
-/* Find the shadows for the points x[count * dim]; with body_of[count] (else NULL), for the points of body
- * number `body` only. */
+/* Find the shadows for the points x[count * dim]; with body_of[count], unless NULL, only for the points of
+ * body number `body`. */
 MUST_CHECK enum status visibility_shadows_build(const struct visibility *visibility, int64_t count,
                                                 const double *x, const int32_t *body_of, int32_t body,
                                                 struct visibility_shadows *shadows, struct error *error);
@@ -117,24 +117,24 @@ void visibility_shadows_free(struct visibility_shadows *shadows);
 
 /* Scratch space for one thread, all zero at first; grows on demand. */
 struct visibility_work {
-    int64_t point;   /* the number of the current point, */
-    int64_t node;    /* the node that it is, or -1, */
-    const double *x; /* and its place */
-    double from[3];  /* itself; or for a point outside, its place in the nearest cell */
+    int64_t point;   /* number of the current point, */
+    int64_t node;    /* the node at which it is, or -1, */
+    const double *x; /* and its coordinates */
+    double from[3];  /* the point itself, or the nearest place in a cell for a point outside */
     bool outside;
-    const int32_t *cell;       /* the cells that it lies in */
-    int64_t cell_count;        /* -1: not looked for yet */
+    const int32_t *cell;       /* the cells that contain the point */
+    int64_t cell_count;        /* -1: not searched for yet */
     struct index_list own;     /* storage for `cell` */
     uint32_t serial;           /* of the point */
-    uint32_t *mark;            /* node_count: 2 serial, and 1 more for a node that is hidden */
-    double *length;            /* node_count: of the shortest path found so far, infinite: none */
-    int32_t *before;           /* the previous node on that path, -1: the point itself */
-    struct index_list reached; /* nodes that the last search for paths may have put a length down for */
+    uint32_t *mark;            /* node_count: 2 serial, or 2 serial + 1 for a hidden node */
+    double *length;            /* node_count: of the shortest path found so far; infinite: none */
+    int32_t *before;           /* the previous node on that path; -1: the point itself */
+    struct index_list reached; /* nodes for which the last search for paths may have set a length */
     struct index_list hidden, stack, visited;
-    int64_t changed; /* candidates of the last filter that were out of sight */
-    int64_t around;  /* neighbours of the last filter that are seen around corners */
+    int64_t changed; /* number of candidates of the last filter that were hidden */
+    int64_t around;  /* number of neighbours of the last filter that are seen around corners */
     int64_t image_room;
-    double *image; /* those neighbours' offsets from the point to where they seem to be: see mls_support */
+    double *image; /* offsets from the point to the images of the neighbours, see mls_support */
 };
 void visibility_work_free(struct visibility_work *work);
 
@@ -143,10 +143,10 @@ MUST_CHECK enum status visibility_begin(const struct visibility *visibility,
                                         const struct visibility_places *places, int64_t p, const double *x,
                                         struct visibility_work *work, struct error *error);
 
-/* Of the candidates index[*count], nodes that are nearer than `widen` times their radius, keep those whose
- * shortest path is as well. Where work->around > 0, work->image[*count * dim] holds the offset to each of
- * them: straight to a node in sight, and along the first leg of the path, as long as the path is, to others.
- * Where the points are nodes `shadows` may be empty. */
+/* Of the candidates index[*count], nodes nearer than `widen` times their radius, keep those whose shortest
+ * path is also shorter than that. If work->around > 0, work->image[*count * dim] holds the offset to each: to
+ * a visible node itself; to others along the first leg of the path, with the length of the path. If the
+ * points are nodes, `shadows` may be empty. */
 MUST_CHECK enum status visibility_filter(const struct visibility *visibility,
                                          const struct visibility_shadows *shadows, double widen,
                                          int32_t *index, int64_t *count, struct visibility_work *work,

@@ -1,5 +1,5 @@
-/* Preparation of a body for queries of visibility: facets, re-entrant corners, and the nodes that are visible
- * from each node. */
+/* Preparation of a body for visibility queries: facets, re-entrant corners, and the nodes visible from each
+ * node. */
 #include "approx/visibility/visibility_private.h"
 
 #include "approx/cells/parts.h"
@@ -92,8 +92,8 @@ static bool is_of_facet(int dim, const struct visibility_facet *facet, int32_t n
     return facet->node[0] == node || facet->node[1] == node || (dim == 3 && facet->node[2] == node);
 }
 
-/* The shadows: of nodes whose supports reach a facet and that are beyond it, or on it without being its own.
- */
+/* List the shadows: of nodes whose supports reach a facet and that are beyond it, or on it but not nodes of
+ * it. */
 static enum status list_shadows(struct visibility *visibility, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
@@ -121,7 +121,7 @@ static enum status list_shadows(struct visibility *visibility, struct error *err
     return STATUS_OK;
 }
 
-/* Whether the cells at a node are connected by faces at it. */
+/* *together: whether the cells at a node are connected by faces at the node. */
 static enum status hangs_together(const struct visibility *visibility, int32_t node,
                                   struct visibility_work *work, bool *together, struct error *error)
 {
@@ -140,8 +140,7 @@ static enum status hangs_together(const struct visibility *visibility, int32_t n
     return status;
 }
 
-/* Whether the interior angle between two facets is larger than 180 degrees; it is 360 where they lie on each
- * other. */
+/* Whether the interior angle between two facets is larger than 180 degrees; it is 360 if they coincide. */
 static bool is_reentrant(const struct visibility *visibility, const struct ridge *first,
                          const struct ridge *second)
 {
@@ -172,7 +171,8 @@ static bool is_reentrant(const struct visibility *visibility, const struct ridge
     return product > 0.0;
 }
 
-/* Corners: nodes of re-entrant ridges. Where more than two facets meet the body only touches itself. */
+/* Find the corners: nodes of re-entrant ridges. Where more than two facets meet, the body only touches
+ * itself. */
 static enum status find_corners(const struct faces *faces, struct visibility *visibility,
                                 struct visibility_work *work, struct error *error)
 {
@@ -206,7 +206,7 @@ static enum status find_corners(const struct faces *faces, struct visibility *vi
                           error);
 }
 
-/* What each node sees and does not see of the others. */
+/* List the nodes that each node sees, and those hidden from it. */
 static enum status file_views(struct visibility *visibility, struct visibility_work *work,
                               struct error *error)
 {

@@ -1,4 +1,4 @@
-/* Shortest paths around corners, and their bends slid along re-entrant edges. */
+/* Shortest paths around corners, with bends that slide along re-entrant edges. */
 #include "approx/visibility/visibility_private.h"
 
 #include "base/memory.h"
@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Bends of one path that are moved along their re-entrant edges, and sweeps over them. */
+/* Most bends of one path that slide along their re-entrant edges, and number of sweeps over them. */
 enum { MOST_BENDS = 8, SWEEPS = 3 };
-/* Paths over nodes may be so much longer than a radius, in 3D, before their bends are slid. */
+/* In 3D paths over nodes may be longer than a radius by this factor, before their bends slide. */
 static const double most_slack = 1.2;
 
 enum status visibility_work_reserve(const struct visibility *visibility, struct visibility_work *work,
@@ -33,8 +33,8 @@ void visibility_work_free(struct visibility_work *work)
     *work = (struct visibility_work){0};
 }
 
-/* Shorten the path to a hidden node by way of the corners that it is in sight of, when lengths are known of
- * them. */
+/* Shorten the path to a hidden node by way of the corners from which it is visible, if their path lengths are
+ * known. */
 static bool shorten(const struct visibility *visibility, int32_t node, double limit,
                     struct visibility_work *work)
 {
@@ -69,7 +69,7 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
             work->length[node] = INFINITY;
         } else if (visibility->corner[node]) {
             double length = vector_distance(dim, work->from, visibility->cells.x + (int64_t)node * dim);
-            /* A corner contributes only nodes that are visible from it. */
+            /* A path continues from a corner only to nodes visible from it. */
             work->length[node] =
                 length > VISIBILITY_ON_PLANE * visibility->grid->radius[node] ? length : INFINITY;
         } else {
@@ -78,7 +78,7 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
         work->before[node] = -1;
         work->reached.index[work->reached.count++] = node;
     }
-    /* Each pass over all settles paths of one bend more, at least. */
+    /* Each pass completes paths with at least one bend more. */
     for (bool shorter = true; shorter;) {
         shorter = false;
         for (int64_t i = 0; i < work->hidden.count; i++) {
@@ -90,8 +90,8 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
     return STATUS_OK;
 }
 
-/* The shortest path from p to q across the edge from a to b: its length, unrolled into a plane, and the place
- * where it crosses the edge, 0 to 1; 0 where p or q is on the line of the edge. */
+/* The length of the shortest path from p to q across the edge from a to b, by unrolling it into a plane.
+ * *passes: where it crosses the edge, 0 to 1; 0 if p or q is on the line of the edge. */
 static double shortest_over_edge(const double *a, const double *b, const double *p, const double *q,
                                  double *passes)
 {
@@ -104,7 +104,7 @@ static double shortest_over_edge(const double *a, const double *b, const double 
         pp += from_p * from_p;
         qq += from_q * from_q;
     }
-    /* Squares of the distances from the line, and places along it in lengths of the edge. */
+    /* Squared distances from the line, and places along it in lengths of the edge. */
     double off_p2 = pp - pu * pu / length2, off_q2 = qq - qu * qu / length2, least = 1e-12 * length2;
     double along_p = pu / length2, along_q = qu / length2, t = 0.0;
     *passes = 0.0;
@@ -124,9 +124,8 @@ static double shortest_over_edge(const double *a, const double *b, const double 
            sqrt(off_q * off_q + (along_q - t) * (along_q - t) * length2);
 }
 
-/* Slide a bend at a node along that re-entrant edge at the node which makes the path between its neighbours
- * shortest.
- */
+/* Slide a bend at a node along the re-entrant edge at the node that makes the path between its neighbours
+ * shortest. */
 static void slide(const struct visibility *visibility, const double *before, const double *after,
                   int32_t node, double *bend)
 {

@@ -1,9 +1,7 @@
-/* Shadows of facets: the parts of the supports of nodes that a facet of the boundary may hide.
- *
- * The shadow of a facet from a node beyond its plane is the part of the node's ball in which the segment to
- * the node passes through the facet. For each shadow the points within it are searched, among all points at
- * once. So the work is proportional to the number of hidden nodes, not to the number of facets that might
- * hide them. */
+/* Shadows of facets: the parts of the supports of nodes that a facet of the boundary may hide. The shadow of
+ * a facet from a node beyond its plane is the part of the node's support from which the segment to the node
+ * passes through the facet. For each shadow the points within it are searched among all points. So the work
+ * is proportional to the number of hidden nodes, not to the number of facets that might hide them. */
 #include "approx/visibility/visibility_private.h"
 
 #include "base/box.h"
@@ -13,20 +11,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A segment passes a facet where it meets its plane nearer than this, barycentric, to the facet. */
+/* A segment passes a facet if it meets its plane within this distance of the facet, in barycentric
+ * coordinates. */
 static const double beside_facet = 1e-6;
 
-/* How the segment from x to a node passes a facet: not; through it, out of the body; or too near the facet's
- * rim or the segment's ends to decide. */
+/* How the segment from x to a node passes a facet: not at all; through it, out of the body; or too near the
+ * facet's rim or the segment's ends to decide. */
 enum passage { PASSES_NOT, PASSES, PASSES_CLOSE };
 
-/* of_x, of_y: heights of x and of the node at y above the facet; `own`: x lies in the facet's cell and in no
- * other, so that the way out of it is a way out of the body. */
+/* of_x, of_y: heights of x and of the node at y above the facet. own: x lies only in the facet's cell, so
+ * that a segment through the facet leaves the body. */
 static enum passage passage_of(int dim, const struct visibility_facet *facet, double tolerance,
                                const double *x, double of_x, bool own, const double *y, double of_y)
 {
     if (of_y <= tolerance) {
-        return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the target is on the facet, from elsewhere */
+        return of_y < -tolerance ? PASSES_NOT : PASSES_CLOSE; /* the node is on the facet, x elsewhere */
     }
     double t = of_x < 0.0 ? of_x / (of_x - of_y) : 0.0, second = -facet->from[0], third = -facet->from[1];
     for (int a = 0; a < dim; a++) {
@@ -43,8 +42,8 @@ static enum passage passage_of(int dim, const struct visibility_facet *facet, do
     return within > beside_facet && (own || of_x < -tolerance) ? PASSES : PASSES_CLOSE;
 }
 
-/* A box around a shadow: around the facet, and the ends of a pyramid with that base that is no shorter than
- * the radius, within the node's ball. That ball for a node on the facet, or too near to it. */
+/* A box around a shadow: around the facet and the far end of the pyramid from the node through it, within the
+ * node's support. The whole support if the node is on the facet or too near to it. */
 static struct box box_of_shadow(const struct visibility *visibility, const struct visibility_facet *facet,
                                 int32_t node, bool beyond)
 {
@@ -55,7 +54,7 @@ static struct box box_of_shadow(const struct visibility *visibility, const struc
     struct box box = box_of(dim, 0, NULL);
     for (int k = 0; k < dim; k++) {
         double vertex[3];
-        /* Beyond the vertices by more than what passes beside them. */
+        /* Beyond the vertices by more than beside_facet. */
         vector_between(dim, facet->middle, visibility->cells.x + (int64_t)facet->node[k] * dim, 1.0 + 1e-5,
                        vertex);
         vector_subtract(dim, vertex, y, ray[k]);
@@ -69,7 +68,7 @@ static struct box box_of_shadow(const struct visibility *visibility, const struc
             cosine = product < cosine ? product : cosine;
         }
     }
-    /* The points of the plane through the ends of unit vectors are at least so far from where they begin. */
+    /* Least distance of the plane through the ends of the unit vectors from their origin, squared. */
     double near2 = (1.0 + (dim - 1) * cosine) / dim;
     bool narrow = beyond && near2 > 0.01;
     for (int k = 0; k < dim && narrow; k++) {
@@ -89,11 +88,11 @@ static struct box box_of_shadow(const struct visibility *visibility, const struc
 /* The points whose shadows are searched. */
 struct shaded {
     struct point_grid grid;
-    const int32_t *body_of; /* NULL: all points; else those with this number: */
+    const int32_t *body_of; /* NULL: all points; else those of this body: */
     int32_t body;
 };
 
-/* List the points that a shadow may hold; `near`: scratch. */
+/* List the points that a shadow may contain; `near`: scratch. */
 static enum status list_points(const struct visibility *visibility, const struct shaded *points,
                                int32_t shadow, struct index_list *near, struct pair_list *pairs,
                                struct error *error)
@@ -167,7 +166,7 @@ enum status visibility_shadows_build(const struct visibility *visibility, int64_
     for (int64_t n = 0; n < visibility->cells.node_count; n++) {
         least = fmin(least, visibility->grid->radius[n]);
     }
-    /* Bins of a quarter of the smallest radius, or larger ones if these were too many. */
+    /* Bins of a quarter of the smallest radius, or larger if there were too many. */
     TRY(NEW_ARRAY(&size, count, error));
     for (int64_t p = 0; p < count; p++) {
         size[p] = 0.5 * least;
@@ -216,7 +215,7 @@ enum status visibility_mark_shadows(const struct visibility *visibility,
             ++*hidden;
         }
     }
-    /* The others pass close by. */
+    /* The other shadows pass too near to decide. */
     for (int64_t i = shadows->ptr[p]; i < shadows->ptr[p + 1]; i++) {
         int32_t node = visibility->shadow[shadow_number(shadows->shadow[i])].node;
         if (work->mark[node] / 2 != work->serial) {

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Barycentric coordinates within this of 0 are on a face. */
+/* A point with a barycentric coordinate within this of 0 is on a face. */
 static const double on_face = 1e-9;
 
 /* The barycentric coordinates of two points in a cell. */
@@ -43,7 +43,7 @@ static void barycentric(const struct cells *cells, int64_t cell, const double *x
     }
 }
 
-/* Whether the segment touches a cell; least[dim + 1]: its coordinates there. */
+/* Whether the segment meets a cell; least[dim + 1]: its barycentric coordinates there. */
 static bool touches(const struct cells *cells, int64_t cell, const double *x, const double *y, double *least)
 {
     double a[4], b[4], begin = 0.0, end = 1.0;
@@ -124,8 +124,8 @@ enum status visibility_walk(const struct visibility *visibility, const double *x
     return STATUS_OK;
 }
 
-/* The point of a cell that has x's barycentric coordinates but for negative ones; returns its distance from
- * x. */
+/* pulled[dim]: the point of a cell with the barycentric coordinates of x, negative ones set to 0 and scaled
+ * to the sum 1. Returns its distance from x. */
 static double pull_into(const struct cells *cells, int64_t cell, const double *x, double *pulled)
 {
     int dim = cells->dim;

@@ -7,7 +7,6 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,7 +20,7 @@ static void section_name(const struct state_value *value, char name[NAME_SIZE])
     snprintf(name, NAME_SIZE, "state.%s", value->name);
 }
 
-/* Flags travel as numbers. */
+/* Flags are saved as numbers. */
 static enum status save_flags(struct stream *stream, const char *name, const struct state_value *value,
                               struct error *error)
 {
@@ -68,7 +67,7 @@ static enum status restore(void *context, const struct state_value *value, struc
 
 struct state checkpoint_state(const struct stream *stream)
 {
-    /* restore() only looks at it. */
+    /* restore() does not change it. */
     return (struct state){.visit = restore, .context = (void *)(uintptr_t)stream};
 }
 
@@ -94,7 +93,7 @@ static bool is_same(const struct section *section, const char *key, uint32_t che
     return section_attribute(section, key, text, sizeof text) && strcmp(text, expected) == 0;
 }
 
-/* Is it of this version, scene and input? */
+/* Check that a checkpoint is of this version, scene and input. */
 static enum status check_identity(const struct stream *stream, const char *name,
                                   const struct checkpoint_identity *identity, int64_t *step,
                                   struct error *error)
@@ -144,7 +143,7 @@ static enum status check_regular(const char *file, struct error *error)
     return STATUS_OK;
 }
 
-/* A whole file on the disk, under a name that does not count. */
+/* Write and sync a file under a temporary name. */
 static enum status write_new(const char *name, const struct stream *stream, struct error *error)
 {
     int descriptor = open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -161,7 +160,7 @@ static enum status write_new(const char *name, const struct stream *stream, stru
     return status;
 }
 
-/* Renamings reach the disk with the folder. */
+/* Sync the folder, so that renamings reach the disk. */
 static enum status sync_folder(const char *file, struct error *error)
 {
     const char *slash = strrchr(file, '/');
@@ -172,7 +171,7 @@ static enum status sync_folder(const char *file, struct error *error)
         return fail_memory(error, file);
     }
     FREED_BY(descriptor_close) int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0 || (fsync(descriptor) != 0 && errno != EINVAL)) { /* EINVAL: it has none to offer */
+    if (descriptor < 0 || (fsync(descriptor) != 0 && errno != EINVAL)) { /* EINVAL: fsync is not supported */
         return fail_file(folder, error);
     }
     return STATUS_OK;
@@ -210,7 +209,7 @@ enum status checkpoint_remove(const char *file, struct error *error)
     return STATUS_OK;
 }
 
-/* Read one file; *exists tells whether it is there. */
+/* Read one file; *exists: whether there is one. */
 static enum status read_one(const char *name, struct stream *stream, bool *exists, struct error *error)
 {
     stream_init(stream);

@@ -1,9 +1,8 @@
-/* Checkpoints: the state of a run (see base/state.h) as a stream in a file, from which the run can go on.
+/* Checkpoints: the state of a run (see base/state.h) as a stream in a file, from which the run can continue.
  *
- * The file is replaced as a whole, and the one before it is kept as FILE.old: whenever the program or the
- * machine stops, one of them is whole. It is a binary stream, which mts can show: section `checkpoint`
- * identifies the run, sections `state.*` hold its values; others are the caller's.
- */
+ * The file is replaced as a whole, and the previous one is kept as FILE.old: whenever the program or the
+ * machine stops, one of them is complete. It is a binary stream: section `checkpoint` identifies the run,
+ * sections `state.*` hold its values; others are the caller's. */
 #pragma once
 
 #include "base/state.h"
@@ -24,29 +23,29 @@ MUST_CHECK enum status checkpoint_identify(const struct scene *scene, const stru
 /* The checksum of a stream's sections: identity->input. */
 uint32_t checkpoint_identify_input(const struct stream *input);
 
-/* Add the section `checkpoint` and the state that `function` goes through in `owner` to a stream. The values
- * are not copied but where they change their form: write the stream before the run goes on. */
+/* Add to a stream the section `checkpoint` and the state of `owner` that `function` visits. Numbers and
+ * counts are not copied: write the stream before the run continues. */
 MUST_CHECK enum status checkpoint_fill(struct stream *stream, const struct checkpoint_identity *identity,
                                        int64_t step, state_function *function, void *owner,
                                        struct error *error);
 
-/* Write a stream to FILE.new, bring it to the disk, and rename it to FILE; with `keep_old`, what was there
- * becomes FILE.old. STATUS_SYSTEM on failure, with FILE or FILE.old as good as before. */
+/* Write a stream to FILE.new, sync it, and rename it to FILE; with `keep_old` the previous FILE becomes
+ * FILE.old. On failure STATUS_SYSTEM; FILE or FILE.old is then still valid. */
 MUST_CHECK enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
                                         struct error *error);
 
-/* Remove FILE, FILE.old and FILE.new, those that are there. */
+/* Remove FILE, FILE.old and FILE.new, as far as they exist. */
 MUST_CHECK enum status checkpoint_remove(const char *file, struct error *error);
 
 /* Where a checkpoint was found. */
 enum checkpoint_source { CHECKPOINT_NONE, CHECKPOINT_NEWEST, CHECKPOINT_OLD };
 
-/* Read FILE or, where that is missing or damaged, FILE.old. Neither exists: CHECKPOINT_NONE and an empty
- * stream. Both are damaged, or the one that is whole is of something else: STATUS_INPUT. */
+/* Read FILE or, if it is missing or damaged, FILE.old. If neither exists: CHECKPOINT_NONE and an empty
+ * stream. STATUS_INPUT if both are damaged, or the checkpoint is of another run. */
 MUST_CHECK enum status checkpoint_read(const char *file, const struct checkpoint_identity *identity,
                                        struct stream *stream, enum checkpoint_source *source, int64_t *step,
                                        struct error *error);
 
-/* The state in a stream, to be handed to a run; the stream must outlive it. A visit fails with STATUS_INPUT
- * where a value is missing or of another size. */
+/* The state in a stream, from which a run is restored; the stream must outlive it. A visit fails with
+ * STATUS_INPUT if a value is missing or of another size. */
 struct state checkpoint_state(const struct stream *stream);

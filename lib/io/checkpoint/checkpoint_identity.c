@@ -6,14 +6,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
 
 enum { BLOCK = 1 << 16 };
 
-/* Go on with the bytes of a file. */
+/* Update the checksum with the bytes of a file. */
 static enum status add_file(const char *file, uLong *crc, struct error *error)
 {
     SCRATCH unsigned char *block = NULL;

@@ -1,10 +1,10 @@
-/* Reading and writing by descriptors, past signals and short writes. */
+/* Reading and writing by descriptors; interrupted and partial transfers are continued. */
 #pragma once
 
 #include "base/status.h"
 
-/* Read up to `size` bytes, > 0; *got receives how many, 0 at the end. A folder is STATUS_INPUT, another
- * failure STATUS_SYSTEM. */
+/* Read up to `size` bytes, > 0; *got receives their number, 0 at the end. STATUS_INPUT for a folder,
+ * STATUS_SYSTEM for other failures. */
 MUST_CHECK enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *got,
                                        struct error *error);
 

@@ -19,7 +19,7 @@ static uint32_t little_endian(const unsigned char *bytes)
     return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
-/* The bytes a binary STL file of that header must have; 0 when there is no header. */
+/* The number of bytes of a binary STL file with this header; 0 if there is no header. */
 static size_t binary_stl_size(const struct textfile *file)
 {
     if (file->size < STL_HEADER) {
@@ -59,7 +59,7 @@ struct words {
     int64_t line;
 };
 
-/* Move to the next word; its length, 0 at the end. */
+/* Move to the next word; returns its length, 0 at the end. */
 static size_t next_word(struct words *words, const char **word)
 {
     size_t blanks;
@@ -96,7 +96,7 @@ static enum status expect_number(struct words *words, double *value, struct erro
                       (long long)words->line, copy);
 }
 
-/* One facet, from `normal` to `endfacet`. */
+/* Read one facet, from `normal` to `endfacet`. */
 static enum status read_facet(struct words *words, double row[9], struct error *error)
 {
     double normal[3];
@@ -116,7 +116,7 @@ static enum status read_facet(struct words *words, double row[9], struct error *
     return expect(words, "endfacet", error);
 }
 
-/* solid NAME, facets, endsolid NAME; once. */
+/* Read "solid NAME", facets, "endsolid NAME", once. */
 static enum status read_ascii_stl(const char *path, const struct textfile *file, struct table *table,
                                   struct error *error)
 {

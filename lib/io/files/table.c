@@ -39,14 +39,14 @@ enum status table_end_block(struct table *table, struct error *error)
     return STATUS_OK;
 }
 
-/* The next word of a line that ends at '\n' or a comment; 0 bytes at its end. */
+/* Move to the next word of a line, which ends at '\n' or a comment; returns its length, 0 at the end. */
 static size_t next_word(const char **at)
 {
     *at += strspn(*at, " \t");
     return **at == '#' ? 0 : strcspn(*at, " \t\n");
 }
 
-/* What a table may be: so many columns, and those from open to closed - 1 may lack a value. */
+/* The admissible tables: number of columns; the columns open to closed - 1 may lack values. */
 struct form {
     int least, most, open, closed;
 };
@@ -56,7 +56,7 @@ static bool is_no_value(const char *word)
     return strcmp(word, "-") == 0 || strcasecmp(word, "nan") == 0;
 }
 
-/* Split the line at `text` into numbers; *count of them, 0 for a blank or comment line. */
+/* Split the line at `text` into *count numbers; 0 for a blank or comment line. */
 static enum status read_row(const char *path, int64_t line, const char *text, const struct form *form,
                             double row[COLUMN_LIMIT], int *count, struct error *error)
 {

@@ -25,16 +25,16 @@ struct table {
 MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,
                                   struct error *error);
 
-/* The same; in the columns open .. closed - 1, from 0 on, '-' or 'nan' stands for no value. */
+/* The same; in the columns open .. closed - 1, counted from 0, '-' or 'nan' means no value. */
 MUST_CHECK enum status table_read_open(const char *path, int least, int most, int open, int closed,
                                        struct table *table, struct error *error);
 
 void table_free(struct table *table);
 
-/* Append a row (cols values, copied) to a table; for readers of other formats. `room` counts the rows
+/* Append a row (cols values, copied) to a table, for readers of other formats. *room: number of rows
  * allocated. */
 MUST_CHECK enum status table_append(struct table *table, const double *row, int64_t line, int64_t *room,
                                     struct error *error);
 
-/* End a block after the last row, unless it ends there already. */
+/* End a block behind the last row, unless one ends there already. */
 MUST_CHECK enum status table_end_block(struct table *table, struct error *error);

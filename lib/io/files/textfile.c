@@ -10,7 +10,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Looking before opening keeps devices untouched; a name changed in between can only make the read fail. */
+/* Check the kind of a file before it is opened, so that devices are not touched. If the file is replaced in
+ * between, only the read fails. */
 static enum status check_kind(const char *path, struct error *error)
 {
     struct stat facts;

@@ -1,4 +1,4 @@
-/* Files written by people and untrusted, read whole: scenes, tables, surfaces. */
+/* Untrusted files that are read whole: scenes, tables, surfaces. */
 #pragma once
 
 #include "base/status.h"
@@ -19,7 +19,7 @@ struct textfile {
 MUST_CHECK enum status textfile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
 
-/* The same for a binary file: only its kind and its size are checked, and that it is not empty. */
+/* The same for a binary file: only kind and size are checked, and that it is not empty. */
 MUST_CHECK enum status bytefile_read(const char *path, size_t most, struct textfile *file,
                                      struct error *error);
 

@@ -26,7 +26,7 @@ enum image_datatype {
 /* Codes of `intent`. */
 enum { IMAGE_INTENT_LABEL = 1002, IMAGE_INTENT_DISPLACEMENT = 1006, IMAGE_INTENT_VECTOR = 1007 };
 
-/* The reference that the world axes are aligned to: NIfTI's codes of sform and qform. */
+/* The reference to which the world axes are aligned: NIfTI's codes of sform and qform. */
 enum {
     IMAGE_SPACE_UNKNOWN,
     IMAGE_SPACE_SCANNER,
@@ -46,27 +46,27 @@ struct image {
                               values[((k * size[1] + j) * size[0] + i) * components + c], after slope and inter */
     double slope, inter;   /* value = slope * stored + inter; slope 1, inter 0: none; ignored for RGB */
     double unit;           /* metres in a unit of length of the file: 1, 1e-3 or 1e-6 */
-    int space;   /* IMAGE_SPACE_...: what to_world leads to; UNKNOWN: the file tells voxel sizes only */
-    int version; /* of NIfTI: 1 or 2; a writer takes 2 where 1 cannot hold the size */
-    int intent;  /* NIfTI's code of what the values mean, 0: none */
+    int space;   /* IMAGE_SPACE_...: of world coordinates; UNKNOWN: the file states only voxel sizes */
+    int version; /* of NIfTI: 1 or 2; images too large for 1 are written as 2 */
+    int intent;  /* NIfTI's code of the meaning of the values; 0: none */
     char intent_name[17];
     char description[81];
-    char note[256]; /* assumptions made in reading, in one line, "" for none: tools print it */
+    char note[256]; /* assumptions made in reading, in one line, for tools to print; "": none */
 };
 
-/* An image of a size, all values zero: of type float32, in mm, of unknown space and with voxels of 1 mm.
- * STATUS_SYSTEM where memory is short. */
+/* An image with all values zero: of type float32, in mm, of unknown space, with voxels of 1 mm.
+ * STATUS_SYSTEM: memory. */
 MUST_CHECK enum status image_new(struct image *image, const size_t size[3], size_t components,
                                  struct error *error);
 
-/* Read a NIfTI file, compressed or not, from an open descriptor, which stays open; `name` begins the
- * messages. Space: sform where the file has one, else qform, else its voxel sizes along axes of unknown
- * direction, which is noted. Without a unit of length, mm are taken, which is noted. An image of one slice
- * needs no size across. Errors, as `NAME: ...`: STATUS_INPUT for a file that is no NIfTI file of one volume
- * (other formats by name, with the remedy), for types other than enum image_datatype, for a truncated or
- * damaged file, and for a header that contradicts itself or the length of the data; STATUS_SYSTEM for read
- * failures and memory. Time and memory are in proportion to the data that the file holds, whatever its header
- * says. On failure the image is empty. */
+/* Read a NIfTI file, compressed or not, from an open descriptor, which stays open; messages begin with
+ * `name`. The space is that of sform if the file has one, else of qform, else voxel sizes along axes of
+ * unknown direction, with a note. Without a unit of length it is mm, with a note. An image of one slice needs
+ * no size across. STATUS_INPUT for a file that is not a NIfTI file of one volume (known formats are named,
+ * with the remedy), for types other than enum image_datatype, for a truncated or damaged file, and for a
+ * header that contradicts itself or the length of the data; STATUS_SYSTEM for read failures and memory. Time
+ * and memory are proportional to the data in the file, whatever its header says. On failure the image is
+ * empty. */
 MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
                                        struct error *error);
 
@@ -81,16 +81,16 @@ MUST_CHECK enum status image_write(const struct image *image, int descriptor, bo
 /* Release the values; the image becomes empty. */
 void image_free(struct image *image);
 
-/* Voxels: the product of the sizes. */
+/* The number of voxels. */
 size_t image_voxels(const struct image *image);
 
-/* inverse: world, m, to voxel index. */
+/* inverse: the map from world coordinates, m, to voxel index. */
 void image_to_voxel(const struct image *image, double inverse[3][4]);
 
-/* place = m x + t: m[3 * 4], the last of each row is t, as of to_world and image_to_voxel. */
+/* place = m x + t; m[3 * 4] has t in its last column, as to_world and image_to_voxel. */
 void image_map(const double *m, const double x[3], double place[3]);
 
-/* The place of a voxel index, which need not be whole, m. */
+/* World coordinates of a voxel index, which need not be integer, m. */
 void image_world(const struct image *image, const double voxel[3], double world[3]);
 
 /* The length of a voxel along its axis, m. */

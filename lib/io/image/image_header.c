@@ -1,11 +1,11 @@
-/* The 348 bytes of a NIfTI-1 header and the 540 of NIfTI-2: where each field stands. */
+/* The layout of the 348 bytes of a NIfTI-1 header and of the 540 bytes of NIfTI-2. */
 #include "io/image/image_private.h"
 
 #include <string.h>
 
 enum kind { I1, I2, I4, I8, F4, F8 };
 
-/* Where a field stands in each version. */
+/* The place of a field in each version. */
 struct place {
     int offset;
     enum kind kind;
@@ -157,7 +157,7 @@ static void sizes_of(const struct image *image, const struct nifti_type *type, d
     dim[5] = vector ? (double)image->components : 1;
 }
 
-/* What fits the first version: sizes of 16 bits. */
+/* The version to write: 1 if all sizes fit 16 bits, else 2. */
 static int version_of(const struct image *image)
 {
     bool fits = image->components <= INT16_MAX;
@@ -190,8 +190,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
     for (int i = 0; i < 4; i++) {
         put(bytes, version, pixdim_field, i, pixdim[i]);
     }
-    /* Where the file tells no space, none is made up; what a quaternion cannot tell stands in the sform
-     * alone. */
+    /* An unknown space stays unknown. A map that a quaternion cannot represent is only in the sform. */
     put(bytes, version, sform_field, 0, image->space);
     put(bytes, version, qform_field, 0, rotation ? image->space : 0);
     for (int r = 0; r < 3 && rotation; r++) {

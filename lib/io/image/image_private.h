@@ -1,4 +1,4 @@
-/* Inside of lib/io: the bytes of an image file, and the header of a NIfTI file, decoded. */
+/* The bytes of an image file, and the decoded header of a NIfTI file; private to lib/io. */
 #pragma once
 
 #include "io/image/image.h"
@@ -8,7 +8,7 @@
 
 enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
 
-/* The fields that matter, in the file's units. */
+/* The fields that are used, in the file's units. */
 struct nifti {
     int version;
     bool swapped;
@@ -24,14 +24,14 @@ struct nifti_type {
     int code;
     const char *name;
     int bytes;          /* of one component */
-    int components;     /* that the type itself has */
-    double least, most; /* of an integer; 0, 0: floating */
+    int components;     /* of the type itself */
+    double least, most; /* of an integer type; 0, 0: floating point */
 };
 
 /* NULL for a type that is not read. */
 const struct nifti_type *nifti_type(int code);
 
-/* The header's version and byte order by its first 4 bytes; 0 when they are no header's. */
+/* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 
 /* Decode a whole header of that version. */
@@ -42,20 +42,20 @@ void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct 
  */
 size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER + 4]);
 
-/* image->to_world, unit and space from a header; notes what is assumed. */
+/* Set image->to_world, unit and space from a header, and note assumptions. */
 MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *image, struct error *error);
 
-/* The quaternion (b, c, d), the sizes and qfac that give the first three columns of a matrix; false when its
- * columns are not orthogonal. */
+/* The quaternion (b, c, d), voxel sizes and qfac of the first three columns of a matrix; false if these are
+ * not orthogonal. */
 bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4]);
 
-/* The bytes of a file, compressed or not. Not by zlib's gzread, which takes a file without its checksum for
- * whole where the data end with a block of its own. */
+/* The bytes of a file, compressed or not. zlib's gzread is not used: it accepts a file without its checksum
+ * if the data end with a block. */
 struct image_source {
     int descriptor;
     bool gzip, ended; /* no more input */
     bool complete;    /* a member of the gzip file has ended, its checksum right */
-    z_stream stream;  /* its next_in and avail_in: what is read and not yet taken */
+    z_stream stream;  /* its next_in and avail_in: input that has not been taken */
     int64_t taken;    /* bytes so far, after decompression */
     unsigned char buffer[1 << 15];
 };

@@ -1,6 +1,6 @@
-/* Reading NIfTI files: the header is checked before anything is believed, and memory grows with the data. Not
- * by libnifti: version 3.0.1 takes a compressed file that lacks its checksum, and a header that tells fewer
- * voxels than there are, and it reads no pipe; checks of our own need the header decoded anyway. */
+/* Reading NIfTI files: the header is checked before it is used, and memory grows with the data. libnifti is
+ * not used: version 3.0.1 accepts a compressed file without checksum and a header with fewer voxels than
+ * there are, and it cannot read a pipe. */
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
@@ -13,7 +13,7 @@ static const size_t block_values = 1 << 16;
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
 static const char pair_magic[] = "ni1";
 
-/* What a file is that begins so and is not NIfTI, with the remedy. */
+/* The error for a file of another format, with the remedy. */
 static enum status fail_foreign(const unsigned char *bytes, size_t size, struct error *error)
 {
     static const struct {
@@ -75,7 +75,7 @@ static enum status read_header(struct image_source *source, struct nifti *header
     return STATUS_OK;
 }
 
-/* Sizes and components, whose product is a possible size of memory. */
+/* Check sizes and components; *count: their product, which fits into memory sizes. */
 static enum status check_sizes(const struct nifti *header, const struct nifti_type *type, struct image *image,
                                size_t *count, struct error *error)
 {
@@ -148,7 +148,7 @@ static enum status check_header(const struct nifti *header, const struct nifti_t
     return check_sizes(header, *type, image, count, error);
 }
 
-/* Values as they are stored. The cases differ in the type only. */
+/* Convert stored values to doubles. */
 static void convert(const struct nifti_type *type, const unsigned char *bytes, size_t count, double *values)
 {
 #define CONVERT(c_type)                                                                                      \
@@ -195,7 +195,7 @@ static void reverse_bytes(unsigned char *bytes, size_t count, size_t size)
     }
 }
 
-/* Skip from the end of the header to the data: extensions, which are nothing to us. */
+/* Skip the extensions between the header and the data. */
 static enum status skip_extensions(struct image_source *source, const struct nifti *header,
                                    unsigned char *scratch, size_t room, struct error *error)
 {
@@ -214,7 +214,7 @@ static enum status skip_extensions(struct image_source *source, const struct nif
     return STATUS_OK;
 }
 
-/* The data: `count` values, and nothing behind them. */
+/* Read the data: `count` values, and nothing behind them. */
 static enum status read_values(struct image_source *source, const struct nifti *header,
                                const struct nifti_type *type, size_t count, struct image *image,
                                struct error *error)
@@ -249,7 +249,7 @@ static enum status read_values(struct image_source *source, const struct nifti *
     return STATUS_OK;
 }
 
-/* Integers that no double holds would come out as others. */
+/* Refuse integers that a double cannot represent. */
 static enum status check_exact(const struct nifti_type *type, size_t count, const double *values,
                                struct error *error)
 {
@@ -262,7 +262,7 @@ static enum status check_exact(const struct nifti_type *type, size_t count, cons
     return STATUS_OK;
 }
 
-/* From one volume for each component to the components of a voxel together. */
+/* Reorder from one volume for each component to all components of each voxel. */
 static enum status interleave(struct image *image, struct error *error)
 {
     size_t voxels = image_voxels(image), components = image->components;

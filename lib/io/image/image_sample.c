@@ -5,7 +5,8 @@
 
 const char *const image_method_names[IMAGE_METHOD_COUNT] = {"nearest", "linear", "cubic"};
 
-/* A place this near to a voxel, in voxels, is its own: what an inverse leaves of one that did not move. */
+/* A place within this distance of a voxel centre, in voxels, is at the centre: the round-off of an inverse
+ * map. */
 static const double on_voxel = 1e-9;
 
 /* Indices and weights along one axis. */
@@ -32,7 +33,7 @@ static void find_taps(enum image_method method, double place, size_t size, struc
     taps->count = 0;
     for (int i = 0; i < width; i++) {
         double weight = width == 1 ? 1 : width == 2 ? linear[i] : cubic[i];
-        if (weight != 0) { /* so that at a voxel its neighbours, NaN perhaps, do not matter */
+        if (weight != 0) { /* so that at a voxel centre neighbours that are NaN have no effect */
             taps->index[taps->count] = clamped(first + i, size);
             taps->weight[taps->count++] = weight;
         }
@@ -43,7 +44,7 @@ bool image_sample(const struct image *image, enum image_method method, const dou
 {
     struct taps taps[3];
     for (int i = 0; i < 3; i++) {
-        /* A little more, for places on the very border. */
+        /* A little more, for places on the border. */
         if (!(voxel[i] >= -0.5 - 1e-6 && voxel[i] <= (double)image->size[i] - 0.5 + 1e-6)) {
             return false;
         }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Read more, if nothing is left. */
+/* Read more input if none is left. */
 static enum status fill(struct image_source *source, struct error *error)
 {
     size_t got;
@@ -19,7 +19,7 @@ static enum status fill(struct image_source *source, struct error *error)
     return STATUS_OK;
 }
 
-/* What the first two bytes say. */
+/* The first two bytes tell whether the file is compressed. */
 enum status image_source_open(struct image_source *source, int descriptor, struct error *error)
 {
     source->descriptor = descriptor;

@@ -1,4 +1,4 @@
-/* From voxels to the world: sform, qform, voxel sizes. */
+/* The map from voxels to world coordinates: sform, qform, voxel sizes. */
 #include "io/image/image_private.h"
 
 #include <math.h>
@@ -97,8 +97,8 @@ bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4])
             return false;
         }
     }
-    /* (1 + trace) / 4 is a^2; the same with two signs turned b^2, c^2, d^2. From the largest, so that none is
-     * divided by a small one. */
+    /* (1 + trace) / 4 is a^2; with two signs changed it is b^2, c^2 or d^2. Divide by the largest of these.
+     */
     double square[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
                         1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
     double product[4][4] = {{square[0], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]},
@@ -116,8 +116,7 @@ bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4])
     return true;
 }
 
-/* In an image of one slice the step across it means nothing: make it as long as the first one where it is
- * none. */
+/* The step across an image of one slice has no meaning: make it as long as the first one if it is zero. */
 static void complete_slice(double m[3][4])
 {
     if (column_length(m, 2) > 0) {
@@ -133,7 +132,7 @@ static void complete_slice(double m[3][4])
     }
 }
 
-/* All finite, and axes that span the space. */
+/* Whether all entries are finite, and the axes span the space. */
 static bool is_sound(double m[3][4])
 {
     double volume = column_length(m, 0) * column_length(m, 1) * column_length(m, 2);
@@ -145,7 +144,7 @@ static bool is_sound(double m[3][4])
     return isfinite(volume) && volume > 0 && fabs(determinant(m)) > 1e-6 * volume;
 }
 
-/* Greatest distance between the places of the image's corners. */
+/* Largest distance between the positions of the image's corners under two maps. */
 static double disagreement(const struct image *image, double a[3][4], double b[3][4])
 {
     double most = 0;

@@ -1,5 +1,5 @@
-/* Writing NIfTI files. Compression goes block by block, each with what went before as its dictionary, so that
- * several threads share it and the bytes are the same for any number of them. */
+/* Writing NIfTI files. Blocks are compressed in parallel, each with the data before it as its dictionary; the
+ * bytes are the same for any number of threads. */
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
@@ -12,7 +12,7 @@
 
 enum { BLOCK = 1 << 20, DICTIONARY = 1 << 15, LEVEL = 6 };
 
-/* A value as its type stores it: rounded, within range. */
+/* Store a value as its type: rounded, within range. */
 static void store(const struct nifti_type *type, double value, unsigned char *bytes)
 {
     uint64_t bits = 0;
@@ -47,7 +47,7 @@ void image_range(const struct image *image, double *least, double *most)
     *most = fmax(ends[0], ends[1]);
 }
 
-/* All bytes of the data, in the order of the file. */
+/* Store all values, in the order of the file. */
 static void store_values(const struct image *image, const struct nifti_type *type, unsigned char *bytes)
 {
     int64_t voxels = (int64_t)image_voxels(image), components = (int64_t)image->components;
@@ -62,7 +62,7 @@ static void store_values(const struct image *image, const struct nifti_type *typ
     }
 }
 
-/* One block, from `begin` of bytes, as a part of a deflate stream that begins and ends at a byte. */
+/* Compress one block, from `begin` of bytes, as a part of a deflate stream that begins and ends at a byte. */
 static bool compress_block(const unsigned char *bytes, size_t begin, size_t size, bool last,
                            unsigned char *to, size_t room, size_t *used)
 {
@@ -91,7 +91,7 @@ static void put_little_endian(unsigned char *bytes, uint32_t value)
     }
 }
 
-/* A gzip file of one member: no name and no time. */
+/* Write a gzip file of one member, without name and time. */
 static enum status write_gzip(const unsigned char *bytes, size_t size, int descriptor, struct error *error)
 {
     static const unsigned char head[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3};

@@ -72,7 +72,7 @@ static enum status check_name(const char *name, struct error *error)
                : fail(error, STATUS_INPUT, "'%.60s': no commas, quotes, colons, = or | in names", name);
 }
 
-/* "1,3-5" or "*" */
+/* Add the labels "1,3-5" or "*" to a name. */
 static enum status add_labels(struct label_table *table, char *labels, int32_t name, struct error *error)
 {
     if (strcmp(labels, "*") == 0) {
@@ -101,7 +101,7 @@ static enum status add_labels(struct label_table *table, char *labels, int32_t n
     return STATUS_OK;
 }
 
-/* One line, which is written into. */
+/* Add one line, which is modified. */
 static enum status add_row(struct label_table *table, char *line, struct error *error)
 {
     char *word[4] = {NULL};

@@ -1,6 +1,5 @@
-/* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary): reading a file, and making of it the mesh that the other
- * tools work on. Two steps: msh_read takes the file in as it is; mesh_build picks cells, facets and sets out
- * of it. */
+/* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary), in two steps: msh_read reads a file as it is; mesh_build
+ * makes cells, facets and node sets of it. */
 #pragma once
 
 #include "base/status.h"
@@ -15,8 +14,8 @@ struct msh_group {
     int tag;    /* as in the file; not negative */
     char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
                    dimension */
-    int64_t element_count; /* 0 for a group that is named and has nothing in it */
-    char *written;         /* as in the file, where `name` differs: blanks, commas and quotes became '_' */
+    int64_t element_count; /* 0 for a group with a name but no elements */
+    char *written; /* the name in the file if it differs: in `name` blanks, commas and quotes are '_' */
 };
 
 /* A mesh file as it is: elements of all dimensions, in the order of the file. */
@@ -34,7 +33,7 @@ struct msh {
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     int64_t partitions;       /* number of partitions of the mesh (MSH 4 only); 0: not partitioned */
-    int64_t partitions_here;  /* how many of them have elements of the highest dimension in this file */
+    int64_t partitions_here;  /* number of these with elements of the highest dimension in this file */
 };
 
 /* A type of element. */
@@ -42,22 +41,20 @@ struct msh_type {
     const char *name; /* "triangle", or NULL: not an element of first or second order */
     int dim;
     int node_count;
-    int linear; /* the number of the first-order type on its corners, which come first; its own: first order
-                 */
+    int linear; /* number of the first-order type with its corners, which come first; for first order its own
+                   number */
 };
 
-/* The type that gmsh numbers so; a type with name NULL for numbers that are no element of first or second
- * order. */
+/* The type with this number in gmsh; its name is NULL if it is not an element of first or second order. */
 struct msh_type msh_type(int64_t number);
 
-/* Read a mesh from its bytes. STATUS_INPUT for whatever is not a whole, sound mesh file, with a message that
- * names section and record; for a file of another program the message states the command that converts it.
- * STATUS_SYSTEM where memory is short. Time and memory are in proportion to the size, whatever the file says
- * of its own. On failure *msh is empty. */
+/* Read a mesh from its bytes. STATUS_INPUT if they are not a complete, valid mesh file; the message names
+ * section and record, or for a file of another program the command that converts it. STATUS_SYSTEM: memory.
+ * Time and memory are proportional to the size, whatever counts the file states. On failure *msh is empty. */
 MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
 
-/* Read a mesh from an open descriptor (a regular file, a pipe), which stays open. `name` begins the messages.
- * Errors as for msh_parse; STATUS_SYSTEM also for read failures. */
+/* Read a mesh from an open descriptor (a regular file or a pipe), which stays open. Messages begin with
+ * `name`. Errors as msh_parse; STATUS_SYSTEM also for read failures. */
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
 
@@ -84,28 +81,27 @@ struct mesh {
     int64_t *set_ptr;   /* node_sets.count + 1 */
     int32_t *set_idx;   /* nodes, ascending within each set */
     struct mesh_names regions, facet_sets, node_sets;
-    struct mesh_names notes; /* what was left out, one line each (these may hold blanks) */
+    struct mesh_names notes; /* remarks on what was left out, one line each; these may contain blanks */
 };
 
-/* The parts of a file that a mesh is made of. */
+/* The parts of a file of which a mesh is made. */
 struct mesh_options {
     double unit;         /* of the file's lengths, m */
     const char *regions; /* comma-separated list of regions to keep, or NULL: all */
-    bool midside; /* nodes amid the edges of second-order elements stay, and the elements are split there;
-                     else they are dropped */
+    bool midside; /* keep the midside nodes of second-order elements, which are split there; else these nodes
+                     are dropped */
 };
 
-/* Make the mesh of `msh`.
- * The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2 if there are triangles or
- * quadrangles in a plane z = const. Quadrangles and the cells of more than four nodes are split into
- * simplices so that neighbours conform (every quadrangular face along the diagonal through its lowest node:
- * Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999). Nodes keep their
- * order; those that belong to no kept cell are dropped. A cell in two groups is of the one with the lowest
- * tag, a cell that stands twice is taken once; cells in no group are the region 'body' if there is no other,
- * else 'unnamed'. STATUS_INPUT: no cells, a surface in space, cells without volume or folded, coincident
- * nodes of one body, a name that is no name of a region, two node sets of one name, elements that cannot be
- * split at their midside nodes (those without a node in the middle of each quadrangular face, and prisms and
- * pyramids). On failure *mesh is empty. */
+/* Make the mesh of `msh`. The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2
+ * if there are triangles or quadrangles in a plane z = const. Quadrangles and the cells of more than four
+ * nodes are split into simplices so that neighbours conform (every quadrangular face along the diagonal
+ * through its lowest node: Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,
+ * 1999). Nodes keep their order; those without a kept cell are dropped. A cell in two groups belongs to the
+ * one with the lowest tag; a repeated cell counts once; cells in no group are the region 'body' if there is
+ * no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or
+ * overlapping cells, coincident nodes of one body, an unknown region, two node sets with one name, and
+ * elements that cannot be split at their midside nodes (those without a node in the middle of each
+ * quadrangular face, prisms, and pyramids). On failure *mesh is empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
                                   const struct mesh_options *options, struct error *error);
 void mesh_free(struct mesh *mesh);

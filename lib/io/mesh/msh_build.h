@@ -1,4 +1,4 @@
-/* The steps of mesh_build, private to lib/io. */
+/* The steps of mesh_build; private to lib/io. */
 #pragma once
 
 #include "base/keyed.h"
@@ -14,10 +14,10 @@ struct mesh_draft {
     struct mesh *mesh;
     const struct msh *msh;
     const struct mesh_options *options;
-    int8_t *role;       /* msh->node_count: what each node is to the elements, an enum mesh_role */
-    int32_t *region_of; /* msh->element_count: the region of each cell that is kept, -1 for all else */
+    int8_t *role;       /* msh->node_count: enum mesh_role of each node */
+    int32_t *region_of; /* msh->element_count: the region of each kept cell, -1 for other elements */
     int32_t *node_of;   /* msh->node_count: node of the mesh, or -1 */
-    int64_t *origin;    /* mesh->cell_count: the element that each cell is made of */
+    int64_t *origin;    /* mesh->cell_count: the element of which each cell is a part */
     struct error *error;
 };
 
@@ -27,59 +27,59 @@ MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *forma
 
 void mesh_names_free(struct mesh_names *names);
 
-/* Index of the name of that length, or -1. */
+/* The index of a name, of this length, or -1. */
 int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length);
 
-/* Dimension of an element's type, and how many of its nodes count: its corners or all. */
+/* The dimension of an element, and the number of its nodes that are used: the corners or all. */
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element);
 int mesh_used_nodes(const struct mesh_draft *draft, int64_t element);
 
-/* The simplices of an element, of nodes of the mesh or -1; returns how many. Of a quadrangle in the plane
- * whose corners do not go round a convex one, those on the inner diagonal. */
+/* The simplices of an element, as nodes of the mesh or -1; returns their number. A quadrangle in the plane
+ * that is not convex is split along its inner diagonal. */
 #define MESH_MOST_SIMPLICES 48
 int mesh_simplices(const struct mesh_draft *draft, int64_t element,
                    int32_t simplices[MESH_MOST_SIMPLICES][4]);
 
-/* Fill draft->role; an error for elements that the options want split and that cannot be. */
+/* Set draft->role; STATUS_INPUT for elements that must be split but cannot be. */
 MUST_CHECK enum status mesh_find_roles(struct mesh_draft *draft);
 
-/* Choose the dimension, that of the highest elements, at least 2, where they lie in a plane z = const; name
- * the regions; fill draft->region_of. */
+/* Set the dimension, that of the highest elements: 3, or 2 if they lie in a plane z = const. Name the
+ * regions, and set draft->region_of. */
 MUST_CHECK enum status mesh_find_dim(struct mesh_draft *draft);
 MUST_CHECK enum status mesh_pick_regions(struct mesh_draft *draft);
 
-/* Number the nodes of the cells that are kept, in the order of the file, and take their coordinates; split
- * these cells into simplices, and turn these to be positive. */
+/* Number the nodes of kept cells in the order of the file, and copy their coordinates; split these cells into
+ * simplices with positive orientation. */
 MUST_CHECK enum status mesh_build_nodes(struct mesh_draft *draft);
 MUST_CHECK enum status mesh_build_cells(struct mesh_draft *draft);
 
-/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them, else a note: two
- * bodies that touch. */
+/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them; else two bodies touch,
+ * which is noted. */
 MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);
 
-/* Facets and node sets from the elements of lower dimension. */
+/* Make facets and node sets from the elements of lower dimension. */
 MUST_CHECK enum status mesh_build_facets(struct mesh_draft *draft);
 
 /* ---- msh_split.c: splitting elements into simplices, so that elements with a common face split it in the
  * same way ---- */
 
-/* Elements of first order that an element is made of: places in its list of nodes. */
+/* The elements of first order into which an element is split: places in its list of nodes. */
 struct msh_pieces {
     int type;  /* of each piece */
     int count; /* 0: an element of second order that cannot be split at its midside nodes */
     int8_t node[8][8];
 };
 
-/* With `midside`, an element of second order is split at its midside nodes; without, it is the one of first
- * order on its corners. */
+/* With `midside`, the pieces of an element of second order that is split at its midside nodes; else the
+ * element of first order with its corners. */
 const struct msh_pieces *msh_pieces(int type, bool midside);
 
 #define MSH_MOST_SIMPLICES 6
 
-/* Split an element of first order with these nodes in gmsh's order, into simplices of its
- * dimension: simplices[i][0 .. dim]. Returns how many. Their orientation is left open. A quadrangle, and each
- * quadrangular face, is split along the diagonal through its lowest node. With `other`, a quadrangle is split
- * along the other one (that is for meshes of the plane, whose cells share no quadrangles). */
+/* Split an element of first order, with these nodes in gmsh's order, into simplices of its dimension,
+ * simplices[i][0 .. dim], of any orientation. Returns their number. A quadrangle, and each quadrangular face,
+ * is split along the diagonal through its lowest node; with `other`, a quadrangle is split along the other
+ * diagonal (for meshes in the plane, whose cells share no quadrangles). */
 int msh_split(int type, const int32_t node[], bool other, int32_t simplices[MSH_MOST_SIMPLICES][4]);
 
 /* ---- msh_faces.c: the faces (edges in 2D) of a mesh of simplices, to be found by their nodes ---- */
@@ -91,7 +91,7 @@ struct msh_faces {
     struct keyed *face; /* count, sorted: cell * (dim + 1) + the node of the cell that is not on it */
 };
 
-/* Where a mesh is no mesh: two cells on the same side of a face, or three cells on one. */
+/* Two cells on the same side of a face, or of three at one face. */
 struct msh_overlap {
     int32_t cell[2]; /* -1 when there is none */
 };
@@ -101,7 +101,7 @@ MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t 
                                       struct error *error);
 void msh_faces_free(struct msh_faces *faces);
 
-/* Index of the first face with these `dim` nodes, in any order; *count receives how many cells share it. */
+/* The index of the first face with these `dim` nodes, in any order; *count: number of cells that share it. */
 int64_t msh_faces_find(const struct msh_faces *faces, const int32_t node[], int *count);
 
 /* The nodes of a face, oriented outward from its cell: in 2D the cell is on the left from first to second

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A cell's volume over the cube (or its area over the square) of its longest edge must be above this. */
+/* Least volume of a cell over the cube of its longest edge (2D: area over square). */
 #define LEAST_VOLUME 1e-12
 
 enum status mesh_find_roles(struct mesh_draft *draft)
@@ -126,7 +126,7 @@ int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simp
         int added = msh_split(pieces->type, node, false, to);
         if (in_plane && added == 2 &&
             relative_volume(draft->mesh, to[0]) * relative_volume(draft->mesh, to[1]) <= 0) {
-            added = msh_split(pieces->type, node, true, to); /* not convex: the other diagonal */
+            added = msh_split(pieces->type, node, true, to); /* not convex: use the other diagonal */
         }
         count += added;
     }

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Nodes closer than this part of the mesh's extent are taken for one. */
+/* Nodes closer than this share of the mesh's extent coincide. */
 #define COINCIDENT 1e-12
 
 static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
@@ -23,8 +23,8 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
                 (long long)tags[0], (long long)tags[1]);
 }
 
-/* Nodes at one place fall together in any projection: sort them along a direction that no lattice is aligned
- * with, and compare those that are near in it. */
+/* Nodes at one place coincide in any projection: sort them along a direction with which no lattice is
+ * aligned, and compare those that are near along it. */
 enum status mesh_check_coincident(struct mesh_draft *draft)
 {
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};

@@ -1,6 +1,6 @@
 #include "io/mesh/msh_private.h"
 
-/* Of an element of MSH 2: its group, its entity, and its partitions. */
+/* Most tags of an element of MSH 2: group, entity, and partitions. */
 #define MOST_TAGS 256
 
 struct msh_type msh_type(int64_t number)
@@ -30,14 +30,14 @@ struct msh_type msh_type(int64_t number)
     return types[number >= 1 && number < (int64_t)(sizeof types / sizeof *types) ? number : 0];
 }
 
-/* What elements that follow each other have in common: those of one entity in MSH 4, a block in binary files
- * of MSH 2, else a single one, where the type and the number of tags stand behind the element's own. */
+/* Consecutive elements with common data: those of one entity in MSH 4, a block in binary files of MSH 2; else
+ * a single element, whose type and number of tags follow its own tag. */
 struct block {
     int64_t count;
     int64_t number; /* of the type */
     struct msh_type type;
     int64_t key;  /* of the entity, MSH 4 */
-    int64_t tags; /* MSH 1 and 2: so many tags follow: group, entity, partitions */
+    int64_t tags; /* MSH 1 and 2: number of tags that follow: group, entity, partitions */
 };
 
 static void read_type(struct msh_reader *r, struct block *block)
@@ -80,7 +80,7 @@ static int64_t read_group(struct msh_reader *r, const struct block *block)
     int64_t group = 0;
     for (int64_t k = 0; k < block->tags; k++) {
         int64_t tag = msh_int(r, "tag", k == 1 ? 0 : -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        if (k == 0) { /* negative where the element's orientation is reversed */
+        if (k == 0) { /* negative if the element's orientation is reversed */
             group = tag < 0 ? -tag : tag;
         }
     }

@@ -1,5 +1,5 @@
-/* Reading $PhysicalNames, $Entities and $PartitionedEntities: names of physical groups, and the groups that
- * each entity belongs to. */
+/* Reading $PhysicalNames, $Entities and $PartitionedEntities: the names of physical groups, and the groups of
+ * each entity. */
 #include "base/lists.h"
 #include "io/mesh/msh_private.h"
 
@@ -8,7 +8,7 @@
 
 #define LONGEST_NAME 127
 
-/* Of an entity. */
+/* Most groups of an entity. */
 #define MOST_GROUPS 64
 
 /* ---- $PhysicalNames ---- */
@@ -23,7 +23,7 @@ static void read_name(struct msh_reader *r, struct msh_name *name)
         return;
     }
     const char *text = r->at + 1;
-    int length = 0; /* a NUL ends it, too */
+    int length = 0; /* a NUL also ends the name */
     while (text + length < r->end && strchr("\"\n", text[length]) == NULL && length <= LONGEST_NAME) {
         length++;
     }
@@ -36,7 +36,7 @@ static void read_name(struct msh_reader *r, struct msh_name *name)
     msh_skip_line(r);
 }
 
-/* The section is text in binary files, too. */
+/* This section is text also in binary files. */
 void msh_read_names(struct msh_reader *r)
 {
     bool binary = r->binary;
@@ -101,7 +101,7 @@ static void read_partitions_of(struct msh_reader *r, int dim, bool is_part)
     }
 }
 
-/* Read the physical groups of an entity. A tag is negative where the group reverses the orientation. */
+/* Read the physical groups of an entity. A tag is negative if the group reverses the orientation. */
 static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *entity)
 {
     int64_t count = msh_count(r, "physical groups", 2, 4);

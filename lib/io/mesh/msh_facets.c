@@ -5,18 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is at hand while facets and sets are gathered. */
+/* The state while facets and sets are gathered. */
 struct gathering {
     struct mesh_draft *draft;
     struct msh_faces faces;
     int64_t *group_ptr; /* group_count + 1: elements by group */
     int64_t *group_idx;
-    int32_t *face_stamp;  /* per face: 1 + the last group that took it */
+    int32_t *face_stamp;  /* per face: 1 + the last group that contains it */
     int32_t *node_stamp;  /* per node: the same */
     int64_t set_capacity; /* of mesh->set_idx */
 };
 
-/* A mesh of two cells on the same side of a face is folded, or has a cell twice. */
+/* The error of two cells on the same side of a face: the mesh overlaps, or a cell is repeated. */
 static enum status fail_overlap(const struct mesh_draft *draft, const struct msh_overlap *overlap)
 {
     const struct msh *msh = draft->msh;
@@ -53,7 +53,7 @@ static enum status sort_by_group(struct gathering *g)
     return STATUS_OK;
 }
 
-/* Add a node to the set that is being gathered, once; the node may be one that was left out: -1. */
+/* Add a node to the current set, once; -1: the node was left out. */
 static enum status add_set_node(struct gathering *g, int32_t group, int32_t node)
 {
     struct mesh *mesh = g->draft->mesh;
@@ -67,7 +67,7 @@ static enum status add_set_node(struct gathering *g, int32_t group, int32_t node
     return STATUS_OK;
 }
 
-/* The set is whole: if it has nodes, it gets its name. */
+/* End the current set, and name it if it has nodes. */
 static enum status close_set(struct gathering *g, int32_t group)
 {
     struct mesh *mesh = g->draft->mesh;
@@ -83,12 +83,12 @@ static enum status close_set(struct gathering *g, int32_t group)
     return STATUS_OK;
 }
 
-/* How the faces of a group lie. */
+/* Number of faces of a group by their position. */
 struct tally {
     int64_t boundary, interior, elsewhere;
 };
 
-/* One face of a group: a facet if it is on the boundary, nodes of a set if it is between two cells. */
+/* Add one face of a group: a facet if it is on the boundary, nodes of a set if it is between two cells. */
 static enum status add_face(struct gathering *g, int32_t group, const int32_t node[], struct tally *tally)
 {
     struct mesh *mesh = g->draft->mesh;
@@ -111,7 +111,7 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
         }
         return status;
     }
-    if (g->face_stamp[face] != group + 1) { /* the file may have it twice */
+    if (g->face_stamp[face] != group + 1) { /* the file may repeat it */
         g->face_stamp[face] = group + 1;
         tally->boundary++;
         msh_face_nodes(&g->faces, face, &mesh->facets[mesh->facet_count * dim]);
@@ -134,7 +134,7 @@ static enum status note_tally(struct gathering *g, const struct msh_group *group
     return STATUS_OK;
 }
 
-/* A group of dimension dim - 1. */
+/* Gather a group of dimension dim - 1. */
 static enum status gather_facets(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;
@@ -154,7 +154,7 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     return note_tally(g, &msh->groups[group], &tally);
 }
 
-/* A group of lower dimension. */
+/* Gather a group of lower dimension. */
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;
@@ -198,7 +198,7 @@ static int compare_names(const void *left, const void *right)
     return strcmp(*(char *const *)left, *(char *const *)right);
 }
 
-/* Names differ within a dimension, but node sets come from several. */
+/* Check that node sets have different names: groups differ only within a dimension. */
 static enum status check_set_names(const struct mesh_draft *draft)
 {
     const struct mesh_names *sets = &draft->mesh->node_sets;
@@ -218,7 +218,7 @@ static enum status check_set_names(const struct mesh_draft *draft)
     return STATUS_OK;
 }
 
-/* Room for all facets that there can be: a triangle of second order gives four, a quadrangle eight. */
+/* Most facets that there can be: four of a triangle of second order, eight of a quadrangle. */
 static int64_t most_facets(const struct mesh_draft *draft)
 {
     int64_t most = 0;

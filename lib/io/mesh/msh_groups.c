@@ -1,5 +1,5 @@
-/* The physical groups of a mesh file, and those of each element: from names, entities and elements that have
- * been read. */
+/* The physical groups of a mesh file, and those of each element, from the names, entities and elements that
+ * were read. */
 #include "base/lists.h"
 #include "io/mesh/msh_private.h"
 
@@ -38,13 +38,13 @@ static int compare_names(const void *left, const void *right)
     return names != 0 ? names : compare_group(&key, b);
 }
 
-/* The group, which is there. */
+/* The group with a key; it exists. */
 static struct msh_group *find_group(const struct msh *msh, int64_t key)
 {
     return bsearch(&key, msh->groups, (size_t)msh->group_count, sizeof *msh->groups, compare_group);
 }
 
-/* Sort keys, each once; returns how many are left. */
+/* Sort keys and remove repetitions; returns the number that remains. */
 static int64_t sort_keys(int64_t keys[], int64_t count)
 {
     int64_t kept = 0;
@@ -57,7 +57,7 @@ static int64_t sort_keys(int64_t keys[], int64_t count)
     return kept;
 }
 
-/* The groups that the file names, and those that entities (MSH 4) or elements (MSH 1 and 2) are in. */
+/* Collect the groups that the file names, and those of entities (MSH 4) or elements (MSH 1 and 2). */
 static void collect_groups(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
@@ -87,8 +87,8 @@ static void collect_groups(struct msh_reader *r)
     }
 }
 
-/* A copy in which blanks, commas and the like, which cannot stand in lists of names, are underscores; or
- * NULL. */
+/* A copy in which characters that cannot be in lists of names, such as blanks and commas, are underscores;
+ * NULL: memory. */
 static char *plain_name(const char *name)
 {
     char *copy = strdup(name);
@@ -118,7 +118,7 @@ static void give_name(struct msh_reader *r, const struct msh_name *name)
     }
 }
 
-/* Names as in the file, "group_TAG" for groups without; two of one name and dimension are a failure. */
+/* Name the groups as in the file, or "group_TAG"; two groups with one name and dimension are a failure. */
 static void name_groups(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
@@ -150,7 +150,7 @@ static void name_groups(struct msh_reader *r)
     free(order);
 }
 
-/* In MSH 1 and 2 each group is an entity in itself. */
+/* In MSH 1 and 2 each group is an entity. */
 static void make_entities(struct msh_reader *r)
 {
     int64_t count = r->msh->group_count;
@@ -162,7 +162,7 @@ static void make_entities(struct msh_reader *r)
     }
 }
 
-/* Entities in ascending order; their groups become indices into msh->groups, ascending. */
+/* Sort the entities, and turn their groups into ascending indices into msh->groups. */
 static void sort_entities(struct msh_reader *r)
 {
     if (r->status != STATUS_OK || r->entity_count == 0) {
@@ -184,7 +184,7 @@ static void sort_entities(struct msh_reader *r)
     }
 }
 
-/* The entity of an element; of a file that lists none, and of elements of no group, a list of no groups. */
+/* The entity of an element; one without groups if the file lists none, and for elements without group. */
 static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const struct msh_entity *last)
 {
     static const struct msh_entity none = {0, 0, 0};

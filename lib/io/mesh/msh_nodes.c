@@ -7,7 +7,7 @@
 
 /* ---- finding nodes and elements by their tags ---- */
 
-/* Tags that are spread over at most this multiple of their number get a table. */
+/* Tags whose range is at most this multiple of their number get a table. */
 enum { LARGEST_SPREAD = 4 };
 
 static void fail_repeated(struct msh_reader *r, int64_t tag)
@@ -90,14 +90,14 @@ static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
     }
 }
 
-/* A row of nodes: all of a file of MSH 1 or 2, those on one entity in MSH 4. */
+/* A block of nodes: all nodes of a file of MSH 1 or 2, those of one entity in MSH 4. */
 struct block {
     int64_t first, count;
-    int64_t parameters;  /* of each node, its place on the entity: not used */
+    int64_t parameters;  /* number of parametric coordinates of each node, which are not used */
     int64_t least, most; /* bounds of the tags */
 };
 
-/* In MSH 4.1 all tags stand before all points, else each before its point. */
+/* In MSH 4.1 all tags come before all points, else each before its point. */
 static void read_block(struct msh_reader *r, const struct block *block)
 {
     bool apart = r->version == 41;

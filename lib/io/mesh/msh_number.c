@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longer words are no numbers. */
+/* Longer words are not numbers. */
 enum { LONGEST_WORD = 63 };
 
 void msh_fail(struct msh_reader *r, const char *format, ...)
@@ -53,7 +53,7 @@ void msh_skip_line(struct msh_reader *r)
     msh_fail(r, "the file ends here: it is truncated");
 }
 
-/* Step over the next word of a text file and return it; *length is 0 where there is none, a failure. */
+/* Step over the next word of a text file and return it; *length is 0 if there is none, which is a failure. */
 static const char *next_word(struct msh_reader *r, const char *what, int *length)
 {
     msh_skip_space(r);
@@ -81,7 +81,7 @@ static void next_bytes(struct msh_reader *r, const char *what, size_t size, void
     r->at += size;
 }
 
-/* Decimal digits, with or without a sign, that fit into 64 bits. */
+/* Read decimal digits, with or without a sign, that fit into 64 bits. */
 static int64_t whole_of_text(struct msh_reader *r, const char *what)
 {
     int length;

@@ -1,14 +1,13 @@
-/* Reading mesh files, private to lib/io: what msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c,
- * msh_entities.c and msh_groups.c share.
+/* Reading mesh files: shared by msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c, msh_entities.c and
+ * msh_groups.c; private to lib/io.
  *
  *   bytes --> sections --> $PhysicalNames, $Entities  --> groups    \
  *                          $Nodes                     --> nodes      } struct msh
  *                          $Elements                  --> elements  /
- *
- * The reader goes through the file once. Its first failure stays: from then on every function of this header
- * returns without effect, numbers are the least that was allowed, and loops stop at `reader->status`. No
- * count is believed before as many records can be in the rest of the file. (Format: Geuzaine and Remacle,
- * Gmsh reference manual, "File formats".) */
+ * The reader passes through the file once. After its first failure, every function of this header returns
+ * without effect, numbers are the least admitted ones, and loops stop at `reader->status`. A count is
+ * accepted only if the rest of the file can contain that many records. (Format: Geuzaine and Remacle, Gmsh
+ * reference manual, "File formats".) */
 #pragma once
 
 #include "base/memory.h"
@@ -16,14 +15,12 @@
 #include "io/mesh/msh.h"
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
-/* Tags are of type int in all versions of the format but MSH 4.1, and there gmsh keeps most of them as int.
- */
+/* Tags are of type int in all versions of the format except MSH 4.1, where gmsh keeps most of them as int. */
 #define MSH_LARGEST_TAG INT32_MAX
 
-/* Where each tag is in the file: a table for tags that lie close together, else a sorted list. */
+/* The place of each tag in the file: a table for tags in a small range, else a sorted list. */
 struct msh_index {
     int64_t count;
     int64_t first, span; /* tags are within [first, first + span) */
@@ -40,13 +37,13 @@ struct msh_name {
     int length;
 };
 
-/* A list of physical groups that elements refer to: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
+/* A list of physical groups to which elements refer: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
 struct msh_entity {
     int64_t key;
     int64_t first, count; /* its groups: of reader->physicals */
 };
 
-/* The sections that are read; others are stepped over. */
+/* The sections that are read; others are skipped. */
 enum msh_section {
     MSH_FORMAT,
     MSH_NAMES,
@@ -58,10 +55,10 @@ enum msh_section {
 };
 
 struct msh_reader {
-    const char *at, *end; /* what is left of the file */
+    const char *at, *end; /* the rest of the file */
     int version;          /* ten times that of the file: 10, 20, 21, 22, 40, 41 */
     bool binary;          /* numbers are little-endian values of 4 bytes (int), 8 (size) and 8 (real) */
-    const char *section;  /* for messages: "$Nodes", and "node" or whatever the records are */
+    const char *section;  /* for messages: "$Nodes", and the kind of its records, "node" */
     const char *kind;
     int64_t record; /* number of the record, from 1; 0: the head of the section */
     enum status status;
@@ -69,7 +66,7 @@ struct msh_reader {
 
     struct msh *msh;
     struct msh_index nodes;
-    bool has[MSH_SECTIONS]; /* read to its end */
+    bool has[MSH_SECTIONS]; /* the section was read to its end */
     int64_t node_idx_room;
     int64_t *element_key; /* msh->element_count: key of the entity, in MSH 1 and 2 of the group; 0: none */
     int64_t name_count;
@@ -78,7 +75,7 @@ struct msh_reader {
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
     int64_t *physicals; /* keys of groups */
-    /* The partitions of the parts of the highest dimension so far. */
+    /* The partitions that have elements of the highest dimension so far. */
     int partition_dim;
     int64_t partition_count, partition_room;
     int64_t *partitions;
@@ -93,17 +90,17 @@ void msh_fail(struct msh_reader *reader, const char *format, ...) __attribute__(
 int64_t msh_int(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
 int64_t msh_size(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
 
-/* A number of records, each of which takes `text` or `binary` bytes at the least: they must be able to be in
- * what is left of the file. */
+/* A number of records, each of at least `text` or `binary` bytes; the rest of the file must have room for
+ * them. */
 int64_t msh_count(struct msh_reader *reader, const char *what, int64_t text, int64_t binary);
 
-/* The same for the count at the head of a section of MSH 1 and 2, text on a line of its own in all files. */
+/* The same for the count at the head of a section of MSH 1 and 2, which is a line of text in all files. */
 int64_t msh_count_line(struct msh_reader *reader, const char *what, int64_t least);
 
 /* The next real number, finite or not. */
 double msh_real(struct msh_reader *reader, const char *what);
 
-/* Step over white space; over the rest of the line, which must be blank. */
+/* Skip white space; skip the rest of the line, which must be blank. */
 void msh_skip_space(struct msh_reader *reader);
 void msh_skip_line(struct msh_reader *reader);
 
@@ -145,12 +142,12 @@ static inline int64_t msh_key(int64_t dim, int64_t tag)
     return ((dim + 1) << 32) + tag;
 }
 
-/* The groups of the file, and those of each element: the last step. */
+/* Set the groups of the file, and those of each element: the last step. */
 void msh_join_groups(struct msh_reader *reader);
 
 /* ---- msh_nodes.c: finding nodes by their tags ---- */
 
-/* Index the tags; one that stands twice is a failure. */
+/* Index the tags; a repeated tag is a failure. */
 void msh_index_make(struct msh_reader *reader, struct msh_index *index, int64_t count, const int64_t tags[]);
 void msh_index_free(struct msh_index *index);
 

@@ -11,9 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* So many bytes tell whether a file is a mesh. */
+/* Number of bytes that identify a mesh. */
 #define MAGIC_SIZE 12
-/* The first element of an XML file, behind its comments, is looked for in so many. */
+/* Number of bytes in which the first element of an XML file, behind its comments, is searched for. */
 #define XML_HEAD 4096
 
 /* ---- what the file is ---- */
@@ -35,7 +35,7 @@ static bool is_mesh(const char *bytes, size_t size)
            (size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]));
 }
 
-/* How to make a mesh of a file of another program, by its first bytes: ": a VTK file: ...", or "". */
+/* A hint how to convert a file of another program, from its first bytes: ": a VTK file: ...", or "". */
 static const char *foreign_hint(const char *bytes, size_t size)
 {
 #define BY_MESHIO                                                                                            \
@@ -122,7 +122,7 @@ static void read_format(struct msh_reader *r)
     }
 }
 
-/* "$Name", stepped over, into name[size]. */
+/* Read "$Name" into name[size]. */
 static void read_heading(struct msh_reader *r, char name[], size_t size)
 {
     size_t length = 0;
@@ -141,7 +141,7 @@ static void read_heading(struct msh_reader *r, char name[], size_t size)
     r->at += length;
 }
 
-/* "$EndName" on a line of its own, or at the end of the file; in MSH 1 "$ENDNAM". */
+/* Read "$EndName" on a line of its own, or at the end of the file; in MSH 1 "$ENDNAM". */
 static void read_ending(struct msh_reader *r)
 {
     const char *name = r->section + 1;
@@ -166,7 +166,7 @@ static void read_ending(struct msh_reader *r)
     }
 }
 
-/* Step over a section that is not needed. */
+/* Skip a section that is not needed. */
 static void skip_section(struct msh_reader *r)
 {
     char ending[80] = "$End";
@@ -179,7 +179,7 @@ static void skip_section(struct msh_reader *r)
     }
 }
 
-/* The content of a section: of those that are needed, each once. */
+/* Read the content of a section; a needed section must not be repeated. */
 static void read_content(struct msh_reader *r)
 {
     static const struct {
@@ -261,7 +261,7 @@ static enum status fail_read(struct error *error)
     return fail(error, STATUS_SYSTEM, "%s", strerror(errno));
 }
 
-/* Read to the end; but no further than the first bytes where those do not begin a mesh. */
+/* Read to the end; only the first bytes if they do not begin a mesh. */
 static enum status read_all(struct bytes *bytes, int descriptor, struct error *error)
 {
     int64_t capacity = 0;
@@ -280,7 +280,7 @@ static enum status read_all(struct bytes *bytes, int descriptor, struct error *e
     }
 }
 
-/* Regular files are mapped, others read. */
+/* Map a regular file, read another one. */
 static enum status take_in(struct bytes *bytes, int descriptor, struct error *error)
 {
     struct stat info;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points of a plane mesh may leave the plane by this part of its extent. */
+/* Points of a plane mesh may be off the plane by this share of its extent. */
 #define FLATNESS 1e-9
 
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
@@ -58,14 +58,14 @@ enum status mesh_find_dim(struct mesh_draft *draft)
     return dim == 2 ? check_plane(draft) : STATUS_OK;
 }
 
-/* The group of a cell, of several the first; group_count for none. */
+/* The first group of a cell; group_count if there is none. */
 static int32_t cell_group(const struct msh *msh, int64_t element)
 {
     int64_t first = msh->member_ptr[element];
     return msh->member_ptr[element + 1] > first ? msh->member_idx[first] : msh->group_count;
 }
 
-/* ---- cells that stand twice: in MSH 2 that is how they are in two groups ---- */
+/* ---- repeated cells: in MSH 2 a cell in two groups is repeated ---- */
 
 #define MOST_CORNERS 8
 
@@ -97,8 +97,8 @@ static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *
     }
 }
 
-/* is_cell[element]: it is of the mesh's dimension, and the first element with its nodes. Repeated elements
- * and cells in two groups are reported. */
+/* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. Repeated elements
+ * and cells in two groups are noted. */
 static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
 {
     const struct msh *msh = draft->msh;
@@ -136,7 +136,7 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
     return STATUS_OK;
 }
 
-/* A note on each name that is not as in the file. */
+/* Note each name that differs from that in the file. */
 static enum status note_names(struct mesh_draft *draft)
 {
     for (int32_t g = 0; g < draft->msh->group_count; g++) {
@@ -149,7 +149,7 @@ static enum status note_names(struct mesh_draft *draft)
     return STATUS_OK;
 }
 
-/* Is `name` an item of the list? */
+/* Whether `name` is an item of the list. */
 static bool is_listed(const char *list, const char *name)
 {
     size_t length = strlen(name);
@@ -162,7 +162,7 @@ static bool is_listed(const char *list, const char *name)
     return false;
 }
 
-/* Every region that is wanted must be one of those present. */
+/* Check that every wanted region exists. */
 static enum status check_wanted(const struct mesh_draft *draft, const struct mesh_names *present)
 {
     char list[256] = "";
@@ -180,14 +180,14 @@ static enum status check_wanted(const struct mesh_draft *draft, const struct mes
     return STATUS_OK;
 }
 
-/* Name the regions that are wanted; region_of_group[group_count + 1], the last for cells without a group,
- * receives the index of each, or -1. cells_of[] counts the cells of each. */
+/* Name the wanted regions. region_of_group[group_count + 1], the last for cells without group, receives the
+ * index of each, or -1. cells_of[]: number of cells of each. */
 static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of[], int32_t region_of_group[])
 {
     const struct msh *msh = draft->msh;
     struct mesh_names *regions = &draft->mesh->regions;
     FREED_BY(mesh_names_free) struct mesh_names present = {0};
-    const char *unnamed = "body"; /* "unnamed" beside others */
+    const char *unnamed = "body"; /* "unnamed" if there are other regions */
     for (int32_t g = 0; g <= msh->group_count; g++) {
         region_of_group[g] = -1;
         if (cells_of[g] == 0) {

@@ -6,8 +6,8 @@
 
 /* ---- second order: pieces at the midside nodes ---- */
 
-/* The types of elements of second order that have a node in the middle of each quadrangular face, and of
- * hexahedra: the places of the pieces' nodes in the list of the whole, in gmsh's order. */
+/* The types of elements of second order with a node in the middle of each quadrangular face, and of
+ * hexahedra: places of the nodes of each piece in the node list of the element, in gmsh's order. */
 struct pattern {
     int type;
     struct msh_pieces pieces;
@@ -44,7 +44,7 @@ static const struct pattern patterns[] = {
 
 const struct msh_pieces *msh_pieces(int type, bool midside)
 {
-    /* Those of a whole element, by the type of first order. */
+    /* An element of first order is one piece. */
     static const struct msh_pieces none = {0},
                                    whole[] =
                                        {
@@ -103,8 +103,8 @@ static int split_quadrangle(const int32_t ring[4], bool other, int32_t triangles
     return 2;
 }
 
-/* Join the lowest node to the triangles of the faces that it is not on: those faces that it is on are so
- * split along the diagonals through it. */
+/* Join the lowest node to the triangles of the faces without it. The faces with it are thus split along the
+ * diagonals through it. */
 static int split_solid(const struct faces *faces, const int32_t node[], int node_count,
                        int32_t tetrahedra[][4])
 {

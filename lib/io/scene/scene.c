@@ -6,11 +6,11 @@
 
 #include <string.h>
 
-/* Append *added, zeroed but for its label. */
+/* Append *added, zero except for its label. */
 static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene,
                             void **added)
 {
-    /* The arrays differ in type: their pointers and the items are copied as bytes. */
+    /* The arrays have different types: pointers and items are copied as bytes. */
     int64_t *count = (int64_t *)(void *)((char *)scene + kind->count);
     char *place_of_items = (char *)scene + kind->items;
     void *items;
@@ -44,7 +44,7 @@ static enum status read_section(const struct place *place, struct scene *scene)
     if (!kind->has_items && section->name[0] != '\0') {
         return place_fail(place, NULL, "takes no name: write [%s]", section->kind);
     }
-    void *values = scene; /* that the keys fill */
+    void *values = scene; /* set from the keys */
     if (kind->has_items) {
         RETURN_IF_ERROR(add_item(place, kind, scene, &values));
     }
@@ -55,7 +55,7 @@ static enum status read_section(const struct place *place, struct scene *scene)
     return place_check_units(place, kind->keys);
 }
 
-/* [scene] first: the others depend on its dimension and analysis. */
+/* Read [scene] first: the other sections depend on its dimension and analysis. */
 static enum status read_sections(const struct ini_file *file, struct scene *scene, struct error *error)
 {
     for (int round = 0; round < 2; round++) {
@@ -74,7 +74,7 @@ static enum status read_sections(const struct ini_file *file, struct scene *scen
     return STATUS_OK;
 }
 
-/* A region is made of one material. */
+/* Check that a region has one material. */
 static enum status check_regions(const struct scene *scene, struct error *error)
 {
     for (int64_t m = 0; m < scene->material_count; m++) {

@@ -1,26 +1,25 @@
-/* The scene: what to compute on a body, as a plain struct read from an INI file (grammar below).
+/* The scene: the problem to compute on a body, read from an INI file (grammar below).
  *
  * The file holds sections `[kind NAME]` with lines `key = value`. Comments begin with '#' or ';' at the start
  * of a line or after a blank. Nothing is guessed: an unknown, repeated or missing key is an error with its
  * line. Names of groups are comma lists. Files are named relative to the scene file. A scene can only be
  * computed: it names no program and no file to write.
  *
- * - [scene]: dim = 2|3; analysis = quasi-static|dynamic; title = TEXT; gravity = GX,GY[,GZ] (m/s2)
- * - [material NAME]: region = GROUPS; model = neo-hookean (default)|neo-hookean-log|mooney-rivlin|ogden|
+ * - [scene]: dim = 2|3; analysis = quasi-static|dynamic; title = TEXT; gravity = GX,GY[,GZ] (m/s2) -
+ * [material NAME]: region = GROUPS; model = neo-hookean (default)|neo-hookean-log|mooney-rivlin|ogden|
  *   st-venant-kirchhoff; E (Pa); nu; rho (kg/m3); ratio (mooney-rivlin: C01/C10); alpha (ogden); or, instead
  *   of E and nu, table = FILE with unit
  * - [displacement NAME]: facets = GROUPS or nodes = SETS; one of table = FILE with unit, components =
- * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve
- * - or, for measured points: points = FILE with unit; reach (m); model_error (m); curve
- * - [contact NAME]: facets = GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
+ * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve - or, for
+ * measured points: points = FILE with unit; reach (m); model_error (m); curve - [contact NAME]: facets =
+ * GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
  *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
  *   angle_curve; or instead of a rigid surface against = GROUPS; * is the whole boundary
  * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward), or of a fluid: density (kg/m3),
- * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve
- * - [traction NAME]: facets = GROUPS; components (Pa); curve
- * - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre of thickness); curve
- * - [initial]: table = FILE; unit (dynamic)
- * - [output]: frames = COUNT or interval (s, dynamic); stress, strain, pressure, volume_ratio, energy,
+ * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve - [traction NAME]: facets =
+ * GROUPS; components (Pa); curve - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre
+ * of thickness); curve - [initial]: table = FILE; unit (dynamic) - [output]: frames = COUNT or interval (s,
+ * dynamic); stress, strain, pressure, volume_ratio, energy,
  *   reactions, moments, gaps = yes|no; moments_about = X,Y[,Z] (m); folds = refused (default)|allowed
  * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
  *   tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
@@ -56,21 +55,20 @@ enum scene_constraints { SCENE_EBCIEM, SCENE_DIRECT };
 enum scene_constraint_points { SCENE_NODAL_AVERAGES, SCENE_NODE_VALUES };
 enum scene_volume { SCENE_NODAL_VOLUME, SCENE_POINTWISE_VOLUME };
 
-/* Names of groups, each different; the key is absent when count == 0. */
+/* Different names of groups; count 0: the key is absent. */
 struct name_list {
     char **names;
     int64_t count;
 };
 
 struct scene_label {
-    const char *name; /* "craniotomy" */
-    const char
-        *where; /* in front of messages about the section: "brain.scene:12: [displacement craniotomy]" */
+    const char *name;  /* "craniotomy" */
+    const char *where; /* prefix of messages: "brain.scene:12: [displacement craniotomy]" */
 };
 
 struct scene_curve {
     enum scene_curve_kind kind;
-    const char *file; /* rows (time, factor); NULL but for SCENE_CURVE_FILE */
+    const char *file; /* SCENE_CURVE_FILE: rows (time, factor); else NULL */
 };
 
 struct scene_material {
@@ -91,14 +89,15 @@ struct scene_displacement {
     struct name_list facets, nodes; /* exactly one is given, none with SCENE_POINTS; nodes never with
                                        SCENE_NORMAL */
     enum scene_prescription kind;
-    const char *table; /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the
-                    same of measured points, and perhaps a standard deviation; components may be open */
-    double table_unit; /* m per unit of the table */
+    const char
+        *table; /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the same of
+                   measured points, with an optional standard deviation; components may be unknown */
+    double table_unit;    /* m per unit of the table */
     double components[3]; /* SCENE_COMPONENTS: m, dim of them */
     bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */
     double normal;        /* SCENE_NORMAL: m, along the outward reference normal */
-    double reach;         /* SCENE_POINTS: how far from the body a point may be, m; 0: not given */
-    double model_error;   /* SCENE_POINTS: how far off the scene is without the points, m; 0: not given */
+    double reach;         /* SCENE_POINTS: largest distance of a point from the body, m; 0: not given */
+    double model_error;   /* SCENE_POINTS: error of the scene without the points, m; 0: not given */
     struct scene_curve curve;
 };
 
@@ -110,18 +109,17 @@ struct scene_contact {
     double rigid_unit;        /* m per unit of the file */
     enum scene_side side;     /* left, right in 2D; front, back in 3D */
     double stiffness;         /* Pa/m, > 0; 0: not given, chosen by the solver */
-    /* Motion of the surface: it is turned, then moved. */
-    bool moves;            /* false: it stays, and there are no curves */
-    double translation[3]; /* m, dim components */
-    double angle;          /* degrees; right-handed about the axis, in 2D counter-clockwise */
-    double axis_point[3];  /* m, dim components */
-    double axis[3];        /* not 0, of any length; in 2D (0, 0, 1) */
+                              /* Motion of the surface: it is turned, then moved. */
+    bool moves;               /* false: it stays, and the curves are not used */
+    double translation[3];    /* m, dim components */
+    double angle;             /* degrees; right-handed about the axis, in 2D counter-clockwise */
+    double axis_point[3];     /* m, dim components */
+    double axis[3];           /* not 0, of any length; in 2D (0, 0, 1) */
     struct scene_curve curve, angle_curve;
 };
 
-/* The part of a fluid that presses: below its level, above (where it hangs: the pressure is negative), or
- * all.
- */
+/* The part of a fluid whose pressure acts: below its level, above it (where the pressure is negative), or
+ * all. */
 enum scene_level_side { SCENE_BELOW, SCENE_ABOVE, SCENE_BELOW_AND_ABOVE };
 
 /* A pressure, traction or force. */
@@ -138,7 +136,7 @@ struct scene_load {
     struct scene_curve curve;
 };
 
-/* State at the begin of a dynamic scene. */
+/* The initial state of a dynamic scene. */
 struct scene_initial {
     const char
         *table; /* NULL: at rest; or rows (dim coordinates, displacement, velocity), one per node in order */
@@ -150,7 +148,7 @@ struct scene_output {
     double interval; /* s between frames (dynamic); 0: none. Not both. */
     bool stress, strain, pressure, volume_ratio, energy, reactions, moments, gaps;
     double about[3];    /* the point of the moments, m; default the origin */
-    bool folds_allowed; /* a body that folds is no verdict */
+    bool folds_allowed; /* a body that folds is not refused */
 };
 
 struct scene_solver {
@@ -187,13 +185,13 @@ struct scene {
     struct scene_initial initial;
     struct scene_output output;
     struct scene_solver solver;
-    struct name_list files; /* all that it names: tables, surfaces, curves */
+    struct name_list files; /* all files that it names: tables, surfaces, curves */
     struct owned owned;     /* the texts and lists of names above */
 };
 
-/* Read a scene file. It reads no other file: the tables are named by path, for the caller to read. Errors, as
- * `FILE:LINE: [kind NAME]: key: what: remedy`: STATUS_INPUT for anything malformed, STATUS_SYSTEM for read
- * failures and memory. The scene is to be freed also on failure. */
+/* Read a scene file. Tables are only named by path; the caller reads them. STATUS_INPUT for anything
+ * malformed, with a message `FILE:LINE: [kind NAME]: key: what: remedy`; STATUS_SYSTEM for read failures and
+ * memory. To be freed also on failure. */
 MUST_CHECK enum status scene_read(const char *path, struct scene *scene, struct error *error);
 
 /* Release everything the scene owns; it becomes empty. */

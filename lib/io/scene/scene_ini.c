@@ -12,13 +12,13 @@
 
 enum { FILE_LIMIT = 64 << 10, HEADER_LIMIT = 49 }; /* libinih cuts headers beyond 49 bytes silently */
 
-/* libinih reports neither lines, nor empty sections, nor anything repeated or cut. So we hand it one cleaned
- * line at a time, so that the line of each entry is known, and check the headers ourselves. */
+/* libinih does not report line numbers, empty sections, repetitions and truncation. It gets one cleaned line
+ * at a time, so that the line of each entry is known; headers are checked here. */
 struct reading {
     struct ini_file *file;
     struct owned *words;
-    const char *at; /* rest of the text */
-    int64_t line;   /* line handed over last, from 1 */
+    const char *at; /* the rest of the text */
+    int64_t line;   /* number of the line passed last, from 1 */
     enum status status;
     struct error *error;
 };
@@ -42,7 +42,7 @@ static enum status fail_line(struct reading *reading, const char *what)
                 what);
 }
 
-/* Bytes of the line without comment and without blanks at its end. */
+/* The length of a line without comment and trailing blanks. */
 static size_t content_length(const char *line, size_t length)
 {
     for (size_t i = 0; i < length; i++) {
@@ -53,7 +53,7 @@ static size_t content_length(const char *line, size_t length)
     return ini_trimmed(line, length);
 }
 
-/* A word that the caller owns; NULL on failure. */
+/* A copy of a word, owned by the caller's list; NULL on failure. */
 static char *keep(struct reading *reading, const char *text, size_t length)
 {
     char *word = strndup(text, length);
@@ -98,8 +98,8 @@ static enum status add_section(struct reading *reading, const char *header, size
     return STATUS_OK;
 }
 
-/* Check a line of content before libinih sees it. */
-static enum status look_at_line(struct reading *reading, const char *line, size_t length, size_t room)
+/* Check a line of content before libinih parses it. */
+static enum status check_line(struct reading *reading, const char *line, size_t length, size_t room)
 {
     if (length == 0) {
         return STATUS_OK;
@@ -122,8 +122,8 @@ static enum status look_at_line(struct reading *reading, const char *line, size_
                                             : fail_line(reading, "stands before the first [section]");
 }
 
-/* fgets for libinih: the next line, cleaned; leading blanks would make it a continuation of the last value.
- */
+/* fgets for libinih: the next line, cleaned. Leading blanks, which would make it a continuation of the last
+ * value, are removed. */
 static char *next_line(char *buffer, int room, void *user)
 {
     struct reading *reading = user;
@@ -136,7 +136,7 @@ static char *next_line(char *buffer, int room, void *user)
     reading->at = end + 1; /* textfile_read guarantees the newline */
     reading->line++;
     length = content_length(line, line < end ? (size_t)(end - line) : 0);
-    reading->status = look_at_line(reading, line, length, (size_t)room);
+    reading->status = check_line(reading, line, length, (size_t)room);
     if (reading->status != STATUS_OK) {
         return NULL;
     }
@@ -145,7 +145,7 @@ static char *next_line(char *buffer, int room, void *user)
     return buffer;
 }
 
-/* An entry of the section seen last. */
+/* Append an entry to the last section. */
 static enum status add_entry(struct reading *reading, const char *key, const char *value)
 {
     struct ini_section *section = &reading->file->sections[reading->file->section_count - 1];
@@ -185,7 +185,7 @@ enum status ini_read(const char *path, struct owned *words, struct ini_file *fil
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
     struct reading reading = {.file = file, .words = words, .at = text.text, .error = error};
     int result = ini_parse_stream(next_line, &reading, take_entry, &reading);
-    if (reading.status == STATUS_OK && result != 0) { /* nothing that passed look_at_line should fail */
+    if (reading.status == STATUS_OK && result != 0) { /* nothing that passed check_line should fail */
         reading.status = fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result);
     }
     return reading.status;

@@ -1,4 +1,4 @@
-/* An INI file as sections and entries with their lines, before any meaning. Inside of lib/io only. */
+/* An INI file as sections and entries with their lines, without interpretation; private to lib/io. */
 #pragma once
 
 #include "base/memory.h"
@@ -7,14 +7,14 @@
 
 struct ini_entry {
     const char *key;
-    char *value; /* not empty, without blanks at its ends; whoever reads it may cut it up */
+    char *value; /* not empty, without blanks at its ends; readers may modify it */
     int64_t line;
 };
 
 /* `[kind NAME]` or `[kind]`. */
 struct ini_section {
     const char *kind;
-    const char *name; /* "" when the header has none */
+    const char *name; /* "" if the header has none */
     int64_t line;
     struct ini_entry *entries; /* keys differ */
     int64_t entry_count;
@@ -27,9 +27,10 @@ struct ini_file {
     int64_t section_count;
 };
 
-/* Read an INI file; `path` and `words`, which its words are added to, have to outlive it. Errors as
- * `FILE:LINE: ...`: those of textfile_read, over-long lines, headers that are not `[kind]` or `[kind NAME]`,
- * keys without value or outside any section, repeated sections and keys. To be freed also on failure. */
+/* Read an INI file. Its words are added to `words`; this and `path` must outlive it. Errors, as `FILE:LINE:
+ * ...`: those of textfile_read; STATUS_INPUT for over-long lines, headers that are not `[kind]` or `[kind
+ * NAME]`, keys without value or outside of a section, and repeated sections and keys. To be freed also on
+ * failure. */
 MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file,
                                 struct error *error);
 

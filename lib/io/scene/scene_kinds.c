@@ -7,12 +7,12 @@
 
 #define KEYS (const char *const[])
 
-/* ---- what the keys of a section have to be together; each of them has been read ---- */
+/* ---- checks of the keys of a section together, after all have been read ---- */
 
 static enum status check_scene(const struct place *place, struct scene *scene)
 {
     (void)place;
-    if (scene->analysis == SCENE_DYNAMIC) { /* steps are to be accurate, not stable only */
+    if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
         scene->solver.time_step_margin = 0.75;
     }
     return STATUS_OK;
@@ -32,7 +32,7 @@ static enum status check_elasticity(const struct place *place, double nu)
     return STATUS_OK;
 }
 
-/* The key that only one model has, and that this one needs. */
+/* Check a key that one model requires and all others forbid. */
 static enum status check_model_key(const struct place *place, bool is_model, const char *key,
                                    const char *missing, const char *why)
 {
@@ -93,7 +93,7 @@ static enum status check_displacement(const struct place *place, struct scene *s
     return STATUS_OK;
 }
 
-/* The motion of a rigid surface, if it has one. */
+/* Check the motion of a rigid surface, if it has one. */
 static enum status check_motion(const struct place *place, int dim, struct scene_contact *contact)
 {
     bool turns = place_has(place, "angle");
@@ -152,7 +152,7 @@ static enum status check_contact(const struct place *place, struct scene *scene)
     return check_motion(place, scene->dim, contact);
 }
 
-/* A pressure, or one that grows with the depth below the level of a fluid. */
+/* Check a pressure: a value, or that of a fluid, which grows with the depth below its level. */
 static enum status check_pressure(const struct place *place, struct scene *scene)
 {
     (void)scene;

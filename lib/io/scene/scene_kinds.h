@@ -1,4 +1,4 @@
-/* The kinds of section of a scene: their keys, and how they fill the struct. Inside of lib/io only. */
+/* The kinds of sections of a scene, with their keys and the members set by these; private to lib/io. */
 #pragma once
 
 #include "base/status.h"
@@ -8,13 +8,13 @@
 /* A kind of section, and the array of the scene that its sections extend, if any. */
 struct scene_kind {
     const char *name;
-    const struct scene_key *keys; /* all that it may have; the last one has no name */
-    /* What the keys have to be together, when all have been read; NULL: nothing. */
+    const struct scene_key *keys; /* all admitted keys; the last one has no name */
+    /* Check of the keys together, after all have been read; NULL: none. */
     enum status (*check)(const struct place *place, struct scene *scene);
     bool has_items;
     size_t items, count; /* offsets in struct scene of the array and its count */
     size_t item_size;    /* items begin with a struct scene_label */
 };
 
-/* The kind of the section; an error for another name, or a key that the kind has not. */
+/* The kind of the section; STATUS_INPUT for an unknown kind or key. */
 MUST_CHECK enum status scene_kind_find(const struct place *place, const struct scene_kind **kind);

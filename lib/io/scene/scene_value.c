@@ -55,7 +55,7 @@ enum status place_forbid_all(const struct place *place, const char *const keys[]
     return STATUS_OK;
 }
 
-/* "a, b, c" of a NULL-terminated list. */
+/* text[size] = "a, b, c" from a NULL-terminated list. */
 static void join(const char *const words[], char *text, size_t size)
 {
     text[0] = '\0';
@@ -100,7 +100,7 @@ enum status place_only_keys(const struct place *place, const char *const keys[])
     return STATUS_OK;
 }
 
-/* A number without leading blanks; the message explains decimal commas. */
+/* Read a number; the message explains decimal commas. */
 static enum status number(const struct place *place, const char *key, const char *text, double *value)
 {
     struct error ignored;
@@ -188,7 +188,7 @@ static enum status read_yes(const struct place *place, const char *key, const ch
     return STATUS_OK;
 }
 
-/* The next item of a comma list, without blanks at its ends, cut off; NULL behind the last. */
+/* Cut off the next item of a comma list, without blanks at its ends; NULL behind the last. */
 static char *next_item(char **list)
 {
     char *item = strsep(list, ",");
@@ -199,7 +199,7 @@ static char *next_item(char **list)
     return item;
 }
 
-/* dim numbers; where is_free is not NULL, `free` stands for an absent component. */
+/* Read dim numbers; unless is_free is NULL, `free` means an absent component. */
 static enum status read_vector(const struct place *place, const char *key, char *list, int dim,
                                double values[3], bool is_free[3])
 {
@@ -245,7 +245,7 @@ enum status place_print(const struct place *place, char **text, const char *form
     return owned_add(&place->scene->owned, *text, place->file->path, place->error);
 }
 
-/* A file that the scene names. */
+/* Read the name of a file, and add it to the files of the scene. */
 static enum status read_file(const struct place *place, const char *text, const char **path)
 {
     struct name_list *files = &place->scene->files;
@@ -269,7 +269,7 @@ enum status place_check_units(const struct place *place, const struct scene_key 
     return STATUS_OK;
 }
 
-/* The unit of a file, which the section has to name by one of these keys. */
+/* Read the unit of a file, which the section must name by one of its keys. */
 static enum status read_unit(const struct place *place, const char *key, const char *text, double *metres)
 {
     struct error why;

@@ -1,5 +1,5 @@
-/* One section of a scene: its values, read as its keys are declared, and what has to be said of them.
- * Inside of lib/io only. Errors are `FILE:LINE: [kind NAME]: key: what: remedy`. */
+/* The values of one section of a scene, read as its keys are declared; private to lib/io. Messages are
+ * `FILE:LINE: [kind NAME]: key: what: remedy`. */
 #pragma once
 
 #include "base/status.h"
@@ -16,7 +16,7 @@ struct place {
     struct error *error;
 };
 
-/* Types of values of keys, and the types they are stored as. */
+/* Types of values of keys, and the C types in which they are stored. */
 enum value_type {
     VALUE_NUMBER, /* double; those that follow are bounded: */
     VALUE_POSITIVE,
@@ -38,13 +38,13 @@ struct scene_key {
     const char *name;
     enum value_type type;
     size_t at;           /* offset of the value in the item or, of a section without items, in the scene */
-    const char *missing; /* the remedy where it is missing; NULL: it need not be there */
+    const char *missing; /* the remedy if the key is missing; NULL: it is optional */
     const char *const *words; /* NULL-terminated */
     int64_t most;
-    size_t free; /* VALUE_VECTOR: offset of bool[3], set where a component is `free`; 0: none may be */
+    size_t free; /* VALUE_VECTOR: offset of bool[3], set for components that are `free`; 0: none may be */
 };
 
-/* Read the value of a key into *item, which stays as it is where the key is absent. */
+/* Read the value of a key into *item, which is unchanged if the key is absent. */
 MUST_CHECK enum status place_read(const struct place *place, const struct scene_key *key, int dim,
                                   void *item);
 
@@ -55,28 +55,28 @@ MUST_CHECK enum status place_check_units(const struct place *place, const struct
 enum status place_fail(const struct place *place, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Is the key there? */
+/* Whether the section has the key. */
 bool place_has(const struct place *place, const char *key);
 
-/* An error unless the key is there; `what` is the remedy. */
+/* STATUS_INPUT unless the key is present; `what` is the remedy. */
 MUST_CHECK enum status place_require(const struct place *place, const char *key, const char *what);
 
-/* An error if the key is there; `why` follows the message "not allowed: ". */
+/* STATUS_INPUT if the key is present; `why` follows the message "not allowed: ". */
 MUST_CHECK enum status place_forbid(const struct place *place, const char *key, const char *why);
 
 /* The same of all keys of a NULL-terminated list. */
 MUST_CHECK enum status place_forbid_all(const struct place *place, const char *const keys[], const char *why);
 
-/* An error unless exactly one of the keys (a NULL-terminated list) is there. */
+/* STATUS_INPUT unless exactly one of the keys (a NULL-terminated list) is present. */
 MUST_CHECK enum status place_require_one(const struct place *place, const char *const keys[]);
 
-/* The error that a key, or with key NULL the section itself, is none of those (a NULL-terminated list). */
+/* The error that a key, or with key NULL the section itself, is not in a NULL-terminated list. */
 enum status place_unknown(const struct place *place, const char *key, const char *what,
                           const char *const allowed[]);
 
-/* An error unless all keys of the section are among `keys` (a NULL-terminated list). */
+/* STATUS_INPUT unless all keys of the section are among `keys` (a NULL-terminated list). */
 MUST_CHECK enum status place_only_keys(const struct place *place, const char *const keys[]);
 
-/* A text as of printf, which the scene owns. */
+/* Print a text, which the scene owns. */
 MUST_CHECK enum status place_print(const struct place *place, char **text, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

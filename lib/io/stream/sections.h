@@ -1,20 +1,20 @@
-/* The sections that the programs know: the one table from which come what `mts check` expects of each, which
- * sections are void when an earlier stage is run again, and how a body is cut into parts and put together. */
+/* The table of the sections that the programs know. It determines what `mts check` expects of each, which
+ * sections are void if an earlier stage is run again, and how a body is cut into parts and joined. */
 #pragma once
 
 #include "io/stream/stream.h"
 
 /* Requirements on the values of a section. */
 enum content {
-    ANY, /* what the views check (stages/views.h), and results */
+    ANY, /* results, and sections that the views check (stages/views.h) */
     FINITE,
     POSITIVE,
     AT_LEAST_ONE,
     UNITY,         /* finite; sums to 1 over each list of the pairs */
-    INDEX,         /* of a row of section index_of */
+    INDEX,         /* index of a row of section index_of */
     INDEX_OR_NONE, /* the same, or -1 */
-    BELOW,         /* no index, but a number from 0 that is less than the rows of index_of */
-    LIST           /* where each list begins in the .idx of the same name, and the last one ends */
+    BELOW,         /* not an index, but from 0 to less than the rows of index_of */
+    LIST           /* the start of each list in the .idx of the same name, and the end of the last one */
 };
 
 /* The columns of a section: a number, or one of these. */
@@ -34,27 +34,27 @@ struct section_kind {
     const char *name;
     enum element_type type;
     int cols;
-    const char *rows_of; /* the section with as many rows (LIST: one less), or whatever the faces need; NULL:
-                            any number of rows */
+    const char *rows_of; /* the section with the same number of rows (LIST: one less), or what the faces need;
+                            NULL: any number of rows */
     enum content content;
-    const char *index_of; /* the section whose rows its numbers count, or NULL */
+    const char *index_of; /* the section of whose rows its values are indices, or NULL */
     enum section_stage stage;
 };
 
 enum { SECTION_KINDS = 58 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
-/* The entry of a section; for a section of a frame, X.frame.K, that of X. NULL: not in the table. */
+/* The entry of a section; of a section X.frame.K that of X. NULL: not in the table. */
 const struct section_kind *section_kind_of(const char *name);
 
-/* The stage of a section; one before the results also of a section that the table lacks, by the part of its
- * name before the first dot (nbr.more: MADE_WITH_SUPPORT). */
+/* The stage of a section. For a section that is not in the table, the part of its name before the first dot
+ * decides, for stages before the results (nbr.more: MADE_WITH_SUPPORT). */
 enum section_stage section_stage(const char *name);
 
-/* Remove what the stages first .. last have made. */
+/* Remove the sections made by the stages first .. last. */
 void sections_remove(struct stream *stream, enum section_stage first, enum section_stage last);
 
-/* Sections of frames: X.frame.K is section X in state K of a run; 0 is the state at its begin. */
+/* Sections of frames: X.frame.K is section X in state K of a run; 0 is the initial state. */
 
 /* Result of frame_of for a section that belongs to no frame. */
 #define FRAME_NONE (-1)

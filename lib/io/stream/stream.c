@@ -56,8 +56,7 @@ static bool is_letter(char c)
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/* Length of the word at `text` that is made as names and keys are: a letter, then letters, digits, '.', '_',
- * '-'. */
+/* The length of the name or key at `text`: a letter, then letters, digits, '.', '_', '-'. */
 static size_t word_length(const char *text)
 {
     size_t length = 0;
@@ -189,7 +188,7 @@ enum status stream_need(const struct stream *stream, const char *name, enum elem
 enum status stream_append(struct stream *stream, const char *name, enum element_type type, int64_t rows,
                           int64_t cols, const char *attributes, struct section **section, struct error *error)
 {
-    /* All slots at once, as untouched zero pages: sections never move when others are added. */
+    /* Allocate all slots at once, as untouched zero pages: sections never move when others are added. */
     if (stream->sections == NULL) {
         stream->sections = calloc(SECTION_LIMIT, sizeof *stream->sections);
         if (stream->sections == NULL) {
@@ -210,7 +209,7 @@ enum status stream_append(struct stream *stream, const char *name, enum element_
     return STATUS_OK;
 }
 
-/* Put new contents into a section that exists; the arguments may be its own old contents. */
+/* Replace the contents of a section; the arguments may be its old contents. */
 static enum status section_replace(struct section *section, enum element_type type, int64_t rows,
                                    int64_t cols, const char *attributes, void *data, bool owned,
                                    struct error *error)

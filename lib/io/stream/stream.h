@@ -18,13 +18,13 @@ struct section {
     int64_t rows, cols;
     char *attributes; /* "unit=m cols=x,y", without enc=; "" when none. Values hold no blanks. */
     void *data;       /* rows * cols elements of `type` */
-    bool owned;       /* data is freed with the section; otherwise it lies in the stream's mapping or
-                         belongs to the caller, who keeps it alive */
+    bool owned; /* data is freed with the section; else it is in the stream's mapping, or is the caller's and
+                   must outlive the section */
 };
 
 struct stream {
-    struct section *sections; /* in stream order; adding sections never moves them, removing one moves those
-                                 behind it */
+    struct section *sections; /* in the order of the stream; adding a section never moves others, removing one
+                                 moves those behind it */
     int64_t section_count;
     char **provenance; /* "# @" lines without "# @ " and newline, oldest first */
     int64_t provenance_count;
@@ -46,8 +46,8 @@ void stream_free(struct stream *stream);
 MUST_CHECK enum status stream_read(struct stream *stream, int descriptor, const char *name,
                                    struct error *error);
 
-/* Read the sections in front of where a stream was stopped, cut short or damaged; *why receives what is wrong
- * there, "" when nothing is. STATUS_INPUT when no section is whole. */
+/* Read the sections before the place where a stream was stopped, truncated or damaged; *why receives the
+ * fault there, or "". STATUS_INPUT if no section is complete. */
 MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, const char *name,
                                       struct error *why, struct error *error);
 
@@ -56,8 +56,8 @@ MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, con
 MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
                                     struct error *error);
 
-/* Write what there is of a stream whose making was stopped: in place of the end line, "# stopped REASON", so
- * that nobody takes it for whole. */
+/* Write an incomplete stream: it ends with "# stopped REASON" in place of the end line, so that no reader
+ * takes it for complete. */
 MUST_CHECK enum status stream_write_stopped(const struct stream *stream, const char *reason, int descriptor,
                                             bool text, struct error *error);
 
@@ -82,11 +82,10 @@ MUST_CHECK enum status stream_put(struct stream *stream, const char *name, enum 
 /* Remove a section, if it exists. */
 void stream_remove(struct stream *stream, const char *name);
 
-/* Let go of the pages of the mapped input, none of which has been changed in place: they are read again when
- * they are needed. */
+/* Release the pages of the mapped input, none of which has been changed: they are read again when needed. */
 void stream_give_back(const struct stream *stream);
 
-/* Append the provenance line "TOOL VERSION ARGV..." (arguments quoted for a shell where they need it). */
+/* Append the provenance line "TOOL VERSION ARGV...", with arguments quoted for a shell if necessary. */
 MUST_CHECK enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[],
                                              struct error *error);
 

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Map the file if it is a regular one that stands at its beginning. Private and writable: who changes a
- * payload in place changes its own copy, never the file. */
+/* Map a regular file that is at its beginning. The mapping is private and writable: changes of a payload
+ * never reach the file. */
 static bool map_file(struct input *input, struct stream *stream)
 {
     struct stat file;
@@ -38,8 +38,7 @@ enum status input_open(struct input *input, struct stream *stream, int descripto
     if (map_file(input, stream)) {
         return STATUS_OK;
     }
-    (void)fcntl(descriptor, F_SETPIPE_SZ,
-                BLOCK_SIZE); /* fewer switches, if it is a pipe and this is granted */
+    (void)fcntl(descriptor, F_SETPIPE_SZ, BLOCK_SIZE); /* fewer context switches for a pipe, if granted */
     input->capacity = 2 * BLOCK_SIZE;
     input->buffer = malloc(input->capacity);
     if (input->buffer == NULL) {
@@ -74,7 +73,8 @@ enum status input_fill(struct input *input, size_t wanted, struct error *error)
     if (held >= wanted || input->ended) {
         return STATUS_OK;
     }
-    /* Not mapped: move what is held to the front and read behind it. `wanted` never exceeds LINE_LIMIT. */
+    /* Not mapped: move the bytes at hand to the front and read behind them. `wanted` is at most LINE_LIMIT.
+     */
     input->start_offset = input_offset(input);
     memmove(input->buffer, input->at, held);
     input->at = input->start = input->buffer;

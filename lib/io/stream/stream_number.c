@@ -1,4 +1,4 @@
-/* Numbers from and to text: strict, correctly rounded by the C library. */
+/* Numbers from and to text: strict syntax, correctly rounded by the C library. */
 #include "io/stream/stream_private.h"
 
 #include <inttypes.h>
@@ -42,7 +42,7 @@ const char *number_parse_integer(const char *at, const char *end, int64_t least,
     return at;
 }
 
-/* The end of nan or inf, in any case; NULL: neither. */
+/* The end of nan or inf, in upper or lower case; NULL: neither. */
 static const char *skip_special(const char *first, const char *end)
 {
     bool special = end - first >= 3 && ends_number(first + 3, end) &&
@@ -58,8 +58,8 @@ static const char *skip_digits(const char *at, const char *end)
     return at;
 }
 
-/* The end of the decimal number that begins here, behind its sign; NULL where there is none. (strtod would
- * accept blanks before it, hexadecimal numbers, "infinity", "nan(...)".) */
+/* The end of the decimal number that begins here, behind its sign; NULL: there is none. (strtod also accepts
+ * leading blanks, hexadecimal numbers, "infinity", and "nan(...)".) */
 static const char *skip_decimal(const char *first, const char *end)
 {
     const char *at = skip_digits(first, end);
@@ -77,7 +77,8 @@ static const char *skip_decimal(const char *first, const char *end)
     return digits > 0 && ends_number(at, end) ? at : NULL;
 }
 
-/* Copy the number at `at` as a text that ends; *special: it is nan or inf. Its end, or NULL: none. */
+/* Copy the number at `at` into text[]; *special: it is nan or inf. Returns its end, or NULL: there is
+ * none. */
 static const char *copy_number(const char *at, const char *end, char text[NUMBER_LIMIT + 1], bool *special)
 {
     const char *first = skip_sign(at, end), *last = skip_special(first, end);
@@ -120,7 +121,7 @@ size_t number_format_integer(char *text, int64_t value)
     return (size_t)snprintf(text, NUMBER_TEXT_LIMIT, "%" PRId64, value);
 }
 
-/* -nan is written as nan: the sign of a NaN means nothing. */
+/* -nan is written as nan: the sign of a NaN has no meaning. */
 size_t number_format_double(char *text, double value)
 {
     return (size_t)snprintf(text, NUMBER_TEXT_LIMIT, "%.17g", isnan(value) ? NAN : value);

@@ -1,5 +1,4 @@
-/* The rows of a section from the input. The array grows with what arrives, so that a header alone allocates
- * little. */
+/* Reading the rows of a section. The array grows with the data, so that a header alone allocates little. */
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"
@@ -40,7 +39,7 @@ enum status fail_short(const struct section *section, int64_t row, struct error 
                 section->name, (long long)row, (long long)section->rows);
 }
 
-/* Parse the number at `at` into element `index` of the payload; the byte behind it, or NULL. */
+/* Parse the number at `at` into element `index` of the payload; returns the byte behind it, or NULL. */
 static const char *parse_element(enum element_type type, const char *at, const char *end, void *data,
                                  int64_t index)
 {
@@ -60,7 +59,7 @@ static const char *parse_element(enum element_type type, const char *at, const c
     return NULL;
 }
 
-/* What is wrong with the word at input->at, where a number of `section` should stand. */
+/* The error of the word at input->at, where a number of `section` is expected. */
 static enum status fail_word(const struct input *input, const struct section *section, int64_t row,
                              int64_t column, struct error *error)
 {
@@ -100,7 +99,7 @@ static void skip_blanks(struct input *input)
     }
 }
 
-/* Keep a whole number and the blanks around it at hand. */
+/* Make a whole number and the blanks around it available. */
 static enum status refill(struct input *input, struct error *error)
 {
     if (input->end - input->at >= 2 * NUMBER_LIMIT || input->ended) {
@@ -109,7 +108,7 @@ static enum status refill(struct input *input, struct error *error)
     return input_fill(input, 2 * NUMBER_LIMIT, error);
 }
 
-/* The end of a line of text: blanks, then the newline. */
+/* Read the end of a line of text: blanks, then the newline. */
 static enum status row_end(struct input *input, const struct section *section, int64_t row,
                            struct error *error)
 {

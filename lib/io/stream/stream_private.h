@@ -28,8 +28,7 @@ MUST_CHECK enum status stream_append(struct stream *stream, const char *name, en
                                      int64_t rows, int64_t cols, const char *attributes,
                                      struct section **section, struct error *error);
 
-/* stream.c: where the section lies in the mapped input, its whole pages are read again when they are needed.
- */
+/* stream.c: release the pages of a section that is in the mapped input; they are read again when needed. */
 void section_give_back(const struct stream *stream, const struct section *section);
 
 /* stream.c: append a copy of a provenance line. */
@@ -41,7 +40,7 @@ struct input {
     int descriptor;
     const char *at;    /* the next byte */
     const char *end;   /* behind the last byte at hand */
-    const char *start; /* a byte at hand or already passed, whose offset in the stream is start_offset */
+    const char *start; /* a byte at hand or passed, with the offset start_offset in the stream */
     int64_t start_offset;
     char *buffer; /* block buffer of `capacity` bytes, or NULL when the whole input is mapped */
     size_t capacity;
@@ -53,10 +52,11 @@ MUST_CHECK enum status input_open(struct input *input, struct stream *stream, in
                                   struct error *error);
 void input_close(struct input *input);
 
-/* Make `wanted` bytes available at input->at, or all that is left. Earlier pointers into the input expire. */
+/* Make `wanted` bytes available at input->at, or all that remain. Earlier pointers into the input become
+ * invalid. */
 MUST_CHECK enum status input_fill(struct input *input, size_t wanted, struct error *error);
 
-/* The next line, without its newline, which must be there. `line` lies in the input until the next call. */
+/* The next line, without its newline, which must exist. `line` is valid until the next call. */
 MUST_CHECK enum status input_line(struct input *input, const char **line, size_t *length,
                                   struct error *error);
 
@@ -67,7 +67,7 @@ MUST_CHECK enum status input_copy(struct input *input, void *destination, size_t
 /* Offset of input->at from the start of the stream. */
 int64_t input_offset(const struct input *input);
 
-/* Does the line of `length` bytes, which need not end with a zero, start so? */
+/* Whether a line of `length` bytes, not zero-terminated, starts with a prefix. */
 static inline bool starts_with(const char *line, size_t length, const char *prefix)
 {
     size_t size = strlen(prefix);
@@ -84,7 +84,7 @@ struct header {
     bool binary;
 };
 
-/* Take apart a line without its newline and check it; header_free() it, also on failure. */
+/* Parse and check a line without its newline; to be freed, also on failure. */
 MUST_CHECK enum status header_parse(const char *line, size_t length, struct header *header,
                                     struct error *error);
 void header_free(struct header *header);
@@ -94,11 +94,11 @@ void header_free(struct header *header);
 MUST_CHECK enum status payload_read_text(struct input *input, struct section *section, struct error *error);
 MUST_CHECK enum status payload_read_binary(struct input *input, struct section *section, struct error *error);
 
-/* stream_payload.c: the error of an input that ends in that row. */
+/* stream_payload.c: the error of an input that ends in this row. */
 enum status fail_short(const struct section *section, int64_t row, struct error *error);
 
-/* stream_number.c: parse one number that ends at a blank, a line end or `end`. They return the byte behind
- * it, or NULL when this is no number of that type (out of range included). Both work in the C locale only. */
+/* stream_number.c: parse one number that ends at a blank, a line end or `end`. Returns the byte behind it, or
+ * NULL if it is not a number of that type, or out of range. These functions need the C locale. */
 const char *number_parse_integer(const char *at, const char *end, int64_t least, int64_t most,
                                  int64_t *value);
 const char *number_parse_double(const char *at, const char *end, double *value);

@@ -1,4 +1,4 @@
-/* Provenance: one line per tool that worked on the stream, as one would type it into a shell. */
+/* Provenance: the command line of each tool that worked on the stream, as typed into a shell. */
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"

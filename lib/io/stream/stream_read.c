@@ -1,4 +1,5 @@
-/* Reading a stream: one pass, every line and payload checked, nothing allocated on the word of a header. */
+/* Reading a stream: one pass, every line and payload checked, no allocation from the counts of a header
+ * alone. */
 #include "io/stream/stream_private.h"
 
 #include "base/memory.h"
@@ -15,7 +16,7 @@ struct reader {
     int64_t whole; /* sections read to their end */
 };
 
-/* A line of the frame (everything but payloads): it counts for the crc of the end line. */
+/* Read a line outside of payloads; it counts for the CRC of the end line. */
 static enum status frame_line(struct reader *reader, const char **line, size_t *length, struct error *error)
 {
     enum status status = input_line(&reader->input, line, length, error);
@@ -30,7 +31,7 @@ static void frame_count(struct reader *reader, const char *line, size_t length)
     reader->crc = crc32_z(reader->crc, (const Bytef *)line, length);
 }
 
-/* Why the first line is not "# mts 1"; the remedy where it is known. */
+/* The error of a first line that is not "# mts 1", with the remedy if it is known. */
 static enum status fail_first_line(const char *line, size_t length, struct error *error)
 {
     int shown = (int)(length < 40 ? length : 40);
@@ -73,7 +74,7 @@ static enum status read_first_line(struct reader *reader, struct error *error)
     return STATUS_OK;
 }
 
-/* Is the text exactly eight lower-case hexadecimal digits? (Upper case would let one flipped bit pass.) */
+/* Parse exactly eight lower-case hexadecimal digits. (With upper case one flipped bit could pass.) */
 static bool parse_crc(const char *text, size_t length, uLong *crc)
 {
     static const char digits[] = "0123456789abcdef";
@@ -88,7 +89,7 @@ static bool parse_crc(const char *text, size_t length, uLong *crc)
     return length == 8;
 }
 
-/* The newline behind a binary payload and its line "# crc32 XXXXXXXX". */
+/* Read the newline behind a binary payload and its line "# crc32 XXXXXXXX". */
 static enum status read_crc_line(struct reader *reader, const struct section *section, uLong crc,
                                  struct error *error)
 {
@@ -143,7 +144,7 @@ static enum status read_section(struct reader *reader, const char *line, size_t 
 {
     FREED_BY(header_free) struct header header = {0};
     struct section *section;
-    /* The line with its newline; it expires with the next access to the input. */
+    /* Computed here, as the line becomes invalid with the next access to the input. */
     uLong crc = crc32_z(0, (const Bytef *)line, length + 1);
     frame_count(reader, line, length + 1);
     RETURN_IF_ERROR(header_parse(line, length, &header, error));
@@ -156,7 +157,7 @@ static enum status read_section(struct reader *reader, const char *line, size_t 
                          : payload_read_text(&reader->input, section, error);
 }
 
-/* "# end COUNT" or "# end COUNT crc32=XXXXXXXX", and nothing behind it. */
+/* Parse "# end COUNT" or "# end COUNT crc32=XXXXXXXX", with nothing behind it. */
 static enum status read_end(struct reader *reader, const char *line, size_t length, struct error *error)
 {
     static const char prefix[] = "# end ";
@@ -236,7 +237,7 @@ static enum status read_lines(struct reader *reader, struct error *error)
     return STATUS_OK;
 }
 
-/* Sections that are not whole leave the stream. */
+/* Remove incomplete sections from the stream. */
 static void drop_torn(const struct reader *reader)
 {
     while (reader->stream->section_count > reader->whole) {
@@ -244,7 +245,8 @@ static void drop_torn(const struct reader *reader)
     }
 }
 
-/* Unless `why` is NULL, what is wrong behind some whole sections goes there and is no error. */
+/* Read a stream. Unless `why` is NULL, a fault behind some complete sections is stored there and is not an
+ * error. */
 static enum status read_stream(struct stream *stream, int descriptor, const char *name, struct error *why,
                                struct error *error)
 {

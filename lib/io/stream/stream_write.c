@@ -48,7 +48,7 @@ static enum status put_bytes(struct writer *writer, const void *bytes, size_t si
     return STATUS_OK;
 }
 
-/* Bytes outside the payloads. */
+/* Write bytes outside of payloads. */
 static enum status put_frame(struct writer *writer, const void *bytes, size_t size, struct error *error)
 {
     writer->crc = crc32_z(writer->crc, bytes, size);
@@ -60,7 +60,7 @@ static enum status put_text(struct writer *writer, const char *text, struct erro
     return put_frame(writer, text, strlen(text), error);
 }
 
-/* The header line; before a binary payload it is padded with blanks up to the alignment. */
+/* Write the header line; before a binary payload it is padded with blanks to the alignment. */
 static enum status put_header(struct writer *writer, const struct section *section, bool text, uLong *crc,
                               struct error *error)
 {
@@ -135,7 +135,7 @@ static enum status put_payload_binary(struct writer *writer, const struct sectio
     return put_text(writer, line, error);
 }
 
-/* A line of one kind of words and others. */
+/* Write a line "KIND TEXT". */
 static enum status put_line(struct writer *writer, const char *kind, const char *text, struct error *error)
 {
     RETURN_IF_ERROR(put_text(writer, kind, error));
@@ -155,7 +155,7 @@ static enum status put_end(struct writer *writer, const struct stream *stream, b
     return put_bytes(writer, "\n", 1, error);
 }
 
-/* stopped: why the stream is not whole, or NULL. */
+/* Write a stream; stopped: the reason why it is incomplete, or NULL. */
 static enum status put_stream(struct writer *writer, const struct stream *stream, bool text,
                               const char *stopped, struct error *error)
 {
@@ -176,7 +176,7 @@ static enum status put_stream(struct writer *writer, const struct stream *stream
     return flush(writer, error);
 }
 
-/* A block to gather output in, and the C locale for numbers, whatever the program that calls us has set. */
+/* Allocate the output block, and set the C locale for numbers, whatever the calling program has set. */
 static enum status writer_open(struct writer *writer, int descriptor, struct error *error)
 {
     *writer = (struct writer){.descriptor = descriptor, .block = malloc(BLOCK_SIZE)};

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Nodes and cells, in view. */
+/* A view of nodes and cells. */
 struct vtk_mesh {
     int dim; /* 2 or 3 */
     int64_t node_count;
@@ -19,14 +19,14 @@ struct vtk_mesh {
     const char *region_names; /* comma list, "" when there is none */
 };
 
-/* A field on nodes or cells, in view. */
+/* A view of a field on nodes or cells. */
 struct vtk_field {
     const char *name;
     bool of_cells;
     const struct section *section; /* one row for each node or cell; attribute cols= names the components */
 };
 
-/* A number of the whole body, as a reaction. */
+/* A number of the whole body, such as a reaction. */
 struct vtk_number {
     char name[128];
     double value;
@@ -38,9 +38,9 @@ struct vtk_number {
 bool vtk_tensor(const struct section *section, int64_t from[6]);
 
 /* Write a VTK XML unstructured grid: data inline, base64 of little-endian values, or as text. Vectors of 2D
- * meshes (two floating columns) are padded to three, symmetric tensors are written with six components in
- * VTK's order. Each region is an array "region.NAME" of the field data that holds its index; numbers are such
- * arrays, too. Errors: STATUS_SYSTEM, also when `file` has an error pending. */
+ * meshes (two floating columns) are padded to three; symmetric tensors have six components in VTK's order.
+ * Each region is an array "region.NAME" of the field data with its index; numbers are such arrays, too.
+ * STATUS_SYSTEM on failure, also if `file` has a pending error. */
 MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
                                  const struct vtk_field *fields, int64_t number_count,
                                  const struct vtk_number *numbers, bool text, struct error *error);

@@ -9,7 +9,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are written as
 
 /* ---- sections ---- */
 
-/* Copy item `index` of a comma list into text[size]; false when there is none. */
+/* Copy item `index` of a comma list into text[size]; false: there is none. */
 static bool list_item(const char *list, int64_t index, char *text, size_t size)
 {
     for (; index > 0; index--) {
@@ -28,7 +28,7 @@ static bool list_item(const char *list, int64_t index, char *text, size_t size)
     return true;
 }
 
-/* Copy the name of a column, from attribute cols=, into text[size]; false when it has none. */
+/* Copy the name of a column, from attribute cols=, into text[size]; false: it has none. */
 static bool column_name(const struct section *section, int64_t column, char *text, size_t size)
 {
     char names[1024];
@@ -85,7 +85,7 @@ static void print_element(FILE *file, const struct section *section, int64_t ind
     }
 }
 
-/* Flush; the status of all that was written to the file. */
+/* Flush the file; returns the status of all writes to it. */
 static enum status check_written(FILE *file, struct error *error)
 {
     errno = 0;
@@ -99,7 +99,7 @@ static enum status check_written(FILE *file, struct error *error)
 
 enum { VTK_VERTEX = 1, VTK_TRIANGLE = 5, VTK_TETRA = 10 };
 
-/* An array under way: text, or base64 of its bytes. */
+/* An array that is being written, as text or base64. */
 struct writer {
     FILE *file;
     bool text;
@@ -143,7 +143,7 @@ static void put_bytes(struct writer *writer, const void *bytes, size_t size)
     }
 }
 
-/* The start tag of an array of `count` values of `size` bytes, up to its attributes' end. */
+/* Write the start tag of an array. */
 static void begin_array(struct writer *writer, const char *type, const char *name, int64_t columns)
 {
     fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
@@ -177,7 +177,7 @@ static void put_integer(struct writer *writer, int64_t value, size_t size)
     }
 }
 
-/* What is written of a section: `count` columns, each one of its own or, -1, of zeros. */
+/* The columns written for a section: `count` columns, each a column of the section, or -1: zeros. */
 struct layout {
     int64_t count;
     bool is_tensor;
@@ -255,8 +255,8 @@ static void begin_number(struct writer *writer, const char *type, const char *na
     fputs("\" NumberOfTuples=\"1\"", writer->file);
 }
 
-/* The regions by name, each with its index in cells.region: readers other than VTK know no arrays of strings.
- * And numbers. */
+/* Write the regions as arrays by name with their index in cells.region, as readers other than VTK do not
+ * support arrays of strings; and the numbers. */
 static void put_field_data(struct writer *writer, const char *regions, int64_t count,
                            const struct vtk_number *numbers)
 {
@@ -326,7 +326,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_cou
     struct writer writer = {.file = file, .text = text};
     union {
         const double *in;
-        void *out; /* a section's data, though never written here */
+        void *out; /* the data of a section, which is not modified */
     } x = {.in = mesh->x};
     struct section points = {.type = TYPE_F8, .rows = mesh->node_count, .cols = mesh->dim, .data = x.out};
     int64_t cell_count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;

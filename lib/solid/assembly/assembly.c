@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the point's
- * barycentric coordinates. */
+/* vertex, coordinate[point_count * (dim + 1)]: the vertices of the cell of each point, and the barycentric
+ * coordinates of the point. To be freed. */
 static enum status list_vertices(const struct assembly *input, int32_t **vertex, double **coordinate,
                                  struct error *error)
 {
@@ -76,7 +76,7 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
     return body_build(&body, &system->body, error);
 }
 
-/* Each cell shares its mass equally among its nodes: positive, and of the right total and centre. */
+/* Lump the mass: each cell shares it equally among its nodes, which keeps total mass and centre of mass. */
 static enum status lump_mass(const struct assembly *input, struct solid_system *system, struct error *error)
 {
     int corners = input->cells.dim + 1;
@@ -168,8 +168,8 @@ bool assembly_holds_averages(const struct assembly *input)
     return !input->node_values && !input->direct;
 }
 
-/* Mark the faces of the boundary whose nodes are all those of a set of facets; stamp[node]: at most `number`
- * - 1. */
+/* Mark the faces of the boundary all of whose nodes are nodes of a set of facets. stamp[node] < number:
+ * scratch. */
 static void mark_faces(const struct assembly *input, const struct facet_set *set, int64_t number,
                        int64_t *stamp, bool *marked)
 {
@@ -187,12 +187,12 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
     }
 }
 
-/* Faces of conditions that prescribe at least so many directions; with `sliding` of those along normals
- * alone. */
+/* The faces of conditions that prescribe at least `least` directions; with `sliding` only of conditions along
+ * normals. */
 static enum status find_faces(const struct assembly *input, int least, bool sliding, bool **held,
                               struct error *error)
 {
-    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that it is of, from 1 on */
+    SCRATCH int64_t *stamp = NULL; /* of each node: the last set that contains it, from 1 on */
     RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {

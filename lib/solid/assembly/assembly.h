@@ -24,14 +24,13 @@ struct load {
 struct contact_condition {
     const char *where; /* as of a condition */
     struct facet_set facets;
-    struct facet_set opposite; /* unless empty: the facets may come into contact with these, or with
-                                  themselves where both are the same */
-    bool whole; /* the facets are the whole boundary: it is no error that none faces another one at rest */
+    struct facet_set opposite; /* unless empty: the facets touch these, or themselves if both are the same */
+    bool whole; /* the facets are the whole boundary: then none needs to face another one at rest */
     int sign;   /* as of the contact, with opposite facets */
     const double *corners; /* rigid_count * dim * dim: facets of the surface, see rigid_build, m */
     int64_t rigid_count;
     bool flip;
-    double stiffness; /* Pa/m; 0: that of a layer of cells */
+    double stiffness; /* of the penalty, Pa/m; 0: that of a layer of cells */
     struct rigid_motion motion;
 };
 
@@ -59,16 +58,16 @@ struct assembly {
     struct neighbours lists, boundary_lists, node_lists;
     const double *phi, *dphi; /* dphi NULL: averages over faces */
     const double *boundary_phi, *node_phi;
-    const int32_t *face_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
-                                   empty in others; NULL: all have all */
-    /* Called, unless NULL, when `lists`, phi and dphi, which take most of the memory, are no longer needed.
-     */
+    const int32_t *face_reader; /* smoothed cells: the process that has read each row of `lists`, which is
+                               empty in the others; NULL: all processes have all rows */
+    /* Called, unless NULL, when `lists`, phi and dphi are no longer needed: they take most of the memory. Not
+     * called in a process that has all rows while others compute, too. */
     void (*copied)(void *context);
     void *context;
 
-    const int32_t *cell_side; /* the side of each cell of the interfaces at which supports stop; NULL: none */
-    const struct ranks *ranks; /* processes that compute the body together; NULL: one. Of several that have
-                                  all `copied` is not called */
+    const int32_t
+        *cell_side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
+    const struct ranks *ranks; /* processes that compute the body together; NULL: one */
 
     struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */
@@ -77,8 +76,8 @@ struct assembly {
     int64_t curve_count;
     const struct condition *conditions;
     int64_t condition_count;
-    bool node_values; /* conditions on facets hold values at nodes, not averages; */
-    bool direct;      /* or the parameters there instead of values */
+    bool node_values; /* conditions on facets prescribe values at nodes, not averages */
+    bool direct;      /* conditions on facets prescribe the parameters of nodes */
     const struct load *loads;
     int64_t load_count;
     double gravity[3]; /* m/s2; 0: none */
@@ -93,20 +92,21 @@ struct assembly {
     double extent; /* diagonal of the box of the nodes, m */
 };
 
-/* Fill in what follows from the cells, their faces and the tables; the assembly must stay where it is. */
+/* Set the last members from the cells, their faces and the tables. The assembly must not be moved
+ * afterwards. */
 void assembly_complete(struct assembly *input);
 
-/* Build the system. `note` receives a remark that is no error, or an empty text. Errors: those of the parts;
- * STATUS_INPUT also for a node of no cell, and for conditions that disagree. */
+/* Build the system. `note` receives a remark that is not an error, or an empty text. STATUS_INPUT for a node
+ * without cell, and for conditions that disagree; further errors are those of the parts. */
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* Replace the contacts of the system by those of `input`, which may have changed, in their initial state.
- * Errors: as assembly_build. */
+/* Replace the contacts of the system by those of `input` in their initial state. Errors: as
+ * assembly_build. */
 MUST_CHECK enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
                                                struct error *error);
 
-/* The parts of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
+/* Steps of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
  * reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
@@ -114,8 +114,7 @@ MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct 
                                            struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
-/* Add the weight of the body where face_reader is given. It needs rows that only the built body has fetched.
- */
+/* Add the weight of the body if face_reader is given: it needs rows that only the built body has fetched. */
 MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
                                                  struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
@@ -123,22 +122,22 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
 MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
                                                  struct error *error);
 
-/* (*at_edge)[node_count]: nodes at edges between clamped and free sides, in 3D; NULL: there are none. The
- * caller's to free. */
+/* (*at_edge)[node_count], to be freed: in 3D, the nodes at edges between clamped and free sides; NULL:
+ * none. */
 MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
 
 bool assembly_has_gravity(const struct assembly *input);
 
-/* Whether displacements are prescribed to averages over the facets of the boundary, not at nodes. */
+/* Whether conditions on facets prescribe boundary averages, and not values at nodes. */
 bool assembly_holds_averages(const struct assembly *input);
 
-/* held[boundary.count]: whether all nodes of each face belong to facets of one condition that prescribes at
- * least `least` directions. The caller's to free. */
+/* (*held)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition that
+ * prescribes at least `least` directions. */
 MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
-/* slides[boundary.count]: whether such a condition prescribes only the displacement along the normal, so that
- * the face stays in its plane. The caller's to free. */
+/* (*slides)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition
+ * along normals, so that the face stays in its plane. */
 MUST_CHECK enum status assembly_sliding_faces(const struct assembly *input, bool **slides,
                                               struct error *error);
 

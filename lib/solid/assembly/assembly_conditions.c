@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Penalty of the constraints between their averages, by the shear modulus and per size of a cell, as in
- * Nitsche's method. From .0001 to 100 the forces on clamped blocks change by .2 %. */
+/* Constraint penalty, by the shear modulus over the size of a cell, as in Nitsche's method. From .0001 to 100
+ * the forces on clamped blocks change by .2 %. */
 static const double constraint_penalty_factor = 10.0;
 
-/* A constraint penalty of about the stiffness of a layer of cells, times the area of its point of the facets.
- */
+/* Append a constraint penalty: about the stiffness of a layer of cells, times the area of the quadrature
+ * point. */
 static enum status add_penalty(const struct prescription *p, const struct boundary_averages *points,
                                int64_t a, const double *direction, double target, struct error *error)
 {
@@ -31,7 +31,7 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
         return add_penalty(p, averages, a, direction, target, error);
     }
     if (p->input->direct) {
-        /* With a weight function that almost interpolates, the parameter is the value. */
+        /* With a weight function that almost interpolates, the parameter equals the value. */
         return constraint_rows_add(rows, 1, &averages->node[a], &one, direction, target, p->condition->curve,
                                    p->number, averages->node[a], error);
     }
@@ -39,7 +39,7 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->condition->curve, p->number, averages->node[a], error);
 }
 
-/* All rows of one average, whatever is held already. */
+/* Add all rows of one average, whatever directions are held already. */
 static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
                                int64_t a, struct error *error)
 {
@@ -51,7 +51,7 @@ static enum status add_average(const struct prescription *p, const struct bounda
     return status;
 }
 
-/* Note, for the group of an average, which components are held at its node. */
+/* Mark in shared[], of an average's group, the components that are held at its node. */
 static void note_shared(const struct prescription *p, int32_t node, bool *shared)
 {
     int dim = p->held->dim;
@@ -63,8 +63,8 @@ static void note_shared(const struct prescription *p, int32_t node, bool *shared
     }
 }
 
-/* The rows of one average along directions that no condition before holds at its node. Where the whole
- * displacement is prescribed, the directions are turned to be across what is held. */
+/* Add the rows of one average along directions that no earlier condition holds at its node. Where the whole
+ * displacement is prescribed, the directions are made orthogonal to those held. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                             bool *shared, struct error *error)
 {
@@ -96,8 +96,8 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* The rows of the first `count` averages, and what the condition prescribes at their nodes. With sides, what
- * conditions before hold there is noted for each group. */
+/* Add the rows of the first `count` averages, and record the values that the condition prescribes at their
+ * nodes. With sides, mark the components that earlier conditions hold in each group. */
 static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
                            const struct boundary_sides *sides, int64_t count, struct error *error)
 {
@@ -119,7 +119,7 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
     return STATUS_OK;
 }
 
-/* Hold what the boundary averages of a set leave free. */
+/* Add penalties for variations of the field that the boundary averages of a set do not constrain. */
 static enum status add_penalties(struct prescription *p, struct error *error)
 {
     const struct facet_set *set = &p->condition->facets;
@@ -143,8 +143,8 @@ done:
     return status;
 }
 
-/* The mean over side a, along the axes along which boundary averages of its group are left to other
- * conditions; along its normal, if that is what is held. */
+/* Add the mean over side a, along the axes for which other conditions hold boundary averages of its group;
+ * for a condition along normals, along the normal of the side. */
 static enum status add_side(const struct prescription *p, const struct boundary_averages *averages,
                             const struct boundary_sides *sides, int64_t a, struct error *error)
 {
@@ -167,10 +167,10 @@ static enum status add_side(const struct prescription *p, const struct boundary_
     return status;
 }
 
-/* Boundary averages for a condition. With a split, a node on an edge has one average for each side, and the
- * traction may jump there. Without a split the field near the edge is less constrained. No split is needed
- * for a constant displacement, which admits no linear field but rest, without tractions. On curved sides no
- * linear field is exact, with a split or without. */
+/* The boundary averages of a condition. With a split, a node on an edge has one average for each side, so
+ * that the traction may jump there. Without, the field near the edge is less constrained. A constant
+ * displacement needs no split: the only linear field that meets it has no traction. On curved sides no linear
+ * field is exact, with or without a split. */
 static enum status build_averages(const struct prescription *p, struct boundary_averages *averages,
                                   struct boundary_sides *sides, struct error *error)
 {
@@ -191,7 +191,7 @@ static enum status build_averages(const struct prescription *p, struct boundary_
     return boundary_sides_build(&p->input->face_table, set, true, averages, sides, error);
 }
 
-/* Constraint rows on boundary averages, then on means over flat sides. */
+/* Add constraint rows on boundary averages, then on means over flat sides. */
 static enum status add_averages(struct prescription *p, struct error *error)
 {
     enum status status;
@@ -213,7 +213,7 @@ done:
     return status;
 }
 
-/* Rows on values at the nodes of facets or of sets. */
+/* Add constraint rows on values at the nodes of facets or of sets. */
 static enum status add_nodes(struct prescription *p, struct error *error)
 {
     const struct assembly *input = p->input;
@@ -270,8 +270,8 @@ enum status assembly_add_conditions(const struct assembly *input, struct solid_s
     FREED_BY(nodal_constraints_free) struct nodal_constraints nodal_constraints = {0};
     FREED_BY(held_free) struct held_directions held = {0};
     RETURN_IF_ERROR(held_build(input->cells.dim, input->cells.node_count, &held, error));
-    /* Conditions that prescribe few directions come first, so that what slides along a plane stays on it up
-     * to its rim. */
+    /* Conditions that prescribe few directions come first, so that a side that slides along a plane stays on
+     * it up to its rim. */
     for (int directions = 1; directions <= input->cells.dim; directions++) {
         for (int64_t i = 0; i < input->condition_count; i++) {
             struct prescription p = {.input = input,

@@ -10,14 +10,14 @@
 /* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* At quadrature points so many times as much: they are to follow each other's facets, also where meshes do
- * not match. */
+/* Factor of this modulus at quadrature points, which must follow each other's facets also where meshes do not
+ * match. */
 static const double points_share = 4.0;
 
-/* A curve that takes more than half of its largest factor in this share of the scene's time jumps. */
+/* A curve jumps if it changes by more than half of its largest factor in this share of the scene's time. */
 static const double jump_time = 1e-3;
 
-/* The surface moves from where its file has it, and without jumps. */
+/* Check that a surface starts at the place given by its file, and moves without jumps. */
 static enum status check_curve(const struct contact_condition *condition, const char *key,
                                const struct load_curve *curve, struct error *error)
 {
@@ -53,10 +53,10 @@ static enum status add_motion(const struct contact_condition *condition, const s
     return STATUS_OK;
 }
 
-/* The points that the contact acts on. In a relaxation they are quadrature points with multipliers at the
- * nodes. Between the nodes of a boundary that its facets do not resolve nobody knows where it is: there
- * boundary averages, raised to their nodes, are the points. Dynamics uses boundary averages too, as each
- * point costs time in every step. `between` facets of the body the points are always the former. */
+/* The points of a contact. In a relaxation and `between` facets of the body, they are quadrature points with
+ * multipliers at the nodes. If the facets do not resolve the boundary, its position between the nodes is not
+ * known; then the points are boundary averages, raised to their nodes. Dynamics uses boundary averages too,
+ * as each point costs time in every step. */
 static enum status build_points(const struct assembly *input, const struct facet_set *set, bool between,
                                 struct boundary_averages *points, struct boundary_averages *averages,
                                 struct error *error)

@@ -10,16 +10,15 @@
  *
  * Smooth junctions: the boundary is smooth there, and the displacement grows with the square root of the
  * distance. Cells at the junction have reduced moduli, except those behind prescribed facets, where only
- * averages of the field are prescribed.
- *
- * The value: with .76 the force on a bonded punch on a strip is that of a mesh with fine cells at the ends of
- * the punch, in the mean over 20 meshes of 11 to 25 cells under it, at nu = .3 and at .49. But the largest
- * error, which is at the junctions, then grows. With .85, which leaves a third of the error of the force, it
- * just begins to grow for the brain section of 707 nodes of the calibration set. */
+ * averages of the field are prescribed. The value: with .76, the force on a bonded punch on a strip equals
+ * that of a mesh with fine cells at the ends of the punch, in the mean over 20 meshes of 11 to 25 cells under
+ * it, at nu = .3 and .49. But the largest error, which is at the junctions, is then larger. .85 leaves a
+ * third of the error of the force; with it the largest error just begins to grow, for the brain section of
+ * 707 nodes of the calibration set. */
 static const double junction_stiffness = 0.85;
 
-/* (*junction)[node_count]: nodes where faces with at least `least` prescribed directions meet faces with
- * none. */
+/* (*junction)[node_count], to be freed: nodes where faces with at least `least` prescribed directions meet
+ * faces with none. */
 static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
                                   bool **junction, struct error *error)
 {
@@ -63,7 +62,7 @@ enum status assembly_soften_junctions(const struct assembly *input, struct mater
 {
     const int32_t *cell = input->point_cell;
     SCRATCH bool *softer = NULL;
-    SCRATCH int64_t *softened = NULL; /* of each material: its softened one, 0 if there is none yet */
+    SCRATCH int64_t *softened = NULL; /* of each material: the softened copy; 0: none yet */
     RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, 2 * list->count, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&list->section, 2 * list->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&softer, input->cells.count, error));
@@ -83,9 +82,9 @@ enum status assembly_soften_junctions(const struct assembly *input, struct mater
     return STATUS_OK;
 }
 
-/* In three dimensions only: in two the error is .2 %. Only an edge between a clamped and a free side is a
- * junction. A side that slides is not free, as it may be a plane of symmetry. A side that may come into
- * contact counts as free, in contact or not: the treatment of edges does not change a uniform pressure. */
+/* In 3D only: in 2D the error is .2 %. Only an edge between a clamped and a free side is a junction. A side
+ * that slides is not free, as it may be a plane of symmetry. A side that may come into contact counts as
+ * free: the treatment of edges does not change a uniform pressure. */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
     bool found = false;

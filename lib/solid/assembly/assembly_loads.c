@@ -15,8 +15,8 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return STATUS_OK;
 }
 
-/* The mass of each row of the table over points or faces. A face has an equal part of the mass of each of its
- * cells, a row its share of the mass of its faces. */
+/* The mass of each row of the table of points or faces. A cell divides its mass equally among its faces, a
+ * face among its rows. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
     const struct material_list *materials = &input->materials;
@@ -36,7 +36,7 @@ static enum status share_mass(const struct assembly *input, double **mass, struc
     return STATUS_OK;
 }
 
-/* Whether each process has only some of the rows that the weight is summed over. */
+/* Whether each process has only some of the rows over which the weight is summed. */
 static bool weighs_later(const struct assembly *input)
 {
     return input->face_reader != NULL && !input->in_time;

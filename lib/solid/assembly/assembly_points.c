@@ -18,8 +18,8 @@ struct point_condition {
     const struct measured *measured;
     struct solid_system *system;
     int32_t number;
-    double *volume, *shear; /* of the nodes: m3 and Pa */
-    double energy;          /* that the springs go by, J (2D: J/m) */
+    double *volume, *shear; /* of each node: volume, m3 (2D: m2), and shear modulus, Pa */
+    double energy;          /* e of measured.h, J (2D: J/m) */
 };
 
 /* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
@@ -32,8 +32,8 @@ static enum status fail_at(const struct point_condition *p, int64_t row, struct 
                 p->condition->table, (long long)p->condition->line[row], place, what);
 }
 
-/* What decides how stiff the body is at its nodes. */
-static enum status look_at_nodes(struct point_condition *p, struct error *error)
+/* Volume and mean shear modulus of the cells at each node. */
+static enum status measure_nodes(struct point_condition *p, struct error *error)
 {
     const struct body *body = &p->system->body;
     const struct cells *cells = &p->input->cells;
@@ -54,7 +54,7 @@ static enum status look_at_nodes(struct point_condition *p, struct error *error)
     return STATUS_OK;
 }
 
-/* What two rows say of each other. */
+/* Check the points for contradictions and repetitions. */
 static enum status compare_rows(const struct point_condition *p, struct error *note, struct error *error)
 {
     struct measured_pair exact, others, repeated;
@@ -84,7 +84,7 @@ static enum status compare_rows(const struct point_condition *p, struct error *n
     return status;
 }
 
-/* The nearest of the nodes that a point's field is made of. */
+/* The nearest of the nodes of the field at point i. */
 static int32_t nearest_node(const struct point_condition *p, int64_t i)
 {
     int dim = p->measured->dim;
@@ -103,7 +103,7 @@ static int32_t nearest_node(const struct point_condition *p, int64_t i)
     return nearest;
 }
 
-/* The rows of one point, or its springs. */
+/* Add the rows of point i, or its springs. */
 static enum status add_point(const struct point_condition *p, int64_t i, struct error *error)
 {
     int dim = p->measured->dim;
@@ -131,7 +131,7 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
     return STATUS_OK;
 }
 
-/* Root mean square of what was measured, by components. */
+/* Root mean square of the measured components. */
 static double usual_displacement(const struct measured *measured)
 {
     double sum = 0.0;
@@ -184,8 +184,8 @@ static enum status set_energy(struct point_condition *p, struct error *error)
     return STATUS_OK;
 }
 
-/* Find exact rows from `first` on, one for each known component, that are nearly linearly dependent on each
- * other or on earlier sections. */
+/* Refuse exact rows from `first` on, one for each known component, that are nearly linearly dependent on each
+ * other or on rows of earlier sections. */
 static enum status check_rows(const struct point_condition *p, int64_t first, struct error *error)
 {
     const struct constraint_rows *rows = &p->system->rows;
@@ -206,8 +206,8 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     return STATUS_OK;
 }
 
-/* How far what a row prescribes is off what was measured at a point, along the row's direction; 0 where the
- * measured component is not known. */
+/* The difference between the displacement measured at point i and the target of a row, along the row's
+ * direction; 0 if the measured component is not known. */
 static double off_row(const struct point_condition *p, int64_t i, int64_t row)
 {
     const struct constraint_rows *rows = &p->system->rows;
@@ -220,8 +220,8 @@ static double off_row(const struct point_condition *p, int64_t i, int64_t row)
     return isnan(along) ? 0.0 : fabs(along - rows->target[row]);
 }
 
-/* A grid of the places that rows hold, each with a radius that `off_row` of a point beyond cannot reach: the
- * target and the largest exact displacement. x, radius: to be freed, as is the grid, also on failure. */
+/* A grid of the nodes of the rows. The radius of each is a bound of off_row: its target plus the largest
+ * measured displacement. x, radius: to be freed, as is the grid, also on failure. */
 static enum status grid_of_rows(const struct point_condition *p, struct point_grid *grid, double **x,
                                 double **radius, struct error *error)
 {
@@ -232,7 +232,7 @@ static enum status grid_of_rows(const struct point_condition *p, struct point_gr
     RETURN_IF_ERROR(NEW_ARRAY(x, rows->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(radius, rows->count, error));
     for (int64_t i = 0; i < p->measured->count * dim; i++) {
-        most = fmax(most, dim * fabs(p->measured->u[i])); /* of a component that is not known: nothing */
+        most = fmax(most, dim * fabs(p->measured->u[i])); /* fmax ignores NAN, an unknown component */
     }
     for (int64_t r = 0; r < rows->count; r++) {
         memcpy(*x + r * dim, cells->x + (int64_t)rows->node[r] * dim, (size_t)dim * sizeof **x);
@@ -290,7 +290,7 @@ static enum status add_condition(struct point_condition *p, struct error *note, 
     int64_t first = p->system->rows.count;
     TRY(compare_rows(p, note, error));
     TRY(compare_held(p, error));
-    TRY(look_at_nodes(p, error));
+    TRY(measure_nodes(p, error));
     TRY(set_energy(p, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
         TRY(add_point(p, i, error));

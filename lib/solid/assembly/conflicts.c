@@ -6,8 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the largest value that either condition prescribes: prescribed values further apart are an error, and
- * prescribed values that are nearer than the second, also of that part of the body's size, are the same. */
+/* Shares of the largest value that either condition prescribes: values further apart than the first are an
+ * error, values nearer than the second are equal. Values below least_size of the body's size count as that
+ * size. */
 static const double largest_jump = 0.1, same_jump = 1e-9, least_size = 1e-6;
 
 enum status nodal_constraints_add(struct nodal_constraints *nodal_constraints,
@@ -40,7 +41,7 @@ static double jump(const struct nodal_constraint *a, const struct nodal_constrai
     return fabs(along) > 1.0 - 1e-9 ? fabs(b->value - copysign(a->value, along * a->value)) : 0.0;
 }
 
-/* What two conditions prescribe: STATUS_OK when they agree, else the message. */
+/* Compare the values of two conditions: STATUS_OK if they agree, else STATUS_INPUT and the message. */
 static enum status compare(const struct assembly *input, const struct nodal_constraint *first,
                            const struct nodal_constraint *second, double most, struct error *error)
 {

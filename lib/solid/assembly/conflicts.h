@@ -1,6 +1,6 @@
 /* Conflicting constraints. Where facets of two conditions meet, both prescribe a value at the shared nodes.
- * Only the first one is imposed there (held_directions.h), so that a different value of the other would be
- * ignored silently. */
+ * Only the first one is imposed there (held_directions.h). A different value of the other must not be ignored
+ * silently. */
 #pragma once
 
 #include "solid/assembly/assembly.h"
@@ -22,10 +22,10 @@ MUST_CHECK enum status nodal_constraints_add(struct nodal_constraints *nodal_con
                                              struct error *error);
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
-/* Two conditions that prescribe different values at one node along one direction are an error, which names
- * them, if the values differ by more than a tenth of the largest value that either prescribes. Of smaller
- * differences, as between measured values, the first is reported in `note`, which is empty when all agree.
- * The condition with fewer directions takes precedence, or else the one that comes first. */
+/* STATUS_INPUT if two conditions prescribe values at one node along one direction that differ by more than a
+ * tenth of the largest value that either prescribes; the message names them. The first of smaller
+ * differences, as between measured values, is reported in `note`, which is empty if all agree. The condition
+ * with fewer directions takes precedence, else the one that comes first. */
 MUST_CHECK enum status nodal_constraints_check(const struct assembly *input,
                                                struct nodal_constraints *nodal_constraints,
                                                struct error *note, struct error *error);

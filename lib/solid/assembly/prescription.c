@@ -8,16 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A place is farther from the rows of a table by at most so many spacings, of the rows or of the nodes. Of
- * rows on a square grid none is farther than .71 spacings. Of rows at random on a surface one in exp(4 pi),
- * 3e5 places, is farther than 2. */
+/* A place must not be farther from the rows of a table than this many spacings of the rows or of the nodes.
+ * With rows on a square grid no place is farther than .71 spacings. With random rows on a surface, one in
+ * exp(4 pi), 3e5 places, is farther than 2. */
 static const double most_spacings = 2.0;
 
-/* Values that differ by less than this share of the table's largest, and places that differ by less than this
- * share of the body, are the same. */
+/* Values are equal if they differ by less than this share of the largest one, places if by less than this
+ * share of the body's size. */
 static const double round_off = 1e-9;
 
-/* value[dim] = the displacement of the condition's table at x, beside that node, m. */
+/* value[dim] = the displacement of the condition's table at x, near this node, m. */
 static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
                             struct error *error)
 {
@@ -88,7 +88,7 @@ enum status prescription_check_table(const struct prescription *p, struct error 
     return STATUS_OK;
 }
 
-/* Mean of the table over the samples of one average. */
+/* The mean of the table over the samples of one average. */
 static enum status average_of_table(const struct prescription *p, const struct boundary_averages *averages,
                                     int64_t a, double *mean, struct error *error)
 {
@@ -105,7 +105,7 @@ static enum status average_of_table(const struct prescription *p, const struct b
     return STATUS_OK;
 }
 
-/* Whether the condition leaves component i open. */
+/* Whether the condition does not prescribe component i. */
 static bool is_free(const struct condition *condition, int i)
 {
     return condition->kind == CONDITION_COMPONENTS && condition->is_free[i];

@@ -1,11 +1,10 @@
-/* The displacements that a condition prescribes, at a place and for an average. */
+/* The displacements that a condition prescribes at a place or for an average. */
 #pragma once
 
 #include "solid/assembly/conflicts.h"
 #include "solid/constraint/held_directions.h"
 
 #include "approx/field/scattered_fit.h"
-#include "approx/visibility/edge_paths.h"
 
 /* A condition, and the system that its rows are added to. */
 struct prescription {
@@ -13,32 +12,31 @@ struct prescription {
     const struct condition *condition;
     struct solid_system *system;
     struct nodal_constraints *nodal_constraints; /* of all conditions */
-    struct held_directions *held;                /* by the conditions before */
-    bool *shared; /* group_count * dim: conditions before hold that component at some of the group's nodes */
-    int32_t number;           /* of the condition */
-    struct scattered_fit fit; /* CONDITION_TABLE: of its points, with their connection to the nodes */
+    struct held_directions *held;                /* of earlier conditions */
+    bool *shared;   /* group_count * dim: earlier conditions hold that component at some nodes of the group */
+    int32_t number; /* of the condition */
+    struct scattered_fit fit; /* CONDITION_TABLE: to its points */
     double *spacing;          /* CONDITION_TABLE: of the cells at each node, m */
-    bool penalties;           /* adding constraint penalties, not exact rows */
-    double modulus, layer;    /* of the constraint penalties: Pa, and the size of the cells there, m */
+    bool penalties;           /* constraint penalties are added, not exact rows */
+    double modulus, layer;    /* of the penalties: modulus, Pa, and size of the cells there, m */
 };
 
-/* The displacements that a condition prescribes for one average, along some directions: all components, or
- * that along the normal. */
+/* The displacements that a condition prescribes for one average: its components, or that along the normal. */
 struct demand {
     int count;
     double direction[9]; /* count * dim, unit */
     double value[3];     /* count: m */
 };
 
-/* The number of directions that the condition prescribes at a place; whether it is dim. */
+/* The number of directions that the condition prescribes at a place; whether it equals dim. */
 int prescription_directions(const struct condition *condition, int dim);
 bool prescription_is_full(const struct prescription *p);
 
-/* STATUS_INPUT where two rows of a condition's table stand at one place with unlike displacements. */
+/* STATUS_INPUT if two rows of the condition's table have one place and different displacements. */
 MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);
 
-/* The displacements that the condition prescribes for average a; or, along the same directions, at its node.
- */
+/* The displacements that the condition prescribes for average a; with at_node, at its node along the same
+ * directions. */
 MUST_CHECK enum status prescription_demand(const struct prescription *p,
                                            const struct boundary_averages *averages, int64_t a, bool at_node,
                                            struct demand *demand, struct error *error);

@@ -33,8 +33,8 @@ void cell_functions_free(struct cell_functions *functions)
     *functions = (struct cell_functions){0};
 }
 
-/* The rows that the averages over the faces of cell q are made of, each once, and what its gradient is by the
- * value of each: gradient[12 * dim]. Returns how many there are. */
+/* The rows of the averages over the faces of cell q, each once, and the derivative of its gradient by the
+ * value of each: gradient[12 * dim]. Returns their number. */
 static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
 {
     int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
@@ -59,8 +59,8 @@ static int list_rows(const struct body *body, int64_t q, int32_t row[12], double
     return count;
 }
 
-/* Add to the gradient of the shape function of a node. A set by two arrays that need no clearing: Briggs and
- * Torczon 1993. */
+/* Add to the gradient of a node's shape function. The nodes are a sparse set of two arrays that need no
+ * clearing (Briggs and Torczon 1993). */
 static inline void add_function(int32_t node, int dim, double factor, const double *gradient,
                                 struct cell_functions *functions)
 {

@@ -6,9 +6,8 @@
 
 #include <math.h>
 
-/* A law in ln J is undefined for J <= 0. Where it uses the volume ratio of the cell itself, a cell with J <=
- * 0 counts as inverted.
- */
+/* A material in ln J is undefined for J <= 0. If it uses the volume ratio of the cell itself, a cell with J
+ * <= 0 counts as inverted. */
 static void note_volumes(const struct body *body, struct block *block)
 {
     for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
@@ -60,7 +59,7 @@ void body_visit(const struct body *body, int64_t first, int64_t last, body_visit
     }
 }
 
-/* What threads share: loops over rows, blocks and nodes. */
+/* y = B x for own rows, by all threads of a parallel region. */
 static void apply(const struct body *body, const double *x, double *y)
 {
     const struct row_ranges *rows = &body->share.values;
@@ -86,7 +85,7 @@ static void sum_corners(struct body *body, const struct row_ranges *rows)
     }
 }
 
-/* Of own blocks, in the order in which they are worked on. */
+/* Process the own blocks from `first` to before `last` of the processing order. */
 static void for_blocks(struct body *body, int64_t first, int64_t last,
                        void (*work)(struct body *body, int64_t block))
 {
@@ -138,7 +137,7 @@ static void return_forces(const struct body *body, double *force)
     }
 }
 
-/* F and J of a block, and its volumetric strains. */
+/* Set F, J and the volumetric strains of a block. */
 static void set_block(struct body *body, int64_t b)
 {
     if (body->smoothed) {
@@ -151,7 +150,7 @@ static void set_block(struct body *body, int64_t b)
     }
 }
 
-/* The displacements, F, J and pressures. */
+/* Set the displacements, F, J and pressures. */
 static void set_state(struct body *body, const double *u)
 {
     place_nodes(body, u);
@@ -193,8 +192,7 @@ struct deformation body_own_force(struct body *body, const double *u, double *fo
     int64_t worst = 0;
     evaluate(body, u, force);
     for (int64_t b = 0; b < body->block_count && !isnan(deformation.least_jacobian); b++) {
-        if (!(body->blocks[b].least_jacobian >=
-              deformation.least_jacobian)) { /* so that NaN counts as the worst */
+        if (!(body->blocks[b].least_jacobian >= deformation.least_jacobian)) { /* NaN counts as the least */
             deformation.least_jacobian = body->blocks[b].least_jacobian;
             worst = body->blocks[b].worst_point;
         }
@@ -241,7 +239,7 @@ double body_volume(const struct body *body)
     return volume;
 }
 
-/* Energy of a point, added to *energy. */
+/* Add the energy of a point to *energy. */
 static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
 {
     const struct material *material = &body->materials[body->material[q]];

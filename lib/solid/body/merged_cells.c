@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Whether two cells are of a region and a law. */
+/* Whether two cells have the same region and material model. */
 static bool are_alike(const struct body_input *input, int64_t a, int64_t b)
 {
     int32_t first = input->material[a], second = input->material[b];
@@ -20,7 +20,7 @@ static bool is_larger(const double *volume, int64_t a, int64_t b)
     return volume[a] > volume[b] || (!(volume[a] < volume[b]) && a < b);
 }
 
-/* Let b be the partner of a, if it is the largest one so far; a: none yet. */
+/* Make b the partner of a if it is the largest so far; partner[a] == a: none yet. */
 static void propose(const struct body_input *input, const double *volume, int64_t a, int64_t b,
                     int64_t *partner)
 {
@@ -29,8 +29,8 @@ static void propose(const struct body_input *input, const double *volume, int64_
     }
 }
 
-/* Follow partners from a cell to the end: a cell without partner, or the larger of two that are partners of
- * each other. There are no other cycles, as a cell is not larger than the partner of its partner. */
+/* Follow partners from a cell to a cell without partner, or to the larger of two that are partners of each
+ * other. There are no other cycles, as a cell is not larger than the partner of its partner. */
 static int64_t end_of(const double *volume, const int64_t *partner, int64_t cell)
 {
     int64_t next = partner[cell];
@@ -90,7 +90,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
     if (smoothed->merged_count == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells that go to each, 0: none */
+    RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells of each root; 0: none */
     RETURN_IF_ERROR(NEW_ARRAY(&next, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group_end, cells, error));
@@ -101,14 +101,14 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
         }
     }
     int64_t kept = 0;
-    for (int64_t q = 0; q < cells; q++) { /* the roots in their order, */
+    for (int64_t q = 0; q < cells; q++) { /* the roots in their order */
         int64_t c = body->order[q];
         if (root[c] == c) {
             body->order[kept++] = c;
         }
     }
     memmove(body->order + cells - kept, body->order, (size_t)kept * sizeof *body->order);
-    for (int64_t k = cells - kept; k < cells; k++) { /* each with those that go to it */
+    for (int64_t k = cells - kept; k < cells; k++) { /* each followed by the other cells of its group */
         int64_t c = body->order[k], begin = at;
         body->order[at++] = c;
         for (int64_t i = first[c]; i != 0; i = next[i - 1]) {
@@ -143,7 +143,7 @@ static void average_rows(const struct body *body, const struct block *block, int
     }
 }
 
-/* The next group of several cells of a block, from *begin on; false where there is none. */
+/* The next group of several cells of a block, from *begin on; false: there is none. */
 static bool next_group(const struct body *body, const struct block *block, int64_t *begin, int64_t *end)
 {
     int64_t last = block->first_point + block->point_count;

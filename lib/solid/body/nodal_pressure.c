@@ -1,30 +1,29 @@
-/* Nodal pressures A pi = b by Chebyshev's iteration.
- *
- * Let S be diagonal with sum_q N_a(q) w_q (1 / k_q + epsilon / ((d + 2) mu_q)). Of each point A is at most S,
- * and at least rho S, rho = 1 / (1 + max_q epsilon k_q / ((d + 2) mu_q)): these bound the eigenvalues of S^-1
- * A. So many iterations that the modulus of each mode is right to `accuracy` give a polynomial of A, fixed
- * once for all, which is symmetric and positive definite as A^-1 is: the pressures derive from an energy,
- * whatever the number of iterations. It is scaled to be right at rho, where pressures are uniform. Saad
- * 2003, algorithm 12.1. */
+/* Nodal pressures A pi = b by Chebyshev's iteration. Let S be diagonal with the entries sum_q N_a(q) w_q (1 /
+ * k_q + epsilon / ((d + 2) mu_q)). The contribution of each point to A is at most that to S, and at least rho
+ * times it, rho = 1 / (1 + max_q epsilon k_q / ((d + 2) mu_q)). So the eigenvalues of S^-1 A lie between rho
+ * and 1. A fixed number of iterations, such that the modulus of each mode is right to `accuracy`, is a
+ * polynomial of A. Like A^-1 it is symmetric and positive definite: the pressures derive from an energy for
+ * any number of iterations. It is scaled to be exact at rho, where pressures are uniform. Saad 2003,
+ * algorithm 12.1. */
 #include "base/memory.h"
 #include "solid/body/nodal_volume.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A bulk modulus that is off by a part x moves a body by about x mu / kappa of its strain, which is to be at
- * most this part; and x at most that. */
+/* A relative error x of the bulk modulus changes the strain of a body by about x mu / kappa, which must be at
+ * most `effect`; x itself must be at most `most_inaccurate`. */
 static const double effect = 2e-5, most_inaccurate = 0.02;
 /* With augmentations an error of A^-1 is reduced by the ratio of the limited to the whole bulk modulus; the
  * admitted error is at most this. */
 static const double augmented_accuracy = 0.01;
 
-/* Changes of the pressures from augmentation to augmentation are of one rate where the angle between two has
- * at least this cosine. */
+/* Two consecutive changes of the pressures by augmentations form a geometric sequence if the cosine between
+ * them is at least this. */
 static const double aligned = 0.99;
 
-/* The volumes that share points with volume a, itself included, each once; NULL: count only. seen: scratch,
- * in which no entry is a before. Returns how many. */
+/* idx[]: the volumes that share points with volume a, including a, each once; NULL: only count. seen:
+ * scratch, no entry of which equals a. Returns their number. */
 static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices, int64_t a, int64_t *seen,
                                int32_t *idx)
 {
@@ -45,8 +44,8 @@ static int64_t list_neighbours(const struct nodal_volumes *volumes, int vertices
     return count;
 }
 
-/* Add the parts of A and S that volume a has from the points around it; pressures->entry[b]: where row a has
- * b. */
+/* Add the contributions of the points of volume a to row a of A and S; pressures->entry[b]: the place of
+ * column b in the row. */
 static void add_points(const struct body *body, int64_t a, struct nodal_pressures *pressures, double *bound)
 {
     const struct nodal_volumes *volumes = &body->volumes;
@@ -72,7 +71,7 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
     }
 }
 
-/* The rows and columns of A. */
+/* Set the rows and columns of A. */
 static enum status lay_out(const struct body *body, struct sparse *matrix, struct error *error)
 {
     const struct nodal_volumes *volumes = &body->volumes;
@@ -93,7 +92,7 @@ static enum status lay_out(const struct body *body, struct sparse *matrix, struc
     return STATUS_OK;
 }
 
-/* The iterations for eigenvalues from rho to 1. */
+/* Choose the iterations for eigenvalues from rho to 1. */
 static void choose_iterations(struct nodal_pressures *pressures, double largest, double accuracy)
 {
     double rho = 1.0 / (1.0 + largest), rate = acosh((1.0 + rho) / fmax(1.0 - rho, 1e-3));
@@ -119,7 +118,7 @@ enum status nodal_pressures_build(struct body *body, struct error *error)
     return STATUS_OK;
 }
 
-/* The values of A, with S^-1 and the weights. */
+/* Set the values of A, S^-1 and the weights. */
 static void set_values(struct body *body, struct nodal_pressures *pressures)
 {
     const struct sparse *matrix = &pressures->matrix;

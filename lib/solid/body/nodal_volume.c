@@ -29,7 +29,7 @@ static enum status number_volumes(struct nodal_volumes *volumes, struct placed *
     return STATUS_OK;
 }
 
-/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges leave their shares
+/* share[dim + 1] of point q: its barycentric coordinates times its volume. Nodes at edges give their shares
  * to the other nodes of the cell, if there are any; returns whether they do. */
 static bool share_out(const struct body_input *input, const struct body *body, int64_t q, double *share)
 {
@@ -53,7 +53,7 @@ static bool share_out(const struct body_input *input, const struct body *body, i
     return at_edge;
 }
 
-/* S of the nodal volumes that have a point at an edge. */
+/* S_a of the nodal volumes that have a point at an edge. */
 static enum status sum_moduli(const bool *at_edge, struct body *body, struct error *error)
 {
     struct nodal_volumes *volumes = &body->volumes;
@@ -148,7 +148,7 @@ void nodal_volumes_strain(struct body *body, int64_t b)
     }
 }
 
-/* What s acts on, of a body with edges. */
+/* The strains on which s acts in a body with edges: theta_a Y_a + (1 - theta_a) y_q, summed with N_a(q). */
 static void average_strains(struct body *body)
 {
     struct nodal_volumes *volumes = &body->volumes;

@@ -63,7 +63,7 @@ double stress_smoothing_energy(const struct body *body, int64_t point, const dou
     return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * vector_distance2(9, H, F);
 }
 
-/* d cof H along D, by which cof H : D changes with H: along : dH. */
+/* along = the derivative of cof H : D by H. */
 static void cofactor_along(const double H[9], const double D[9], double along[9])
 {
     double sum[9], both[9], of_H[9], of_D[9];
@@ -106,7 +106,7 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
     }
 }
 
-/* The derivative of the energy when F, and in a cell F_h with it, change alike. */
+/* The derivative of the energy by F; in a cell F_h changes with F. */
 static void put_stress(const struct body *body, int64_t q, const double F[9], double J, void *stress)
 {
     double *P = (double *)stress + body->order[q] * 9, T[9];

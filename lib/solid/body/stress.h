@@ -1,4 +1,4 @@
-/* Stresses of points and smoothed cells of any law, one at a time; private to lib/solid. */
+/* Stresses of points and smoothed cells of any material, one at a time; private to lib/solid. */
 #pragma once
 
 #include "solid/body/kernel.h"
@@ -7,7 +7,7 @@
 typedef void body_visitor(const struct body *body, int64_t point, const double F[9], double J, void *context);
 void body_visit(const struct body *body, int64_t first, int64_t last, body_visitor *visit, void *context);
 
-/* A matrix of a point, 3 x 3 with 1 at the end in plane strain, from rows that lie so far apart. */
+/* F[9]: the matrix of a point from rows with the stride `apart`; in plane strain F33 = 1. */
 void stress_matrix(int dim, const double *row, int64_t apart, double F[9]);
 
 /* Weighted stresses P of a block of points. */

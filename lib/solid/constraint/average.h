@@ -18,7 +18,8 @@ struct average average_of_boundary(const struct boundary_averages *averages, int
 /* mean[dim] = sum_j phi_j u_j of u[node_count * dim]. */
 void average_take(const struct average *average, int dim, const double *u, double *mean);
 
-/* place[dim] = rest + sum_j phi_j u_j, m: where a point at rest[dim] is that moves with the average. */
+/* place[dim] = rest + sum_j phi_j u_j, m: the position of a point that moves with the average, and is at
+ * rest[dim] for u = 0. */
 void average_place(const struct average *average, int dim, const double *rest, const double *u,
                    double *place);
 

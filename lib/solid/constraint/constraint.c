@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Rows with a smaller relative pivot are taken for linearly dependent and dropped: the part of such a row
- * that is independent of the others is at most a hundred-thousandth of it. */
+/* Rows with a smaller relative pivot count as linearly dependent and are dropped: the part of such a row that
+ * is independent of the others is at most 1e-5 of it. */
 static const double least_pivot = 1e-10;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
@@ -49,7 +49,7 @@ static enum status reserve(struct constraint_rows *rows, int64_t length, struct 
     return STATUS_OK;
 }
 
-/* Is that the list of the last row? */
+/* Whether this is the list of the last row. */
 static bool is_last_list(const struct constraint_rows *rows, int64_t length, const int32_t *idx,
                          const double *phi)
 {
@@ -194,7 +194,8 @@ enum status constraint_factorise(const struct constraint_rows *rows, int64_t nod
     return envelope_factorise(rows->count, ptr, column, value, least, factor, error);
 }
 
-/* Of several processes: what each does, of about the same work, and the nodes that its rows of L^T need. */
+/* Divide the rows among several processes, with about the same work for each. wanted[]: the nodes that this
+ * process's rows of L^T need. */
 static enum status share(struct constraint *constraint, bool **wanted, struct error *error)
 {
     const struct constraint_rows *rows = constraint->rows;

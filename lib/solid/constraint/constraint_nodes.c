@@ -1,10 +1,10 @@
-/* What rows of conditions put on nodes, node by node. */
+/* The transpose of constraint rows, node by node. */
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/constraint/constraint.h"
 
-/* Drop the nodes that are not wanted, and divide by the mass. */
+/* Empty the rows of nodes that are not wanted, and divide the weights by the mass. */
 static void weigh(struct sparse *lists, const double *mass, const bool *wanted)
 {
     int64_t at = 0, begin = 0;

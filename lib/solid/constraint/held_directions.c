@@ -18,7 +18,7 @@ void held_free(struct held_directions *held)
     *held = (struct held_directions){0};
 }
 
-/* rest -= its part along the first `count` of some orthonormal vectors */
+/* Subtract from rest[dim] its components along axis[count * dim], orthonormal vectors. */
 static void take_out(int dim, int count, const double *axis, double *rest)
 {
     for (int k = 0; k < count; k++) {

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
-static const double most_deviations = 6.0; /* of a difference, before it is no noise */
-/* Squared: the part of a condition that must be independent of the others. */
+static const double most_deviations = 6.0; /* a larger difference, by its standard deviation, is not noise */
+/* The part of a condition that must be independent of the others, squared. */
 static const double least_independent = 0.01;
 
 static bool is_exact(const struct measured *measured, int64_t i)
@@ -48,7 +48,7 @@ double measured_energy(const struct measured *measured, const struct measured_re
     return count > 0 ? stiffness * region->model_error * region->model_error / independent : 0.0;
 }
 
-/* No two displacements differ by more, noise included. */
+/* A bound of the difference of any two displacements, noise included, m. */
 static double farthest_apart(const struct measured *measured)
 {
     double sum = 0.0, most = 0.0;
@@ -67,7 +67,7 @@ static double farthest_apart(const struct measured *measured)
 }
 
 /* The distance of two points, and the difference of their displacements in the components that are known for
- * both; -1 when there is none. */
+ * both; -1 if there is no such component. */
 static void differences(const struct measured *measured, int64_t i, int64_t k, double *distance,
                         double *apart)
 {

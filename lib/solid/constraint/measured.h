@@ -31,33 +31,34 @@ struct measured {
 /* The quantities that e depends on. */
 struct measured_region {
     double shear_modulus; /* mu, Pa: mean at the points */
-    double volume;        /* of the body that a node stands for: mean, m3 (2D: m2) */
+    double volume;        /* volume of the body for each node: mean at the points, m3 (2D: m2) */
     double body_size;     /* L, m */
     double model_error;   /* s, m */
-    int64_t nodes;        /* that the field at the points is made of */
+    int64_t nodes;        /* number of nodes that determine the field at the points */
 };
 
-/* e, J (2D: J/m), by the points that are not exact; l is the radius of the ball with the same radius of
- * gyration, at least that of the ball that a node stands for. 0 without such points. */
+/* e, J (2D: J/m), of the points that are not exact; 0 if there are none. l is the radius of the ball with
+ * their radius of gyration, and at least that of a ball with the volume of one node. */
 double measured_energy(const struct measured *measured, const struct measured_region *region);
 
 /* Two points, first < second. */
 struct measured_pair {
     int64_t first, second; /* -1, -1: none */
     double distance;       /* of the points at rest, m */
-    double apart;          /* difference of what is known of both displacements, m */
+    double apart;          /* difference of their displacements, in the components known for both, m */
     int64_t count;         /* of all pairs of this kind */
 };
 
-/* Pairs whose displacements differ by more than their distance and six standard deviations of the difference:
- * what lies between them would be turned over. Of exact points (both), and of others; the first of each by
- * `second`. Exact points at one place, to `same` m, that know a component both are `repeated`, and in no
- * other list if they agree. Time n log n where displacements are alike. STATUS_SYSTEM: memory. */
+/* Find pairs of points whose displacements differ by more than their distance plus six standard deviations of
+ * the difference: the material between them would be inverted. `exact` counts the pairs of two exact points,
+ * `others` the rest; each holds the pair with the lowest `second`. `repeated` counts the pairs of exact
+ * points within `same` m of each other that agree and have a known component in common. The time is n log n
+ * if displacements are similar. STATUS_SYSTEM: memory. */
 MUST_CHECK enum status measured_compare(const struct measured *measured, double same,
                                         struct measured_pair *exact, struct measured_pair *others,
                                         struct measured_pair *repeated, struct error *error);
 
-/* dependent[rows->count]: rows of which the part that is independent of the others is at most a tenth, so
- * that a difference between measurements would be magnified ten times beside them. */
+/* dependent[rows->count]: rows whose part that is independent of the others is at most a tenth. They would
+ * magnify a difference between measurements ten times. */
 MUST_CHECK enum status measured_dependent(const struct constraint_rows *rows, int64_t node_count,
                                           bool *dependent, struct error *error);

@@ -6,18 +6,17 @@
 #include "solid/contact/contact_rest.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* Depths below this part of a point's width are none. */
+/* Depths below this share of a point's width count as zero. */
 static const double round_off = 1e-6;
 /* Unit normals that differ by less are the same. */
 static const double same_normal = 1e-6;
-/* Modulus of the penalty by the largest pressure that multipliers exert: at least, and when it is raised. */
+/* Modulus of the penalty by the largest multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
-/* A point of a facet is half or a third of it. */
+/* A quadrature point has an equal share of the area of its facet. */
 double contact_width(const struct contact *contact, int64_t p)
 {
     int points = contact->averages == NULL ? 1 : contact->dim;
@@ -35,19 +34,8 @@ double contact_round_off(const struct contact *contact, int64_t p)
     return round_off * contact_width(contact, p);
 }
 
-/* Cosine between the body's outward normal at point p and the surface's normal. Where they can touch it is
- * about -1. */
-static double facing(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
-{
-    double cosine = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        cosine += contact->points->normal[p * contact->dim + c] * closest->normal[c];
-    }
-    return cosine;
-}
-
-/* No point may start far behind the surface. No point may start on it or behind it while the body faces away
- * from it, as a body on the wrong side of a shell does at a small depth. */
+/* No point may start far behind the surface. No point may start on or behind it where the body faces away
+ * from it, as a body on the wrong side of a shell does. */
 static enum status check_side(const struct contact *contact, struct error *error)
 {
     int64_t worst = -1;
@@ -56,7 +44,8 @@ static enum status check_side(const struct contact *contact, struct error *error
         struct rigid_contact closest =
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
         double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
-        bool back = closest.found && facing(contact, p, &closest) > 0.5;
+        double cosine = vector_dot(contact->dim, contact->points->normal + p * contact->dim, closest.normal);
+        bool back = closest.found && cosine > 0.5; /* about -1 where they can touch */
         if (depth > deepest && (depth > length || (depth > -round_off * length && back))) {
             deepest = depth;
             worst = p;
@@ -98,7 +87,7 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
         contact->stiffness[p] = stiffness;
     }
     for (int64_t i = 0; i < count * dim; i++) {
-        contact->checked_x[i] = INFINITY; /* no search yet: it may be in contact from the start */
+        contact->checked_x[i] = INFINITY; /* forces a search in the first evaluation */
     }
     contact->part = 1.0;
     return STATUS_OK;
@@ -168,7 +157,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     if (contact->modulus > 0.0) {
         contact_set_stiffness(contact, contact->modulus);
     }
-    contact_spread_multipliers(contact); /* needed after reading, harmless after writing */
+    contact_spread_multipliers(contact); /* `held` follows from the state that was read */
     return STATUS_OK;
 }
 
@@ -187,11 +176,8 @@ static bool was_in_front(const struct contact *contact, int64_t p, const double 
 /* Whether the point presses on a corner or an edge, or on another facet than at the last step. */
 static bool has_turned(const struct contact *contact, int64_t p, const struct rigid_contact *closest)
 {
-    double turn2 = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        double d = closest->normal[c] - contact->checked_normal[p * contact->dim + c];
-        turn2 += d * d;
-    }
+    double turn2 =
+        vector_distance2(contact->dim, closest->normal, contact->checked_normal + p * contact->dim);
     return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
 }
 
@@ -218,16 +204,12 @@ static void search(struct contact *contact, int64_t p, struct contact_view *view
 /* Lower bound of the distance of y_p from the surface, from that at the last search, m. */
 static double least_distance(const struct contact *contact, int64_t p, const struct contact_view *view)
 {
-    double moved2 = 0.0;
-    for (int c = 0; c < contact->dim; c++) {
-        double step = view->sought[c] - contact->checked_x[p * contact->dim + c];
-        moved2 += step * step;
-    }
-    return contact->checked_distance[p] - sqrt(moved2);
+    return contact->checked_distance[p] -
+           vector_distance(contact->dim, view->sought, contact->checked_x + p * contact->dim);
 }
 
 /* Gaps and pressures of the points from `begin` to before `end`. Where the surface is too far away for a
- * pressure it is not searched for, and the gap is that of the last search. */
+ * pressure, there is no search, and the gap is that of the last one. */
 static void measure_points(struct contact *contact, int64_t begin, int64_t end, const double *u, bool all)
 {
     int dim = contact->dim;
@@ -328,10 +310,9 @@ void contact_total(const struct contact *contact, double *total)
     double sign = contact_between_sign(contact);
     memset(total, 0, (size_t)contact->dim * sizeof *total);
     for (int64_t p = 0; p < contact->count; p++) {
-        for (int c = 0; c < contact->dim; c++) {
-            total[c] += sign * contact->pressure[p] * contact->points->area[p] *
-                        contact->normal[p * contact->dim + c];
-        }
+        double force[3];
+        contact_point_force(contact, p, force);
+        add_scaled(contact->dim, sign, force, total);
     }
 }
 
@@ -341,7 +322,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
     double sign = contact_between_sign(contact);
     memset(moment, 0, 3 * sizeof *moment);
     for (int64_t p = 0; p < contact->count; p++) {
-        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0};
+        double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0}, of_point[3];
         if (!(contact->pressure[p] > 0.0)) {
             continue;
         }
@@ -351,10 +332,8 @@ void contact_moment(const struct contact *contact, const double *point, double m
             double raised = contact->rest[p * dim + c] - contact->points->position[p * dim + c];
             arm[c] -= raised + point[c];
         }
-        for (int c = 0; c < 3; c++) {
-            int i = (c + 1) % 3, j = (c + 2) % 3;
-            moment[c] += sign * (arm[i] * force[j] - arm[j] * force[i]);
-        }
+        vector_cross(arm, force, of_point);
+        add_scaled(3, sign, of_point, moment);
     }
 }
 

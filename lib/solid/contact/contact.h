@@ -37,11 +37,11 @@
 #include "solid/rigid/rigid.h"
 #include "solid/rigid/rigid_motion.h"
 
-/* What an evaluation sees of a point. */
+/* A point in the last evaluation. */
 struct contact_view {
-    double x[3];      /* where it is, in the surface's frame, m */
-    double sought[3]; /* y_p, whose closest point of the surface is searched for, in its frame, m */
-    bool searched;    /* else the surface is too far away for a pressure; by the search: */
+    double x[3];      /* x_p in the surface's frame, m */
+    double sought[3]; /* y_p in the surface's frame, m: its closest point is searched for */
+    bool searched;    /* false: the surface is too far away for a pressure; else by the search: */
     bool behind;      /* as in the state */
     bool turned;      /* pressed by an edge or a vertex, or by another facet of a rigid surface than at the
                        * last step */
@@ -66,10 +66,10 @@ struct contact {
     double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
-    double *multiplier; /* dim for each lambda_a, Pa, in the surface's frame; as many as contact_nodes has */
-    double *change;     /* as many: what they lacked at the last augmentation, Pa; 0: none to compare with */
-    double part;        /* share of that change which it added */
-    double deepest;     /* largest t_p / k_p at steps that were taken, m; 0: no point has pressed */
+    double *multiplier; /* dim for each contact node: lambda_a, Pa, in the surface's frame */
+    double *change;     /* the same size: the change by (20) at the last augmentation, Pa; 0: not known */
+    double part;        /* the share of this change that was made */
+    double deepest;     /* largest t_p / k_p at accepted steps, m; 0: no point has pressed */
     bool *behind;       /* count: reached the back of the surface without going through it */
     double *checked_x;  /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
@@ -94,7 +94,7 @@ MUST_CHECK enum status contact_build(const struct boundary_averages *points,
                                      struct error *error);
 void contact_free(struct contact *contact);
 
-/* The arrays of a contact whose dim, count, points and averages are set. */
+/* Allocate the arrays of a contact whose dim, count, points and averages are set. */
 MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffness, struct error *error);
 
 /* The width of the facets at point p, m; and the largest depth at which a point that is found behind the
@@ -102,7 +102,7 @@ MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffnes
 double contact_width(const struct contact *contact, int64_t p);
 double contact_most_depth(const struct contact *contact, int64_t p);
 
-/* Depths of point p below this are none, m. */
+/* Depths of point p below this count as zero, m. */
 double contact_round_off(const struct contact *contact, int64_t p);
 
 /* Force on point p at the last evaluation, N (2D: N/m). */
@@ -111,11 +111,11 @@ void contact_point_force(const struct contact *contact, int64_t p, double force[
 /* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
 void contact_set_stiffness(struct contact *contact, double modulus);
 
-/* Make the penalty stiffer where multipliers demand it: under a pressure that is not small against the
- * modulus the boundary buckles between its nodes. Returns whether it became stiffer. */
+/* Increase the penalty modulus if it is too small for the largest multiplier: under a pressure that is not
+ * small against the modulus, the boundary buckles between its nodes. Returns whether it was increased. */
 bool contact_stiffen(struct contact *contact);
 
-/* The state of a contact; `prefix` goes in front of the names. */
+/* Visit the state of a contact; the names begin with `prefix`. */
 MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,
                                      struct error *error);
 
@@ -130,7 +130,7 @@ void contact_move(struct contact *contact, const double *factor);
  * where it is too far away for a pressure. */
 void contact_measure(struct contact *contact, const double *u, bool all);
 
-/* Take the step whose state was evaluated last: what that evaluation found becomes the state. */
+/* Accept the step that was evaluated last: the searches of that evaluation become the state. */
 void contact_accept(struct contact *contact);
 
 /* Augment by the last evaluation: a step up the gradient of the augmented Lagrangian, which is concave in the
@@ -139,37 +139,36 @@ void contact_accept(struct contact *contact);
  *     lambda_a <- lambda_a + sum_p N_a A_p (t_p - held_p) / k_p / sum_p N_a A_p / k_p,
  *
  * or 0 where its component along the mean normal would be tension. Where the surface is flat and all points
- * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap.
- *
- * With `steady` the last augmentation was at the same load. The step is then of the length that Irons and
- * Tuck (1969) take from the two changes: shorter where multipliers go to and fro, as near an instability they
- * do between two states; and longer where they are one geometric sequence, as where the body is held beside
- * the contact and cannot give way. The augmentation after a longer one has length 1. */
+ * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap. With `steady` the last
+ * augmentation was at the same load. The length of the step then follows from the two changes, equation (20b)
+ * (Irons and Tuck 1969): shorter where multipliers oscillate, as between two states near an instability;
+ * longer where they form a geometric sequence, as where the body is held beside the contact. The augmentation
+ * after a longer one has length 1. */
 void contact_augment(struct contact *contact, bool steady);
 
-/* The tractions held at the points, from the multipliers. */
+/* held_p at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);
 
 /* Penetration or opening of contact nodes that the multipliers do not yet hold, at the last evaluation, m:
  * the largest change of a multiplier in an augmentation, divided by the penalty stiffness. */
 double contact_miss(const struct contact *contact);
 
-/* Work of the contact's tractions along what it gives way by so far, J (2D: J/m): sum_a A_a c_a
- * (|lambda_a'|^2 - |lambda_a|^2) / 2 in absolute value, with the multipliers lambda' after the next
- * augmentation and c_a the mean of 1 / k_p. The body is in equilibrium with a surface that lies that much too
- * far away. So to first order this is what its energy lacks. Nodes that give way to and fro within a patch
- * cancel, as they do there. */
+/* Work of the contact tractions along the penetration that remains, equation (20c), J (2D: J/m): |sum_a A_a
+ * c_a (|lambda_a'|^2 - |lambda_a|^2) / 2| with the multipliers lambda' after the next augmentation and the
+ * mean c_a of 1 / k_p. The body is in equilibrium with a surface that lies too far away by this penetration.
+ * To first order, this work is the error of its energy. Penetrations and openings within a patch cancel, as
+ * they do in the energy. */
 double contact_missing_work(const struct contact *contact);
 
-/* The contact nodes, or the points where there are no nodal averages; and the last evaluation at one: means
- * over the points, weighted by its hat function. */
+/* The contact nodes: those of the nodal averages, or the points if there are none. A contact_node holds the
+ * last evaluation: means over the points, weighted by the node's hat function. */
 const struct boundary_averages *contact_nodes(const struct contact *contact);
 struct contact_node {
-    double gap;       /* m, of the points that have one; INFINITY: none has */
+    double gap;       /* m, over the points that have one; INFINITY: none has */
     double pressure;  /* Pa */
     double pressed;   /* weight of the points that press, 0 to 1 */
-    double stiffness; /* Pa/m, of the penalty */
-    bool turned;      /* as contact_view, of one of the points */
+    double stiffness; /* of the penalty, Pa/m */
+    bool turned;      /* as contact_view, for any of the points */
     double normal[3]; /* unit; 0 where the surface was never searched for */
 };
 struct contact_node contact_node(const struct contact *contact, int64_t a);
@@ -177,20 +176,20 @@ struct contact_node contact_node(const struct contact *contact, int64_t a);
 /* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
-/* Total force on the body at the last evaluation, total[dim], N (2D: N/m). Between facets of the body, see
- * contact_between.h: that on the facets named first, or 0. */
+/* total[dim] = total force on the body at the last evaluation, N (2D: N/m). Between facets of the body it is
+ * that on the points, on the opposite facets, or 0: `sign` of contact_between.h. */
 void contact_total(const struct contact *contact, double *total);
 
-/* Moment of that about point[dim] at the last evaluation, N m (2D: N): that of the forces on the
- * parameters where their nodes' parameters have moved to. In 2D moment[2] alone is not 0. */
+/* moment[3] = moment of this force about point[dim], N m (2D: N, and only moment[2] is not 0). The forces on
+ * parameters act at X_j + u_j. */
 void contact_moment(const struct contact *contact, const double *point, double moment[3]);
 
-/* Work of the surface on the body, with the pressures of the last evaluation, as it moves from its placement
- * at one set of factors to that at another. */
+/* Work of the moving surface on the body, with the pressures of the last evaluation, between two placements
+ * given by factors of the load curves. */
 struct contact_work {
     double work;       /* sum p A n . w, w the displacement of the surface under each point, J (2D: J/m) */
-    double unresolved; /* sum k_p A w^2 over the points that touch, J (2D: J/m). The work of a point that
-                        * is first touched within a step is wrong by at most an eighth of it */
+    double unresolved; /* sum k_p A w^2 over the points that press, J (2D: J/m). The error of the work of a
+                          point that is first touched within a step is at most an eighth of its term */
 };
 struct contact_work contact_work(const struct contact *contact, const double *factor_from,
                                  const double *factor_to);

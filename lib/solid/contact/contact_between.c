@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Facets further away from a point than so many of its widths are not opposite to it; for gaps that are told.
- * In two dimensions the mass of a relaxation counts all that have something opposite. */
+/* A facet is opposite to a point within this distance, by the point's width; told_widths for gaps that are
+ * reported. In 2D the mass of a relaxation counts every point that has an opposite facet. */
 static const double reach_widths_2d = 1.0, reach_widths_3d = 0.5, told_widths = 10.0;
 enum { FACETS_FOR_THREAD = 300 }; /* see chunks_of */
 
@@ -62,7 +62,7 @@ bool contact_between_led(const struct contact *contact, int64_t p)
     return contact->between != NULL && contact->between->view[p].led;
 }
 
-/* The points of facet f at parameters u. */
+/* Place the points of facet f at parameters u. */
 static void place_facet(struct contact *contact, int64_t f, const double *u)
 {
     int dim = contact->dim, points = contact->between->per_facet;
@@ -81,27 +81,22 @@ static void facet_normal(const struct contact *contact, int64_t f, double normal
 {
     static const int32_t corners[] = {0, 1, 2};
     int dim = contact->dim;
-    double x[9], length2 = 0.0;
+    double x[9];
     for (int k = 0; k < dim; k++) {
         memcpy(x + k * dim, contact->view[f * contact->between->per_facet + k].x, (size_t)dim * sizeof *x);
     }
     face_area_vector(dim, x, corners, normal);
-    for (int c = 0; c < dim; c++) {
-        length2 += normal[c] * normal[c];
-    }
-    for (int c = 0; c < dim && length2 > 0.0; c++) {
-        normal[c] /= sqrt(length2);
-    }
+    vector_normalise(dim, normal);
 }
 
 /* How far y_p is from x_p, m. */
 static double held_way(const struct contact *contact, int64_t p)
 {
     double held = vector_length(contact->dim, contact->held + p * contact->dim);
-    return held > 0.0 ? held / contact->stiffness[p] : 0.0; /* at rest there is no stiffness yet */
+    return held > 0.0 ? held / contact->stiffness[p] : 0.0; /* the stiffness is 0 while building */
 }
 
-/* The opposite place closest to y_p, of point p of a facet with that normal. */
+/* The opposite place closest to y_p; normal: of the facet of point p. */
 static struct rigid_contact find_place(const struct contact *contact, int64_t p, const double *normal,
                                        double reach, double *free_way)
 {
@@ -156,7 +151,8 @@ static void search(struct contact *contact, int64_t p, const double *normal, boo
     }
 }
 
-/* Whether what is opposite point p may have come near enough for a pressure, or turned to it. */
+/* Whether an opposite facet may have come near enough to point p for a pressure, or may have turned towards
+ * it. */
 static bool may_touch(const struct contact *contact, int64_t p)
 {
     const struct contact_between *between = contact->between;
@@ -164,8 +160,8 @@ static bool may_touch(const struct contact *contact, int64_t p)
     return !(between->way + between->moved < between->checked_way[p] + free_way - held_way(contact, p));
 }
 
-/* What is opposite the points of facet f is looked for where that is needed; else their gaps are those of the
- * last search. */
+/* Search for the facets opposite the points of facet f that are marked `searched`; the gaps of the others are
+ * those of the last search. */
 static void measure_facet(struct contact *contact, int64_t f, const double *u, bool all)
 {
     int dim = contact->dim, points = contact->between->per_facet;
@@ -187,17 +183,13 @@ static void measure_facet(struct contact *contact, int64_t f, const double *u, b
     }
 }
 
-/* How far a point and an opposite place may have moved against each other since the last step. */
+/* A bound of the relative motion of a point and an opposite place since the last step, m. */
 static double relative_way(const struct contact *contact, const double *u)
 {
     const struct contact_between *between = contact->between;
     double most2 = 0.0;
     for (int64_t n = 0; n < between->values; n += contact->dim) {
-        double way2 = 0.0;
-        for (int c = 0; c < contact->dim; c++) {
-            way2 += (u[n + c] - between->before[n + c]) * (u[n + c] - between->before[n + c]);
-        }
-        most2 = fmax(most2, way2);
+        most2 = fmax(most2, vector_distance2(contact->dim, u + n, between->before + n));
     }
     return between->leverage * sqrt(most2);
 }
@@ -291,8 +283,8 @@ static double longest_row(const struct boundary_averages *rows)
     return longest;
 }
 
-/* Where points start: behind an opposite facet, no further than chords of a curved boundary may be. Returns
- * whether any facet faces any point. */
+/* Set begin[]: the negative gaps at which points start behind an opposite facet, as chords of a curved
+ * boundary may. Returns whether any facet faces any point; with `far`, at any distance. */
 static bool begin(struct contact *contact, bool far)
 {
     struct contact_between *between = contact->between;

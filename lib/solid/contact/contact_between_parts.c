@@ -1,5 +1,5 @@
-/* What preconditioner, time steps and the search for folds need of a contact between facets of the body: the
- * parts of its gaps, bounds of its stiffness, the nodes that are near. */
+/* Contact between facets of the body, for preconditioner, time step and the search for folds: dependence of
+ * gaps on the field, bounds of the stiffness, nodes that are near. */
 #include "solid/contact/contact_between.h"
 
 #include "base/vector.h"

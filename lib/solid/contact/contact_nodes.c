@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Part of an augmentation that is made at least; its inverse at most, where two changes in a row have this
- * cosine. */
+/* Least share of an augmentation that is made. The largest is its inverse, where the cosine between two
+ * consecutive changes is above `aligned`. */
 static const double least_part = 1.0 / 16.0, aligned = 0.99;
 
 void contact_spread_multipliers(struct contact *contact)
@@ -24,9 +24,7 @@ void contact_spread_multipliers(struct contact *contact)
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
             int64_t p = averages->sample_point[s];
             double weight = averages->sample_share[s] * averages->area[a] / contact->points->area[p];
-            for (int c = 0; c < contact->dim; c++) {
-                contact->held[p * contact->dim + c] += weight * multiplier[c];
-            }
+            add_scaled(contact->dim, weight, multiplier, contact->held + p * contact->dim);
         }
     }
 }
@@ -46,9 +44,7 @@ static double add_point(const struct contact *contact, int64_t p, double share, 
     node->pressed += contact->pressure[p] > 0.0 ? share : 0.0;
     node->stiffness += share * contact->stiffness[p];
     node->turned = node->turned || contact->view[p].turned;
-    for (int c = 0; c < contact->dim; c++) {
-        node->normal[c] += share * contact->normal[p * contact->dim + c];
-    }
+    add_scaled(contact->dim, share, contact->normal + p * contact->dim, node->normal);
     return within ? share : 0.0;
 }
 
@@ -56,18 +52,13 @@ struct contact_node contact_node(const struct contact *contact, int64_t a)
 {
     const struct boundary_averages *averages = contact->averages;
     struct contact_node node = {0};
-    double length2 = 0.0, within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
+    double within = averages == NULL ? add_point(contact, a, 1.0, &node) : 0.0;
     for (int64_t s = averages != NULL ? averages->sample_ptr[a] : 0;
          averages != NULL && s < averages->sample_ptr[a + 1]; s++) {
         within += add_point(contact, averages->sample_point[s], averages->sample_share[s], &node);
     }
     node.gap = within > 0.0 ? node.gap / within : INFINITY;
-    for (int c = 0; c < contact->dim; c++) {
-        length2 += node.normal[c] * node.normal[c];
-    }
-    for (int c = 0; c < contact->dim && length2 > 0.0; c++) {
-        node.normal[c] /= sqrt(length2);
-    }
+    vector_normalise(contact->dim, node.normal);
     return node;
 }
 
@@ -83,8 +74,8 @@ static void add_difference(const struct contact *contact, int64_t p, double weig
     }
 }
 
-/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns by how much its change is what the
- * contact gives way by there, m/Pa; 0: nothing changes. */
+/* next[dim]: the multiplier of node a after an augmentation, Pa. Returns the compliance, m/Pa, by which its
+ * change is the penetration there; 0: nothing changes. */
 static double augmented(const struct contact *contact, int64_t a, double next[3])
 {
     const struct boundary_averages *averages = contact->averages;
@@ -102,7 +93,7 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
         compliance += part;
         add_difference(contact, p, part, sum, direction);
     }
-    if (!(compliance > 0.0)) { /* all of it is pressed on by others */
+    if (!(compliance > 0.0)) { /* all points are led */
         return 0.0;
     }
     for (int c = 0; c < contact->dim; c++) {
@@ -123,9 +114,9 @@ static void forget_change(struct contact *contact)
     memset(contact->change, 0, values * sizeof *contact->change);
 }
 
-/* Let contact->change become what the multipliers lack by the last evaluation. Returns the part of it to go
- * on by. With the change d before, of which part w was made, and d' now it is w d . (d - d') / |d - d'|^2: of
- * a geometric sequence the whole way to its limit. */
+/* Set contact->change to the change of the multipliers by the last evaluation. Returns the share of it to
+ * make, equation (20b): w d . (d - d') / |d - d'|^2 with the change d before, of which the share w was made,
+ * and d' now. For a geometric sequence this leads to its limit. */
 static double take_change(struct contact *contact)
 {
     const struct boundary_averages *nodes = contact_nodes(contact);
@@ -168,13 +159,13 @@ void contact_augment(struct contact *contact, bool steady)
             next[c] = multiplier[c] + part * change;
             along += next[c] * (multiplier[c] + change);
         }
-        for (int c = 0; c < dim; c++) { /* beyond the whole change it may become a pull */
+        for (int c = 0; c < dim; c++) { /* more than the whole change may make it a tension */
             multiplier[c] = part <= 1.0 || along > 0.0 ? next[c] : 0.0;
         }
     }
     contact->part = part;
     if (part > 1.0) {
-        forget_change(contact); /* what comes next is no sequence with it */
+        forget_change(contact); /* the next change does not continue the sequence */
     }
     contact_spread_multipliers(contact);
 }

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 struct marks {
     double *force;    /* node_count: contact force of the node, N */

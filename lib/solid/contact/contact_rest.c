@@ -2,26 +2,24 @@
 
 #include "base/memory.h"
 #include "base/vector.h"
-#include "solid/rigid/rigid_private.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* The two ends of an edge of a circle are as high above each other's tangents. A boundary is resolved when
- * the heights differ by less than this part of them, on average: balls and discs of a dozen facets around do,
- * brains with their folds do not. */
+/* The two ends of a chord of a circle have the same height above each other's tangents. A boundary is
+ * resolved if the heights differ by less than this share of them, on average: balls and discs with a dozen
+ * facets around are, brains with their folds are not. */
 static const double most_rough = 0.2;
-/* Heights below this part of the edges, on average, are none: the facets are flat. */
+/* If heights are below this share of the edges, on average, the facets are flat. */
 static const double flat = 1e-3;
 
-/* What a contact's facets are, by its points. */
+/* The facets of a contact, described by its points. */
 struct facets {
     int dim;
     const struct boundary_averages *points, *averages;
     const double *X;
-    double *normal; /* averages->count * dim: of the boundary at each node, of its side; unit */
-    bool *rim;      /* averages->count: the facets end there, and the normal is that of one side alone */
+    double *normal; /* averages->count * dim: unit normal of the boundary at each node, or on its side */
+    bool *rim;      /* averages->count: the facets end there, and the normal is that of one side only */
 };
 
 static const double *corner_of(const struct facets *facets, int64_t p)
@@ -76,7 +74,7 @@ static enum status find_normals(struct facets *facets, struct error *error)
             }
         }
         facets->rim[a] = once != 0;
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
     }
     return STATUS_OK;
 }
@@ -112,17 +110,17 @@ done:
     return status;
 }
 
-/* Of the corners of the facet of a point, but for those on a rim: the boundary is taken to go on there as it
- * is at the others. */
+/* Heights of a point's facet corners, except those on a rim, where the boundary is taken to continue as at
+ * the other corners. */
 struct heights {
     int count;
     double least, most; /* above the point, m */
     double mean;        /* by the corners' hat functions at the point */
 };
 
-/* The part of the heights that is due to a curve. A curve turns about alike at all corners of a facet: all of
- * it. An edge between plane sides turns at some corners only: nothing. In between, twice the least height
- * counts (the limiter MC of van Leer 1977). */
+/* The share of the heights that is due to curvature. A curved boundary turns about equally at all corners of
+ * a facet: the share is 1. An edge between plane sides turns at some corners only: it is 0. In between, twice
+ * the least height counts (the limiter MC of van Leer 1977). */
 static double share_of_curve(const struct heights *heights)
 {
     double mean = heights->mean;
@@ -179,7 +177,7 @@ done:
     return status;
 }
 
-/* Each average to the plane through its node. */
+/* Raise each average to the plane through its node. */
 static void raise_averages(struct contact *contact, const double *X)
 {
     const struct boundary_averages *points = contact->points;

@@ -1,4 +1,4 @@
-/* Where the points of a contact are at rest, on the curved boundary whose chords the facets are.
+/* Positions at rest of the points of a contact, on the curved boundary whose chords the facets are.
  *
  * A curved boundary is known by its nodes and by the normals there, which the facets around a node give with
  * the weights of Max (1999): exact on circles and spheres, however the facets differ in size. The quadratic
@@ -7,13 +7,13 @@
 
 #include "solid/contact/contact.h"
 
-/* Whether the facets resolve the curves of their boundary, so that it is known between the nodes. `points`
- * and `averages` are those of the same facets; points->node[p] is the corner p % dim of a facet. X: nodes, m.
- */
+/* *resolved: whether the facets resolve the curvature of the boundary, so that it is known between the nodes.
+ * `points` and `averages` are those of the same facets; points->node[p] is corner p % dim of a facet. X:
+ * nodes, m. */
 MUST_CHECK enum status contact_rest_resolved(int dim, const struct boundary_averages *points,
                                              const struct boundary_averages *averages, const double *X,
                                              bool *resolved, struct error *error);
 
-/* Set contact->rest: quadrature points are raised from the chords to the boundary, boundary averages, which
- * lie below their nodes, to the nodes. Both offsets are zero on flat facets. */
+/* Set contact->rest. Quadrature points are raised from the chords to the boundary. Boundary averages, which
+ * lie below their nodes, are raised to the nodes. Both offsets are zero on flat facets. */
 MUST_CHECK enum status contact_rest_place(struct contact *contact, const double *X, struct error *error);

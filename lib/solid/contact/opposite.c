@@ -7,11 +7,11 @@
 
 #include <string.h>
 
-/* Facets of one body nearer at rest than so many widths are neighbours through it, if each is behind the
- * other by more than this part of their distance. A point may be behind another facet by half a width: what
- * lies further apart in the body would have to be flattened to an eighth for that. */
+/* Two facets of one body are neighbours through it if they are nearer at rest than this many widths and each
+ * is behind the other by more than this share of their distance. A point may be behind another facet by half
+ * a width: a body thicker than `near_widths` would have to be flattened to an eighth for that. */
 static const double near_widths = 4.0, behind_share = 1e-3;
-/* By how much of its width a facet that turns moves, by radians. */
+/* A facet that turns by an angle moves by this share of its width, per radian. */
 static const double lever = 0.3;
 enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 
@@ -102,7 +102,7 @@ static enum status number_vertices(struct opposite *opposite, const struct face_
     return STATUS_OK;
 }
 
-/* What is known of the facets at rest. */
+/* Normals, middles, widths and bodies of the facets at rest. */
 static enum status measure_rest(struct opposite *opposite, const struct facet_set *set, const int32_t *part,
                                 struct error *error)
 {
@@ -118,7 +118,7 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
         face_area_vector(dim, opposite->rest, facet, normal);
         double area = vector_length(dim, normal);
         opposite->width[f] = dim == 2 ? area : sqrt(area);
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
         opposite->part[f] = -1;
         for (int k = 0; k < dim; k++) {
             add_scaled(dim, 1.0 / dim, opposite->rest + (int64_t)facet[k] * dim, opposite->middle + f * dim);
@@ -143,7 +143,7 @@ static double corner_angle(const struct rigid_surface *surface, const int32_t *f
     return atan2(vector_length(3, cross), vector_dot(3, one, other));
 }
 
-/* The boxes of the tree, which keeps its branches: those of a branch come behind it. */
+/* Fit the boxes of the tree to the moved facets. The branches below a branch come behind it. */
 static void fit_boxes(struct rigid_surface *surface)
 {
     int dim = surface->dim;
@@ -176,21 +176,21 @@ static void refit(struct opposite *opposite)
         const int32_t *facet = surface->facet + f * dim;
         double *normal = surface->normal + f * dim;
         face_area_vector(dim, surface->vertex, facet, normal);
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
         for (int k = 0; k < dim; k++) {
             add_scaled(dim, corner_angle(surface, facet, k), normal,
                        surface->vertex_normal + (int64_t)facet[k] * dim);
         }
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
-        normalise(dim, surface->vertex_normal + v * dim);
+        vector_normalise(dim, surface->vertex_normal + v * dim);
     }
     for (int64_t slot = 0; slot < surface->facet_count * 3 && dim == 3; slot++) {
         double *normal = surface->edge_normal + slot * 3;
         int64_t beyond = opposite->across[slot] >= 0 ? opposite->across[slot] : slot;
         memcpy(normal, surface->normal + slot / 3 * 3, 3 * sizeof *normal);
         add_scaled(3, 1.0, surface->normal + beyond / 3 * 3, normal);
-        normalise(3, normal);
+        vector_normalise(3, normal);
     }
     fit_boxes(surface);
 }
@@ -244,7 +244,7 @@ void opposite_move(struct opposite *opposite, const double *u)
 struct search {
     const struct opposite *opposite;
     const struct seeker *seeker;
-    double free_way; /* what facets that do not face the point leave it, m */
+    double free_way; /* relative motion until another facet may face the point, m */
 };
 
 /* Whether facet f was a neighbour of the point through the body. */
@@ -311,7 +311,7 @@ static bool was_behind(const struct opposite *opposite, const struct seeker *see
         average_place(&average, dim, opposite->rest + v * dim, seeker->last_u, x + k * dim);
     }
     face_area_vector(dim, x, corners, normal);
-    normalise(dim, normal);
+    vector_normalise(dim, normal);
     average_place(&seeker->average, dim, seeker->rest, seeker->last_u, last);
     vector_subtract(dim, last, x, offset);
     return vector_dot(dim, offset, normal) < -seeker->began;

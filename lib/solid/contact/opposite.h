@@ -1,5 +1,5 @@
-/* Facets of the deforming body that points of a contact press against: those of another part of the boundary,
- * or of the same one.
+/* Facets of the deforming body against which points of a contact press, on another part of the boundary or on
+ * the same one.
  *
  * Their corners are at X_a + sum_j Phi_aj u_j with the values of boundary_corners_build, so that the surface
  * is continuous, and follows the field by the boundary's own quadrature. The closest point of it to a contact
@@ -21,7 +21,7 @@ struct opposite {
     bool itself;                   /* the points are on the same facets */
     struct rigid_surface surface;  /* its vertices are the corners, where they are now */
     struct boundary_averages rows; /* values at the vertices */
-    double *stiffness;             /* vertices: Pa/m, what points may add at each, for bounds */
+    double *stiffness;             /* vertices: a bound of the penalty stiffness at each, Pa/m */
     double *rest;                  /* vertices * dim, m */
     double *rest_normal;           /* facets * dim */
     double *middle;                /* facets * dim: at rest, m */
@@ -41,26 +41,26 @@ void opposite_free(struct opposite *opposite);
 /* Move the facets to parameters u. */
 void opposite_move(struct opposite *opposite, const double *u);
 
-/* A point whose closest opposite facet is searched: a point of a facet of the body, at rest and now. */
+/* A point of a facet, whose closest opposite facet is searched for. */
 struct seeker {
     const double *x;           /* now, m */
     const double *rest;        /* m */
     const double *rest_normal; /* outward, of its facet */
     const double *normal;      /* outward, now */
-    double width, depth;       /* of its facet; how far it may be behind another one, m */
+    double width, depth;       /* width of its facet; how far it may be behind another one, m */
     int32_t part;              /* its body */
     const int32_t *corner;     /* dim: nodes of its facet */
-    struct average average;    /* that moves it from rest */
+    struct average average;    /* its displacement */
     const double *last_u;      /* parameters at the last step, m; NULL: it was behind a facet that faced it */
     double began;              /* how far behind a facet it was at rest, m */
 };
-/* *free_way: how far the point and facets that do not face it now may move against each other before any of
- * them, within reach, may face it, m. */
+/* The closest place of the opposite facets within reach. *free_way: relative motion of the point and the
+ * facets that do not face it now, until one of them, within reach, may face it, m. */
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
                                       double reach, double *free_way);
 
-/* Where a boundary is in contact with itself, each pair of facets must count only once: whether points of a
- * facet of that normal at rest press on facet f, and not the points of f on it. */
+/* Whether the points of a facet with this normal at rest press on facet f, and not the points of f on it:
+ * where a boundary touches itself, each pair of facets must count once. */
 bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f);
 
 /* The body of each node; part[cells->node_count]. -1 for a node of several bodies, or none. */

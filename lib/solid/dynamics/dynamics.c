@@ -6,12 +6,12 @@
 #include <string.h>
 
 static const int64_t check_interval = 20; /* steps between estimates of the critical step */
-static const int first_iterations = 40;   /* of the power iteration, at the begin */
-static const int later_iterations = 1;    /* at every check: the mode is kept, so that it sharpens */
+static const int first_iterations = 40;   /* of the power iteration, at the start */
+static const int later_iterations = 1;    /* at every check; the mode is kept from check to check */
 static const double samples = 200.0;      /* of the energies, over the run */
 
-/* Factors of the load curves at a time; beyond the end they are extrapolated with their last rate, so that
- * the prescribed velocity does not jump there. */
+/* Factors of the load curves at a time. Beyond the end they are extrapolated linearly, so that the prescribed
+ * velocity does not jump there. */
 static void factors_at(const struct dynamics *d, double time, double *factor)
 {
     double s = time / d->options->end_time;
@@ -21,7 +21,8 @@ static void factors_at(const struct dynamics *d, double time, double *factor)
     }
 }
 
-/* Frames between this step and the next one, by linear interpolation: the velocity is constant there. */
+/* Give the frames between this step and the next one, by linear interpolation: the velocity is constant
+ * there. */
 static void give_frames(struct dynamics *d)
 {
     const struct dynamics_options *options = d->options;
@@ -59,7 +60,7 @@ static void swap(double **a, double **b)
     *b = kept;
 }
 
-/* The loads of this instant; a system without load curves has no factors. */
+/* Set the load factors of the system to those of this step. */
 static void use_factors(struct dynamics *d)
 {
     for (int64_t i = 0; i < d->system->curve_count; i++) {
@@ -105,7 +106,7 @@ static bool is_interrupted(const struct dynamics *d)
            ranks_most(d->system->body.share.ranks, *d->options->interrupted) != 0;
 }
 
-/* Step until something ends the run. */
+/* Step until the run ends. */
 static enum dynamics_outcome march(struct dynamics *d, struct error *error)
 {
     int64_t most = d->options->most_steps > 0 ? d->options->most_steps : INT64_MAX;
@@ -150,7 +151,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
     }
 }
 
-/* Bring u and v onto the conditions at time 0; what that takes is work. */
+/* Project u and v onto the conditions at time 0. The change of the energy counts as work. */
 static void meet_conditions(struct dynamics *d)
 {
     struct solid_system *system = d->system;
@@ -165,7 +166,7 @@ static void meet_conditions(struct dynamics *d)
     d->balance.work = energy_internal(system, d->u) + energy_kinetic(system, d->before, d->before) - energy;
 }
 
-/* From u and v (NULL: at rest) at time 0. */
+/* Start from u and v (NULL: at rest) at time 0. */
 static void begin(struct dynamics *d, const double *u, const double *v)
 {
     size_t bytes = (size_t)d->size * sizeof *u;
@@ -181,7 +182,7 @@ static void begin(struct dynamics *d, const double *u, const double *v)
     factors_at(d, 0.0, d->factor_now);
 }
 
-/* Where the largest component of a vector of the nodes is; NaN counts as the largest. */
+/* The node of the largest component of a nodal vector; NaN counts as the largest. */
 static int64_t node_of_largest(const struct dynamics *d, const double *vector)
 {
     int64_t largest = 0;

@@ -38,8 +38,8 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
         work += done.work;
         unresolved += done.unresolved;
     }
-    /* When a surface moves onto a body at rest, the balance misses up to an eighth of `unresolved` of the
-     * first contact within a step. That is no drift before the energies are that large. */
+    /* When a surface moves onto a body at rest, the balance misses up to an eighth of `unresolved` in the
+     * first step with contact. The largest energy is at least so large that this does not count as drift. */
     d->balance.largest = fmax(d->balance.largest, unresolved / (8.0 * DYNAMICS_MOST_DRIFT));
     d->balance.work += 0.5 * work;
     if (d->options->damping > 0.0) {

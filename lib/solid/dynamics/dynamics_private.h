@@ -18,8 +18,8 @@ struct dynamics {
     /* Time runs in spans of equal steps: t = mark + done * step; `left` more of them end at T. */
     double mark, step, previous_step;
     int64_t done, left;
-    double frequency;       /* largest, followed */
-    double contact_squared; /* bound of what contacts add to its square */
+    double frequency;       /* estimate of the largest, rad/s */
+    double contact_squared; /* bound of the contacts' contribution to its square */
     int64_t sample_interval;
     int64_t frames;
     struct energy_balance balance;
@@ -33,29 +33,29 @@ struct dynamics {
 double dynamics_time_now(const struct dynamics *d);
 double dynamics_time_next(const struct dynamics *d);
 
-/* Bound what contacts can add to the square of the largest frequency, whatever touches. */
+/* Bound the contribution of contacts to the square of the largest frequency, whatever touches. */
 void dynamics_bound_contacts(struct dynamics *d);
 
-/* Follow the largest frequency; `residual` is that at u. */
+/* Update the estimate of the largest frequency; d->residual is that at u. */
 void dynamics_estimate_frequency(struct dynamics *d, int iterations);
 
-/* Start a span of equal steps to the end where the last ones have become too long, or shorter than need be.
+/* If the steps have become too long, or shorter than necessary, begin a new span of equal steps to the end.
  * False: the step has collapsed. */
 bool dynamics_choose_step(struct dynamics *d);
 
-/* v+ and the next u from the residual at u, the conditions met; the forces of the conditions, N (2D: N/m),
- * are left in constraint.multiplier. */
+/* Compute v+ and the next u from the residual at u, and meet the conditions. constraint.multiplier receives
+ * the forces of the conditions, N (2D: N/m). */
 void dynamics_advance(struct dynamics *d, bool is_first);
 
 /* ---- dynamics_energy.c: works, and the balance of energies ---- */
 
-/* Half of the work that the forces at this step do over the step before or after it, in which the factors of
- * the load curves go from one to the other. */
+/* Add half of the work of the forces at this step over the step before or after it, in which the factors of
+ * the load curves change as given. */
 void dynamics_add_work(struct dynamics *d, const double *velocity, double step, const double *factor_from,
                        const double *factor_to);
 
-/* Energies at this step, with that of the contacts, into the log. False when their balance is off, or on
- * failure. */
+/* Append the energies at this step, with this energy of the contacts, to the log. False if their balance is
+ * off, or on failure. */
 bool dynamics_sample(struct dynamics *d, double contact, struct error *error);
 
 /* ---- dynamics_state.c: memory, and what a checkpoint holds ---- */
@@ -64,5 +64,5 @@ MUST_CHECK enum status dynamics_allocate(struct dynamics *d, struct error *error
 
 void dynamics_release(struct dynamics *d);
 
-/* Visit the state that the next step needs: see base/state.h. */
+/* Visit the state of the run: see base/state.h. */
 MUST_CHECK enum status dynamics_visit(void *run, const struct state *state, struct error *error);

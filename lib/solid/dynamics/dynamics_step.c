@@ -27,7 +27,8 @@ void dynamics_bound_contacts(struct dynamics *d)
         stiffness[n] = 0.0;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        /* A point and what is opposite are one row; its square is no more than twice those of its parts. */
+        /* A point and its opposite place form one row, whose square is at most twice the sum of those of its
+         * parts. */
         double parts = system->contacts[c].between != NULL ? 2.0 : 1.0;
         for (int64_t b = 0; b < contact_bond_count(&system->contacts[c]); b++) {
             double sum = 0.0, bond;
@@ -54,7 +55,7 @@ void dynamics_estimate_frequency(struct dynamics *d, int iterations)
                                                 d->mode, d->scratch);
     d->report->force_evaluations += iterations;
     frequency = sqrt(frequency * frequency + d->contact_squared);
-    /* The estimate is from below and wanders: follow rises at once, falls slowly. */
+    /* The estimate is a lower bound that fluctuates: follow a rise at once, a fall slowly. */
     d->frequency = frequency > d->frequency ? frequency : 0.98 * d->frequency + 0.02 * frequency;
 }
 
@@ -120,7 +121,7 @@ void dynamics_advance(struct dynamics *d, bool is_first)
         d->next[i] = d->u[i] + move[i];
         d->after[i] = move[i] / dt;
     }
-    if (is_first) { /* the velocity half a step before the begin, by the same acceleration */
+    if (is_first) { /* the velocity half a step before the start, with the same acceleration */
         for (int64_t i = 0; i < d->size; i++) {
             d->before[i] = 2.0 * d->before[i] - d->after[i];
         }

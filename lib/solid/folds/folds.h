@@ -2,25 +2,24 @@
  * one-to-one.
  *
  * It is one-to-one when all cells keep their orientation and the boundary does not cross itself (Meisters and
- * Olech, Duke Math. J. 30, 1963). Both are checked. Cells: the sign of the volume of each, which is that of
- * det F of the linear interpolant; it also changes where a facet of the boundary is turned over against the
- * cell behind it. Slivers turn over within the error of the field at the nodes; so the depth is measured.
- * Boundary: facets that share no node are crossed, or pierced by edges;
- * those that meet have passed through each other when the angles of the cells around the place where they
- * meet add up to more than a full turn.
+ * Olech, Duke Math. J. 30, 1963). Both are checked. Of each cell the sign of its volume is checked, which is
+ * that of det F of the linear interpolant. It also changes where a facet of the boundary is turned over
+ * against the cell behind it. Slivers turn over within the error of the field at the nodes; therefore the
+ * depth is measured. Boundary facets that share no node must not cross, nor be pierced by edges. Facets that
+ * meet at a node (2D) or an edge (3D) have passed through each other if the angles of the cells around it add
+ * up to more than a full turn.
  *
  * A flat cell may lie between two facets of the boundary that continue each other. Where the surface becomes
- * concave there, as beside a part that is held, the cell is inverted, and no fold: the body is what the other
- * cells fill.
+ * concave there, as beside a held part, the cell is inverted but is no fold: the other cells fill the body.
  *
- * The interpolant turns over in a flat cell also where the field only bends: a node just beneath a facet gets
- * outside of its chord where the boundary bulges. There the field is asked (approx/field/field_turning.h),
- * and such a cell is no fold where the field keeps its orientation.
+ * The interpolant of a flat cell also turns over where the field only bends: where the boundary bulges, a
+ * node just beneath a facet passes through its chord. Such a cell is no fold if the gradient of the field
+ * itself keeps its orientation (approx/field/field_turning.h).
  *
- * A facet that slides on its plane turns by half a turn only with a body that goes through the plane.
+ * A facet that slides on a plane can turn over only if the body passes through the plane.
  *
- * Besides folds: a free facet that has turned at the rim of a plane support through the plane of that
- * support. The model admits it, a real plate would not. */
+ * A further check finds free facets that have turned at the rim of a plane support through its plane. The
+ * model admits this, a real plate would not. */
 #pragma once
 
 #include "base/box.h"
@@ -40,19 +39,20 @@ enum fold_kind {
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_FLAT,     /* cells are inverted: by less than that, as slivers within the error of the field; or flat
-                      ones in which the field is not; or between facets where the boundary has become concave */
-    FOLD_SUPPORT,  /* a free facet at the rim of a plane support has gone through its plane */
-    FOLD_CLOSED,   /* a side has creased: facets that meet there face each other */
-    FOLD_WRAPPED   /* a side of one body presses on both sides of a corner of another */
+    FOLD_FLAT, /* cells are inverted that are no folds: by less than that, as slivers are within the error of
+                  the field; flat ones in which the field is not; or between facets where the boundary has
+                  become concave */
+    FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
+    FOLD_CLOSED,  /* a side has creased: facets that meet there face each other */
+    FOLD_WRAPPED  /* a side of one body presses on both sides of a corner of another */
 };
 
 struct fold {
     enum fold_kind kind;
     int64_t count;    /* of that kind */
-    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: that one; else -1 */
-    int64_t facet[2]; /* else: facets of the input, those of the first one, -1 where there is none;
-                         FOLD_SUPPORT: the free one, then that of the support */
+    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: the one within; else -1 */
+    int64_t facet[2]; /* of other kinds: the input's facets of the first fold, -1: none; FOLD_SUPPORT: the
+                         free one, then that of the support */
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
 };
 
@@ -66,8 +66,8 @@ struct fold_input {
     const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
     const bool
         *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
-    const bool *slides; /* facet_count: whether only its displacement along its normal is; NULL: none */
-    const struct ranks *ranks; /* processes that look together, each at a share; NULL: one */
+    const bool *slides;        /* facet_count: whether it is prescribed along the normal alone; NULL: none */
+    const struct ranks *ranks; /* processes that share the search; NULL: one */
 };
 
 /* A node (2D) or an edge (3D) of the boundary, where facets meet. */
@@ -84,13 +84,13 @@ struct fold_rim {
     int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
-/* A cell of a connected body (see cells_parts), by the first coordinate of its middle. */
+/* A cell of a connected body (see cells_parts), sorted by the first coordinate of its centre. */
 struct fold_body {
     struct placed cell;
     double middle[3];
 };
 
-/* The box around a facet, by its low end along the first axis. */
+/* The box around a facet, sorted by its low end along the first axis. */
 struct fold_box {
     struct placed facet;
     struct box box;
@@ -119,15 +119,16 @@ struct folds {
     int32_t *node_part;       /* node_count: of a cell of each node */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
-    struct fold at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate
-                            at rest; the last two are not looked for, then, nor the first after itself */
+    struct fold
+        at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at
+                    rest. Then the last two kinds are not searched for, nor FOLD_CREASE if it is that */
     /* Scratch. */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, ascending */
     double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
                          * vectors, of its corners, their number */
-    struct fold *found; /* of several processes: what each has found in its share */
+    struct fold *found; /* of several processes: the folds found by each */
 };
 
 /* STATUS_SYSTEM for memory. */
@@ -136,33 +137,32 @@ void folds_free(struct folds *folds);
 
 /* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
  * Of several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
- * [node_count] have a surface against them. A cell between such nodes and held ones is pressed flat against a
- * plate; as averages are held and no nodes, it may be turned over a little, and does not count. */
+ * [node_count] are in contact with a surface. A cell between such nodes and held ones is pressed flat against
+ * a plate. It may be turned over a little, as conditions hold averages and not nodes, and does not count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
 
-/* After that: the cells that are turned over and were flat at rest, of a height less than a fifth of the
- * longest edge. Of others a node is so far beyond the opposite side that no field which the cells resolve
- * bends so much. cell[cell_count] receives them, ascending; returns their number. */
+/* After folds_find: list the cells that are turned over and were flat at rest, with a height of less than a
+ * fifth of the longest edge. In other cells that are turned over, no field that the cells resolve bends
+ * enough to explain it. cell[cell_count] receives them, ascending; returns their number. */
 int64_t folds_list_flat(const struct folds *folds, int32_t *cell);
 
-/* Look for cells whose middle is within a cell that they share no node with: parts of the body that lie on
- * each other, also where their boundaries only touch. That costs more than folds_find, so it is for states
- * that are kept. *fold is FOLD_NONE or FOLD_WITHIN; none where bodies interpenetrate at rest. STATUS_SYSTEM
- * for memory. */
+/* Look for cells whose middle is within a cell that they share no node with: parts of the body that overlap,
+ * also if their boundaries only touch. This costs more than folds_find, so it is used for output states only.
+ * *fold is FOLD_NONE or FOLD_WITHIN; none where bodies interpenetrate at rest. STATUS_SYSTEM for memory. */
 MUST_CHECK enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold,
                                            struct error *error);
 
 /* Look for free facets that have gone through the plane of a support: by more than a thousandth of the body's
- * size and a twentieth of the facet's, as conditions hold averages and no nodes. Nodes that are `stopped` do
+ * size and a twentieth of the facet's, as conditions hold averages and not nodes. Nodes that are `stopped` do
  * not count. FOLD_NONE or FOLD_SUPPORT. */
 struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped);
 
-/* Look for facets that meet at less than 60 degrees at rest and face each other now, by 120 degrees or more:
- * a side that is compressed too far along itself creases. FOLD_NONE or FOLD_CLOSED. */
+/* Look for facets whose normals enclose less than 60 degrees at rest and 120 degrees or more now: a side that
+ * is compressed too far along itself creases. FOLD_NONE or FOLD_CLOSED. */
 struct fold folds_find_closed(struct folds *folds, const double *u);
 
 /* Look for corners that lay on corners of other bodies at rest, where two bodies of the same width meet, and
- * that have a side of that body round them now: it presses on facets on both sides of the corner, of which
- * it faced one at rest. Which of the two wraps round the other is left to rounding and to the mesh.
- * FOLD_NONE or FOLD_WRAPPED. */
+ * around which a side of that body has wrapped: it presses on facets on both sides of the corner, and faced
+ * only one of them at rest. Which body wraps around the other depends on round-off and on the mesh. FOLD_NONE
+ * or FOLD_WRAPPED. */
 struct fold folds_find_wrapped(const struct folds *folds);

@@ -1,4 +1,4 @@
-/* Facets of the boundary that go through each other; see folds.h. */
+/* Crossings of boundary facets; see folds.h. */
 #include "solid/folds/folds_private.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@ static const double round_off = 1e-12;
 /* See are_deep; contact_most_depth. */
 static const double held_share = 0.5;
 
-/* Whether the segment p q goes through facet f, at neither's border. */
+/* Whether the segment p q crosses facet f in the interior of both. */
 static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
 {
     int dim = folds->input.dim;
@@ -38,7 +38,7 @@ static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
            (side[0] < -least && side[1] < -least && side[2] < -least);
 }
 
-/* Whether an edge of facet f (2D: the facet) that has no node of facet g goes through g. */
+/* Whether an edge of facet f (2D: the facet) without a node of facet g crosses g. */
 static bool goes_through(const struct folds *folds, int64_t f, int64_t g)
 {
     int dim = folds->input.dim;
@@ -56,7 +56,7 @@ static bool goes_through(const struct folds *folds, int64_t f, int64_t g)
     return false;
 }
 
-/* How far facet g reaches behind the plane of facet f; *width receives the length of f (3D: root of twice the
+/* The depth of facet g behind the plane of facet f; *width receives the length of f (3D: root of twice the
  * area). */
 static double reach_behind(const struct folds *folds, int64_t f, int64_t g, double *width)
 {
@@ -113,9 +113,9 @@ static bool is_in_contact(const struct folds *folds, int64_t f)
 /* Whether two facets that cross penetrate each other by more than a twentieth of the larger one: the depth is
  * the distance by which one of them must be moved to separate them. A smaller depth is within the uncertainty
  * of the field at the nodes, as conditions and contacts act on averages: a node beside a long edge of the
- * body gets beyond its chord. Where parts of the body are in contact, a corner of one may penetrate the chord
- * of the other, since the contact acts at points a fifth of a facet away from its ends; contact acts up to
- * half of the larger facet. */
+ * body may pass through its chord. Where parts of the body are in contact, a corner of one may penetrate the
+ * chord of the other, since the contact acts at points a fifth of a facet away from its ends; contact acts up
+ * to half of the larger facet. */
 static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
 {
     double width[2];
@@ -125,7 +125,7 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     return depth > (in_contact ? held_share : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
 }
 
-/* Whether two boxes meet along the other axes than the first. */
+/* Whether two boxes overlap along all axes but the first. */
 static bool boxes_meet(const struct box *one, const struct box *other)
 {
     bool meet = true;

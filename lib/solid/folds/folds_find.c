@@ -1,4 +1,4 @@
-/* Looking for folds of a displacement field; see folds.h. */
+/* The search for folds of a displacement field; see folds.h. */
 #include "solid/folds/folds_private.h"
 
 #include "base/chunks.h"
@@ -21,8 +21,8 @@ void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t oth
     vector_middle(input->dim, input->x, input->dim, input->facet + facet * input->dim, fold->place);
 }
 
-/* Combine what was found in consecutive shares: the first fold of the gravest kind, and the number of that
- * kind. */
+/* Combine the folds of consecutive shares: the first fold of the kind that comes first, and the number of
+ * that kind. */
 static struct fold combine(int64_t count, const struct fold *found)
 {
     struct fold fold = found[0];
@@ -70,7 +70,7 @@ static bool is_flattened(const struct folds *folds, const int32_t *node, const b
     return all && any;
 }
 
-/* The volume of a cell as fold_volume has it. */
+/* fold_volume of a cell. */
 static double cell_size(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
@@ -78,7 +78,7 @@ static double cell_size(const struct folds *folds, const int32_t *node)
                        fold_position(folds, node[2]), fold_position(folds, node[dim]));
 }
 
-/* The least height of a cell by its longest edge, at positions y. */
+/* The least height of a cell divided by its longest edge, at positions y. */
 static double flatness(int dim, const double *y, const int32_t *node)
 {
     const double *corner[4];
@@ -106,7 +106,7 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node)
     return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
 }
 
-/* Whether a cell is between facets that continue each other at rest, and do not face each other now. */
+/* Whether a cell is between facets that continue each other at rest and do not face each other now. */
 static bool is_in_hollow(const struct folds *folds, int64_t cell)
 {
     int32_t r = folds->flat_ring[cell];
@@ -114,7 +114,7 @@ static bool is_in_hollow(const struct folds *folds, int64_t cell)
                                        folds->rings[r].other) >= FOLD_REVERSING;
 }
 
-/* Turned cells, or else inverted ones. */
+/* Search for cells that are turned over, or else inverted. */
 static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
     const struct fold_input *input = &folds->input;
@@ -161,7 +161,7 @@ static double angle_around(const struct folds *folds, const int32_t *node)
     return cell_size(folds, node) > 0.0 ? angle : -angle;
 }
 
-/* The sum of angles at a ring above which facets have passed through each other there. Where the body is in
+/* The sum of angles at a ring above which its facets have passed through each other. Where the body is in
  * contact with itself, a twentieth more is admitted, since contact acts on averages. */
 static double most_angle(const struct folds *folds, const struct fold_ring *ring)
 {
@@ -189,7 +189,7 @@ static struct fold search_rings(const struct folds *folds, int64_t begin, int64_
     return fold;
 }
 
-/* Sliding facets that show their backs. */
+/* Search for sliding facets that are turned over. */
 static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
 {
     const struct fold_input *input = &folds->input;

@@ -1,14 +1,14 @@
-/* Geometry of cells and facets that looking for folds needs; private to lib/solid. */
+/* Geometry of cells and facets for the search for folds; private to lib/solid. */
 #pragma once
 
 #include "base/vector.h"
 #include "solid/folds/folds.h"
 
-/* Normals whose cosine is below this, that of 120 degrees, face opposite ways. */
+/* Two facets face each other if the cosine of their normals is below this, that of 120 degrees. */
 #define FOLD_REVERSING (-0.5)
 
-/* Depth, by the length of a facet, up to which facets that go through each other or through the plane of a
- * support are no fold: the field at the nodes is uncertain by as much. */
+/* Depth, by the length of a facet, up to which facets that cross each other or the plane of a support are no
+ * fold: the field at the nodes is as uncertain. */
 #define FOLD_BEYOND_FACET 0.05
 
 #define FOLD_NOTHING ((struct fold){.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}})
@@ -68,7 +68,7 @@ static inline double fold_volume(int dim, const double *a, const double *b, cons
 /* Find the parts and bodies of the cells. */
 MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
 
-/* ---- folds_crossing.c: facets that go through each other ---- */
+/* ---- folds_crossing.c ---- */
 
 /* Fill folds->boxes, ascending along the first axis. */
 void folds_sort_boxes(struct folds *folds);
@@ -82,16 +82,17 @@ struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t
 void folds_find_within(struct folds *folds, struct fold *fold);
 
 /* Look for cells whose middle is deep in a cell of another body, or else in any cell that they share no node
- * with. Boundaries that go through each other at nodes, or lie on each other, do not show as crossed. */
+ * with. Boundaries that cross at nodes, or lie on each other, are not found as crossings. */
 MUST_CHECK enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct fold *fold,
                                                struct error *error);
 
-/* Positions of the displacement u, in the scratch. */
+/* Set folds->y to the positions displaced by u. */
 void folds_take_positions(struct folds *folds, const double *u);
 
 /* Sums over the facets of each plane support, into folds->plane. */
 void folds_fill_planes(struct folds *folds, const double *y);
 
-/* How far the rim's node is beyond the plane of the support, m; *reach receives its distance from the rim. */
+/* The distance of the rim's node beyond the plane of the support, m; *reach receives its distance from the
+ * rim. */
 double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y,
                         double *reach);

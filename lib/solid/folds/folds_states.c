@@ -1,4 +1,4 @@
-/* States that are not unique: sides that have creased, and sides wrapped round corners; see folds.h. */
+/* States that are not unique: creased sides, and sides wrapped around corners; see folds.h. */
 #include "solid/folds/folds_private.h"
 
 #include <math.h>
@@ -52,7 +52,7 @@ static double facet_width(const struct fold_input *input, int64_t f)
     return width;
 }
 
-/* How far x is from a node (2D) or an edge (3D) of the boundary at rest. */
+/* The distance of x from a node (2D) or an edge (3D) of the boundary at rest. */
 static double distance_to(const struct fold_input *input, const struct fold_ring *ring, const double *x)
 {
     double along[3], offset[3], share = 0.0;

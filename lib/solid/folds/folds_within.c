@@ -1,4 +1,4 @@
-/* A body within another one, which is not found by crossings of boundaries. */
+/* The search for a body within another one, whose boundaries do not cross. */
 #include "solid/folds/folds_private.h"
 
 #include "approx/cells/parts.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/* A point less far inside a cell than this, barycentric, is on a face; or not deep in it. */
+/* Least barycentric coordinates below which a point is on a face of a cell, or not deep in the cell. */
 static const double on_face = 1e-6, not_deep = 0.05;
 /* Lengths below this share of the body are round-off. */
 static const double round_off = 1e-12;
@@ -117,8 +117,8 @@ static bool are_neighbours(const struct folds *folds, int64_t c, int64_t other)
     return false;
 }
 
-/* Poor cells do not follow the field between their nodes; nor do cells that are inverted, by little or
- * because they are flat: the body is what the others fill. */
+/* Whether a cell is left out of the search: slivers do not follow the field between their nodes, nor do cells
+ * that are inverted a little or because they are flat. */
 static bool is_left_out(const struct folds *folds, int64_t cell)
 {
     const struct fold_input *input = &folds->input;

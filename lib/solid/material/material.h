@@ -14,8 +14,6 @@
  * with I1', I2' and the stretches l isochoric (I1' = J^(-2/3) I1), C10 + C01 = mu/2, E = (F^T F - I)/2. */
 #pragma once
 
-#include "base/status.h"
-
 enum material_model {
     MATERIAL_NEO_HOOKEAN,
     MATERIAL_NEO_HOOKEAN_LOG,

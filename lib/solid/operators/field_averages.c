@@ -27,7 +27,7 @@ static bool copies_entry(const struct copy *copy, int64_t i)
     return node >= copy->first && node < copy->last;
 }
 
-/* length[]: of each of the matrix's rows. */
+/* length[r]: the number of entries that row r of the matrix gets, for each row of this table. */
 static void measure_rows(const struct copy *copy, int64_t *length)
 {
     const int64_t *ptr = copy->table->ptr;

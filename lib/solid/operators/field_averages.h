@@ -24,8 +24,8 @@ struct average_table {
     const int32_t *row_of_corner; /* one for each corner; in the table of faces FACE_ROWS(dim) */
 };
 
-/* The rows of B, those of faces, then one for each node, are the body's (body.h). With several processes
- * those computed by others are empty. */
+/* The rows of B are those of the faces, followed by one for each node. The body stores B (body.h). With
+ * several processes, the rows that others compute are empty. */
 struct field_averages {
     int64_t row_count;
     double *value;        /* of each row at the last evaluation, m, with stride VECTOR_STRIDE(dim) */
@@ -36,9 +36,10 @@ struct field_averages {
     double *corner_force; /* 2 corner_count, with that stride: force of each corner on each of its rows */
     int64_t *corner_ptr;  /* row_count + 1: the corners that use each row, */
     int32_t *corner;      /* as many as of_corner has, ascending in each row */
-    struct average_table given[2]; /* with several processes: the caller's tables, faces and nodes, */
-    int64_t *face_order;           /* and the order of the rows of faces; */
-    struct sparse fetched;         /* where none has read all rows of faces: those that this process needs */
+    /* With several processes: */
+    struct average_table given[2]; /* the caller's tables: faces, nodes */
+    int64_t *face_order;           /* order of the rows of faces */
+    struct sparse fetched;         /* if no process has read all rows of faces: those that this one needs */
 };
 
 struct field_averages_input {
@@ -49,7 +50,8 @@ struct field_averages_input {
     bool lets_go; /* release the memory of idx and phi of the faces once they are copied (memory_give_back) */
 };
 
-/* Set which rows each corner uses, and which corners use each row. */
+/* List the rows that each corner uses, and the corners that use each row. STATUS_INPUT for more rows than
+ * 32-bit offsets can address. */
 MUST_CHECK enum status field_averages_build(const struct field_averages_input *input,
                                             struct field_averages *averages, struct error *error);
 
@@ -59,7 +61,7 @@ MUST_CHECK enum status field_averages_copy(const struct field_averages_input *in
                                            int64_t first, int64_t last, struct sparse *matrix,
                                            struct error *error);
 
-/* Drop the fetched rows that the matrix has. */
+/* Free the fetched rows that have been copied into the matrix. */
 MUST_CHECK enum status field_averages_drop_copied(const struct sparse *matrix,
                                                   struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);

@@ -9,11 +9,12 @@
 #include <stdint.h>
 
 struct inverse_factor {
-    struct sparse rows, transposed; /* L, the diagonal last in each row, and L^T, the diagonal first; without
-                                       rows there is none */
-    const struct ranks *ranks;      /* NULL: one process; else all have all of L, */
-    int64_t *first;                 /* and each applies the rows of its own nodes; */
-    struct halo halo;               /* what these rows of L^T need of the other nodes */
+    struct sparse rows,
+        transposed; /* L, diagonal last in each row, and L^T, diagonal first; no rows: no factor */
+    /* Several processes each hold all of L, and apply the rows of their own nodes. */
+    const struct ranks *ranks; /* NULL: one process */
+    int64_t *first;            /* ranks + 1: first row of each process */
+    struct halo halo;          /* values at other nodes that own rows of L^T need */
 };
 
 void inverse_factor_free(struct inverse_factor *factor);
@@ -22,11 +23,11 @@ void inverse_factor_free(struct inverse_factor *factor);
 MUST_CHECK enum status inverse_factor_wanted(const struct inverse_factor *factor, bool **wanted,
                                              struct error *error);
 
-/* y = L x, of several processes where its own rows of L^T need it, and y = L^T x, of vectors of
- * node_count * dim, dim at most 3, not the same. */
+/* y = L x and y = L^T x for vectors of node_count * dim, dim at most 3; x and y are different arrays. With
+ * several processes, L x is known at own nodes and where own rows of L^T need it. */
 void inverse_factor_apply(const struct inverse_factor *factor, int dim, const double *x, double *y);
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x,
                                      double *y);
 
-/* x := L^-T x */
+/* x := L^-T x. */
 void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x);

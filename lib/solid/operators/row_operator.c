@@ -10,7 +10,7 @@ static const struct sparse *transposed_table(const struct row_operator *rows)
     return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
 }
 
-/* Stripes of about as many entries each. */
+/* Divide the columns into stripes with about the same number of entries. */
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
 {
@@ -28,8 +28,8 @@ static enum status cut_columns(struct row_operator *rows, const int32_t *count, 
     return STATUS_OK;
 }
 
-/* Add row r, with columns from `low` to `high`, to a stripe that contains some of them; without arrays only
- * count. */
+/* Add row r, whose columns lie between `low` and `high`, to a stripe. Before the arrays of the stripe are
+ * allocated, only count its rows and entries. */
 static void list_row(const struct sparse *table, int64_t r, int32_t low, int32_t high,
                      struct row_stripe *stripe)
 {
@@ -134,7 +134,8 @@ enum status row_operator_ranges(const struct row_operator *rows, int32_t **range
     return status;
 }
 
-/* Count the entries of the columns into next[], or put them into the rows of `transposed`, behind next[]. */
+/* Count the entries of each column in next[]; once `transposed` is allocated, store them in its rows from
+ * next[] on. */
 static void visit_columns(const struct sparse *table, const int32_t *range, const int32_t *column,
                           int64_t count, const int32_t *slot, int64_t *next, struct sparse *transposed)
 {

@@ -9,30 +9,32 @@
 struct row_stripe {
     int64_t begin, end;
     int64_t row_count;
-    int32_t *row; /* the rows with entries in these columns, ascending: r if it has no others, else -1 - r; */
-    struct sparse cut; /* of each of the latter, in order, the entries in these columns */
+    int32_t *
+        row; /* rows with entries in these columns, ascending: r if all entries of the row are, else -1 - r */
+    struct sparse cut; /* for each row of the second kind, in order: its entries in these columns */
 };
 
 struct row_operator {
-    struct sparse matrix;  /* B */
-    struct sparse columns; /* of several processes: its entries in columns of own nodes. Without rows: the
-                              matrix has them */
+    struct sparse matrix; /* B */
+    struct sparse
+        columns; /* several processes: the entries of B in columns of own nodes; no rows: `matrix` has them */
     int stripe_count;
     struct row_stripe *stripes;
 };
 
-/* Cut the columns from `begin` to before `end`, whose entries matrix or columns have, into stripes for so
- * many threads. STATUS_INPUT with 2^31 columns or more. */
+/* Divide the columns from `begin` to before `end` into one stripe for each of `threads` threads. STATUS_INPUT
+ * for 2^31 columns or more. */
 MUST_CHECK enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                            struct error *error);
 void row_operator_free(struct row_operator *rows);
 
-/* Some columns of B, ascending, as the rows of a matrix. range[2 * rows], of row_operator_ranges;
- * slot[columns]: scratch, which receives the row of each of these. */
+/* Transpose some columns of B: row c of `transposed` is column[c], in ascending order. range[2 * rows] comes
+ * from row_operator_ranges. slot[columns of B] is scratch; it receives slot[column[c]] = c. */
 MUST_CHECK enum status row_operator_transpose(const struct row_operator *rows, const int32_t *range,
                                               const int32_t *column, int64_t count, int32_t *slot,
                                               struct sparse *transposed, struct error *error);
 
-/* (*range)[2 * rows], to be freed: the first and the last column of each row; none: the last is before it. */
+/* (*range)[2 * rows], to be freed: the first and the last column of each row. In an empty row, the last one
+ * is less than the first. */
 MUST_CHECK enum status row_operator_ranges(const struct row_operator *rows, int32_t **range,
                                            struct error *error);

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double least_share = 1e-6; /* of the mean diagonal entry, that nodes without stiffness have */
+static const double least_share =
+    1e-6; /* least diagonal entry by the mean one, for nodes without stiffness */
 
 /* The least number of nodes for a thread, and for a pass over the operator. */
 static const int64_t worthwhile = 1000;
@@ -40,7 +41,7 @@ static enum status keep_row(const struct scalar_row *row, int64_t i, int number,
     return STATUS_OK;
 }
 
-/* The rows of nodes as a piece. */
+/* Make the rows of nodes as one piece. */
 static enum status make_piece(const int32_t *place, int64_t count, int number, struct scalar_row *row,
                               struct lower *lower, struct error *error)
 {
@@ -55,7 +56,7 @@ static enum status make_piece(const int32_t *place, int64_t count, int number, s
     return STATUS_OK;
 }
 
-/* The rows of nodes, as more pieces, each by one thread. */
+/* Make the rows of nodes as further pieces, each by one thread. */
 static enum status make_pieces(const int32_t *place, int64_t count, struct lower *lower, struct error *error)
 {
     enum status status = STATUS_OK;

@@ -8,14 +8,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The points of a contact with a rigid surface. Where facets of the body will touch others is not known; the
- * time step follows what they add. */
+/* The number of points of a contact with a rigid surface. Contacts between facets of the body do not count:
+ * it is not known where they will touch, and the time step takes account of their stiffness. */
 static int64_t points_of(const struct contact *contact)
 {
     return contact->between == NULL ? contact->points->count : 0;
 }
 
-/* The bonds: penalties of the conditions, one for each list of rows, then the points of the contacts. */
+/* The number of bonds: penalties of the conditions, one for each list of rows, then the points of the
+ * contacts. */
 static int64_t count_bonds(const struct solid_system *system)
 {
     int64_t count = system->penalties.list_count;
@@ -42,8 +43,9 @@ static struct average bond_at(const struct solid_system *system, int64_t b, doub
     return average_of_boundary(system->contacts[c].points, b);
 }
 
-/* Field or bond f; (*place)[]: the body's index of each of its nodes, NULL where they are the body's entries.
- * With several processes the body lacks rows that its cells do not use; they are taken from the tables. */
+/* The average of field or bond f; (*place)[]: the body's index of each of its nodes; NULL: they are the
+ * body's already. With several processes the body lacks rows that its cells do not use; these are taken from
+ * the tables. */
 static struct average field_at(const struct scalar_stiffness *stiffness, int64_t f, const int32_t **place)
 {
     const struct body *body = &stiffness->system->body;
@@ -65,7 +67,7 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
     return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
 
-/* The fields that node i is in, and its shares there. */
+/* The fields that contain node i, and its weights there. */
 static struct average fields_of(const struct scalar_stiffness *stiffness, const struct scalar_row *row,
                                 int64_t i)
 {
@@ -148,7 +150,7 @@ void scalar_row_free(struct scalar_row *row)
     *row = (struct scalar_row){0};
 }
 
-/* Volume of a cell times the modulus of pressure waves. */
+/* Volume of a cell times the P-wave modulus. */
 static double wave_modulus(const struct body *body, int64_t q)
 {
     const struct material *material = &body->materials[body->material[q]];
@@ -176,7 +178,7 @@ static void put(const double amount, int64_t f, int64_t i, struct scalar_row *ro
     row->on_field[f] += amount;
 }
 
-/* The forces of a group of cells, the first of which is q, on the fields at their corners. */
+/* Add the forces of a group of cells, the first of which is q, on the fields at their corners. */
 static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
                       int64_t *touched)
 {
@@ -221,7 +223,7 @@ static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64
     }
 }
 
-/* Force on a node of the body's order, listed in row->node. */
+/* Add a force on a node, in the body's order, which is listed in row->node. */
 static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
 {
     struct scalar_sum *at = &row->sum[node];
@@ -232,7 +234,7 @@ static inline void add_to_node(int32_t node, double amount, int64_t i, struct sc
     at->sum += amount;
 }
 
-/* The forces on the nodes up to i. */
+/* Sum the forces on the nodes up to i: the entries of the row. */
 static void spread(const struct scalar_stiffness *stiffness, int64_t touched, int64_t i,
                    struct scalar_row *row)
 {

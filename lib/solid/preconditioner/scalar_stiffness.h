@@ -1,6 +1,4 @@
-/* The scalar stiffness of smoothed cells that inverse_stiffness.h describes, row by row; private to
- * lib/solid.
- */
+/* The rows of the scalar stiffness S of inverse_stiffness.h; private to lib/solid. */
 #pragma once
 
 #include "base/sparse.h"
@@ -9,47 +7,46 @@
 
 struct solid_system;
 
-/* Fields: the rows of the averages over the faces, then the values at the nodes. Bonds: the averages that
- * penalties act on. */
+/* Fields are the rows of the face averages, followed by the values at the nodes. Bonds are the averages on
+ * which penalties act. */
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;
     int32_t *range;         /* of the fields' rows, see row_operator_ranges */
-    struct sparse bonds;    /* a row for each node: the bonds that it is in, and its shares there */
+    struct sparse bonds;    /* a row for each node: the bonds that contain it, and its weights there */
     double *bond_stiffness; /* N/m (2D: N/m2) */
 };
 
-/* A sum at a node, where `row` is 1 + that of the row. */
+/* A sum at a node for the row number `row` - 1. */
 struct scalar_sum {
     double sum;
     int64_t row;
 };
 
-/* For the rows of this process's nodes (body_share.h). */
+/* Prepare for the rows of this process's nodes (body_share.h). */
 MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
                                              struct scalar_stiffness *stiffness, struct error *error);
 void scalar_stiffness_free(struct scalar_stiffness *stiffness);
 
-/* A row, and scratch for it: zeros between calls, where nothing else is said. */
+/* A row, and scratch for it, which is zero between calls unless stated otherwise. */
 struct scalar_row {
-    struct sparse
-        fields;    /* a row for each node that is prepared for: the fields that it is in, and its shares, */
-    int32_t *slot; /* and which row that is, of nodes in the body's order */
+    struct sparse fields; /* a row for each prepared node: the fields that contain it, and its weights */
+    int32_t *slot;        /* of nodes in the body's order: the number of that row */
     int64_t count;
-    int32_t *node; /* its entries, ascending, */
-    double *value; /* and their values, N/m (2D: N/m2) */
+    int32_t *node; /* columns of the entries, ascending, */
+    double *value; /* and values, N/m (2D: N/m2) */
     double *at_field, *on_field;
     struct scalar_sum *sum;          /* of nodes in the body's order */
     int32_t *touched;                /* fields */
-    int32_t *cell_seen, *field_seen; /* 1 + the last row that has seen each */
+    int32_t *cell_seen, *field_seen; /* 1 + the last row that uses each */
 };
 MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                                        struct error *error);
 void scalar_row_free(struct scalar_row *row);
 
-/* Prepare for the rows of so many nodes: place[count] in the body's order, ascending. */
+/* Prepare for the rows of the nodes place[count] in the body's order, ascending. */
 MUST_CHECK enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place,
                                           int64_t count, struct scalar_row *row, struct error *error);
 
-/* Row i, one of these, up to the diagonal, which is its last entry. */
+/* Compute row i of a prepared node, up to the diagonal, which is its last entry. */
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row);

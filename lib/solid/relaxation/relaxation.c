@@ -10,20 +10,23 @@ static const int64_t keep_interval = 50;                /* steps between states 
 static const double usual_rise = 1.5, usual_fall = 0.8; /* of the residual's squared norm in a step */
 static const double unstable_rise = 6.0;                /* over what is usual: a mode is unstable */
 static const int64_t hover_steps = 50;                  /* without half the error: is a mode unstable? */
-/* Bulk modulus by shear modulus that volume changes meet: so few steps as at Poisson's ratio .49. */
+/* Largest ratio of the bulk to the shear modulus in a step, that of Poisson's ratio .49; multipliers, the
+ * nodal pressures held, carry the rest. */
 static const double bulk_limit = 50.0;
-/* An error that stays below this is accepted where contacts act: points that go to and fro between facets
- * leave one. */
+/* With contacts, an error that stays below this is accepted: contact nodes that alternate between two facets
+ * keep it from falling. */
 static const double most_hovering = 1e-3;
-/* Sizes of the body: one that moves farther does not come to rest. */
+/* By the body's size: a body that moves farther has no equilibrium. */
 static const double most_sizes = 10.0;
-static const int64_t calm_steps = 20; /* after that was mended, before the next look */
-/* At every check: the mode is kept, so that it sharpens; while the load grows another may overtake it. */
+static const int64_t calm_steps = 20; /* after relaxation_calm, before the next test */
+/* Of the power iteration at every check. It starts from the mode of the last check, and so converges over the
+ * checks; while the load grows the mode changes faster. */
 static const int iterations = 1, iterations_loading = 2;
 
-/* The residual by its norm r . M^-1 r, the acceleration being in r->scratch: of a stable run it follows the
- * load. A mode whose frequency is beyond the critical step makes it grow by a steady factor from step to
- * step, for many steps before points invert. `usual_residual2` follows the norm by less than that. */
+/* Whether the squared norm of the residual, r . M^-1 r with the acceleration M^-1 r in r->scratch, grows as
+ * in an unstable run. In a stable run the norm follows the load. A mode whose frequency exceeds the stability
+ * limit makes it grow by a constant factor in each step, for many steps before points invert.
+ * `usual_residual2` follows the norm at a bounded rate. */
 static bool residual_grows(struct relaxation *r)
 {
     double now2 = 0.0, usual2 = r->usual_residual2;
@@ -37,8 +40,9 @@ static bool residual_grows(struct relaxation *r)
     return grows;
 }
 
-/* After the evaluation of a step: let multipliers, the nodal pressures held and those of contacts, take over
- * what penalties carry. The next step is a check, whose error counts what that leaves. */
+/* After the evaluation of a step that precedes a check: augment the nodal pressures and the contacts, if the
+ * last augmentation is long enough ago. The error of the check then includes the residual that the
+ * augmentation leaves. */
 static void augment(struct relaxation *r)
 {
     int64_t pause = r->report->steps - r->augmented_step;
@@ -63,7 +67,8 @@ static void augment(struct relaxation *r)
     }
 }
 
-/* One step; with `measure` the acceleration of the projected residual at the old u is kept. */
+/* One step; with `measure` r->acceleration receives that of the projected residual at the old u. False if a
+ * point is inverted. */
 static bool step(struct relaxation *r, double *u, bool measure)
 {
     struct solid_system *system = r->system;
@@ -80,7 +85,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     if (preconditioner_follow(&r->preconditioner, system, measure, r->velocity, r->scratch)) {
         relaxation_note_new_mass(r);
     }
-    if (measure) { /* an impact is no acceleration */
+    if (measure) { /* from the velocity after impacts, which are no acceleration */
         memcpy(r->acceleration, r->velocity, (size_t)r->size * sizeof *r->velocity);
     }
     preconditioner_apply(&r->preconditioner, r->residual, r->scratch);
@@ -90,7 +95,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     for (int64_t i = 0; i < r->size; i++) {
         move[i] = dt * (keep * r->velocity[i] + push * r->scratch[i]);
     }
-    /* The move is projected, not u: round-off relative to u would keep the residual from vanishing. */
+    /* The increment is projected, not u: the round-off of u would bound the residual from below. */
     double started = clock_seconds();
     constraint_project(&r->preconditioner.constraint, r->factor_change, move);
     system->cost.constraints += clock_seconds() - started;
@@ -108,7 +113,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
     return true;
 }
 
-/* After an equilibrium on the way the load goes on: what was known of the held load is no longer so. */
+/* Continue the loading after the equilibrium of a frame: reset what refers to the load that was held. */
 static void let_go(struct relaxation *r)
 {
     r->at_full_load = r->converged_checks = 0;
@@ -118,7 +123,7 @@ static void let_go(struct relaxation *r)
     r->steady_augmentations = 0;
 }
 
-/* Set the load factors, and by how much they change. */
+/* Set the load factors at the share s of the load, and r->factor_change to their changes. */
 static void change_load(struct relaxation *r, double s)
 {
     struct solid_system *system = r->system;
@@ -131,21 +136,22 @@ static void change_load(struct relaxation *r, double s)
     }
 }
 
-/* The load is held, and the error has not halved for long: at a contact that opens and closes a mode beyond
- * the critical step does not grow, but stays. */
+/* Whether the load is held and the error has not halved for long. At a contact that opens and closes, a mode
+ * beyond the stability limit does not grow but persists. */
 static bool hovers(const struct relaxation *r)
 {
     int64_t since = r->best_step > r->calmed_step ? r->best_step : r->calmed_step;
     return r->at_full_load > hover_steps && r->report->steps - since > hover_steps;
 }
 
-/* After a measured step: the error, and what follows the state: mass, time step. False on failure. */
+/* After a measured step: estimate the error, and adapt load, mass, time step and preconditioner to the state.
+ * False on failure. */
 static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u;
     relaxation_estimate(r);
     relaxation_control_load(r);
-    if (r->at_full_load <= CHECK_INTERVAL) { /* take out what round-off has left */
+    if (r->at_full_load <= CHECK_INTERVAL) { /* remove the round-off of the increments' sum */
         constraint_project(&r->preconditioner.constraint, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
@@ -166,14 +172,14 @@ static bool follow(struct relaxation *r, struct error *error)
     return relaxation_update_preconditioner(r, error);
 }
 
-/* Whether multipliers carry what they must, of contacts and of nodal pressures. */
+/* Whether the multipliers of contacts and of nodal pressures have converged. */
 static bool multipliers_hold(struct relaxation *r)
 {
     bool pressures = !body_is_limited(&r->system->body) || r->pressures_lack <= NODAL_PRESSURE_LACK;
     return pressures && relaxation_contacts_hold(r);
 }
 
-/* Whether the run ends at this check, and how. A failure ends it, too. */
+/* Whether the run ends at this check, and its outcome. A failure ends it, too. */
 static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
 {
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
@@ -183,7 +189,8 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
     if (!small) {
         r->converged_checks = 0;
     } else if (augmented || !body_is_limited(&r->system->body)) {
-        r->converged_checks++; /* the error counts what the multipliers have yet to make up for */
+        r->converged_checks++; /* only just after an augmentation the error includes what the multipliers
+                                  still lack */
     }
     *outcome = RELAXATION_STOPPED;
     if (r->converged_checks >= 2 && !r->spectrum_known &&
@@ -261,7 +268,8 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
     return RELAXATION_TOO_MANY_STEPS;
 }
 
-/* From u at rest, brought onto the conditions: without load, or from a start as it is (system_start). */
+/* Start at rest from u, projected onto the conditions, without load or with that of a given start
+ * (system_start). */
 static enum status begin(struct relaxation *r, struct error *error)
 {
     struct solid_system *system = r->system;
@@ -288,7 +296,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     return STATUS_OK;
 }
 
-/* From where another run was. */
+/* Continue from the state of another run. */
 static enum status resume(struct relaxation *r, struct error *error)
 {
     RETURN_IF_ERROR(relaxation_visit(r, r->options->restored, error));

@@ -18,27 +18,27 @@
 struct relaxation_options {
     double tolerance;        /* on the estimated remaining error relative to the displacement, e.g. 1e-6 */
     double time_step_margin; /* share of the critical step, e.g. .9 */
-    int64_t ramp_steps;      /* steps over which the load is applied; 0: chosen by the largest displacement */
-    int64_t most_steps;      /* 0: 1e6 */
-    int64_t frames; /* states of equilibrium to give, evenly over the ramp: there the load is held until
-                       the error is below the tolerance; the last one is the result */
-    frame_function *frame; /* NULL: none. Frame 0 is u as it comes. When called, the system's last evaluation
-                              is at the frame's u, and the caller's row_force holds the forces there */
+    int64_t ramp_steps; /* steps over which the load is applied; 0: chosen from the largest displacement */
+    int64_t most_steps; /* 0: 1e6 */
+    int64_t frames; /* equilibria to report, evenly over the ramp: at each the load is held until the error is
+                       below the tolerance; the last one is the result */
+    frame_function *frame; /* NULL: none. Frame 0 is the initial u. In a call, the system's last evaluation is
+                              at the frame's u, and the caller's row_force holds the forces there */
     progress_function *progress;
     void *context;                            /* of frame and progress */
     const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in
-                                                 which this became other than 0 */
-    const bool *folded; /* unless NULL: whether the state that progress has seen last is folded. One that
-                           stays so is no result: there is less patience with an error that does not fall */
-    const struct state *restored; /* NULL: from the begin; else what was kept of a run of the same system and
-                                     options (see struct progress), to go on from */
+                                                 which this becomes nonzero */
+    const bool *folded; /* unless NULL: whether the state at the last call of progress is folded. Then a run
+                           whose error does not fall ends after fewer steps, as a folded state is no result */
+    const struct state *restored; /* NULL: start anew; else the state of a run of the same system and options
+                                     (see struct progress), from which to continue */
 };
 
 enum relaxation_outcome {
-    RELAXATION_CONVERGED, /* report.error above the tolerance: as far as round-off admits */
+    RELAXATION_CONVERGED, /* report.error may exceed the tolerance where round-off or contacts prevent less */
     RELAXATION_TOO_MANY_STEPS,
-    RELAXATION_STALLED,  /* the error no longer falls, well above round-off */
-    RELAXATION_AWAY,     /* a node is many sizes of the body farther than what is prescribed takes it */
+    RELAXATION_STALLED, /* the error no longer falls, well above round-off */
+    RELAXATION_AWAY, /* a node has moved by many sizes of the body, and farther than any prescribed motion */
     RELAXATION_INVERTED, /* J <= 0 or not a number at a point */
     RELAXATION_STOPPED   /* by the progress function */
 };
@@ -46,8 +46,8 @@ enum relaxation_outcome {
 struct relaxation_report {
     enum relaxation_outcome outcome;
     int64_t steps;
-    int64_t ramp_steps;    /* over which the load was to be applied, */
-    int64_t loading_steps; /* and in which it was, backtracks included */
+    int64_t ramp_steps;    /* planned number of steps of loading, */
+    int64_t loading_steps; /* and the actual one, backtracks included */
     int64_t force_evaluations;
     double error;             /* estimated remaining error, relative to the largest displacement of the run:
                                * the larger of those on the whole and at the worst node */
@@ -55,7 +55,7 @@ struct relaxation_report {
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
     double penetration, penetration_allowed; /* of contacts, m: see contact_miss */
-    double load;            /* of which u is the state, 0..1; RELAXATION_INVERTED: a state before, at rest */
+    double load;            /* share of the load at u, 0..1; RELAXATION_INVERTED: u is an earlier state */
     int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */
     double least_jacobian;
 };

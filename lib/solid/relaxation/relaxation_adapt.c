@@ -1,4 +1,4 @@
-/* Load, mass, time step and contacts that follow a relaxation. */
+/* Load, mass, time step and contacts adapted to the state of a relaxation. */
 #include "base/box.h"
 #include "base/memory.h"
 #include "solid/relaxation/relaxation_private.h"
@@ -6,29 +6,29 @@
 #include <math.h>
 #include <string.h>
 
-/* Steps in which the load moves something by as much as a cell, or as the body is long; and at least, of a
- * run from rest and of one that begins near its result. */
+/* Steps of loading for a prescribed motion by the spacing of the nodes, and by the body's size; the least
+ * number for a run from rest, and for one with a given start. */
 static const double steps_per_spacing = 20.0, steps_per_size = 400.0, least_ramp = 75.0,
                     least_of_start = 20.0;
-/* The preconditioner is measured anew when something moved by so much of the body's thickness, or the largest
- * frequency rose by that factor: as a body turns, what was soft becomes stiff, the more the slenderer it is.
- */
+/* The coarse space is measured anew when a node has moved by this multiple of the body's thickness, or the
+ * largest frequency has risen by this factor. Soft directions turn with the body and become stiff, the more
+ * so the slenderer the body is. */
 static const double most_moved = 1.4, most_raised = 1.25;
-/* The load waits when something moves by more than this part of the body's size in a step, a little more than
- * a ramp makes. */
+/* The rate of loading is reduced when a node moves by more than this share of the body's size in a step, a
+ * little more than prescribed motions do. */
 static const double most_move_per_step = 1.0 / 320.0;
-/* Lowest eigenvalue by what so few iterations find, which is up to some seven times as much. */
+/* First guess of the lowest eigenvalue, by the result of FIRST_ITERATIONS, which is up to about seven times
+ * too large. */
 static const double first_low2 = 0.15;
-static const double least_low2 =
-    1e-4; /* first guess of the lowest eigenvalue by the largest, if it is negative */
-static const int64_t most_backtracks = 8;                        /* from inverted points */
+static const double least_low2 = 1e-4;    /* the same by the largest eigenvalue, if that result is negative */
+static const int64_t most_backtracks = 8; /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0; /* between checks of the mass */
 
-/* What contacts may give way by at an equilibrium: by the largest motion; and by the work that their forces
- * would do along it, by the energy of the body: so many tolerances, or that. And augmentations until they do.
- */
+/* Limits of the penetration at an equilibrium: of its depth, by the largest motion; and of the work of the
+ * contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. Then the
+ * largest number of augmentations at a load. */
 static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
 static const int64_t most_augmentations = 100;
 
@@ -58,7 +58,7 @@ void relaxation_control_load(struct relaxation *r)
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
-/* Of the critical step, in use. */
+/* The share of the critical step that is used. */
 static double step_share(const struct relaxation *r)
 {
     return r->step_safety * r->options->time_step_margin;
@@ -69,7 +69,7 @@ void relaxation_update_time_step(struct relaxation *r, const double *u, int iter
     double frequency = system_largest_frequency(r->system, &r->preconditioner, u, r->residual, iterations,
                                                 r->mode, r->scratch);
     r->report->force_evaluations += iterations;
-    /* The estimate is from below and wanders: follow rises at once, falls slowly. */
+    /* The power iteration estimates from below and fluctuates: follow a rise at once, a fall slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
     r->time_step = step_share(r) * 2.0 / r->frequency;
 }
@@ -83,8 +83,9 @@ void relaxation_follow_time_step(struct relaxation *r, const double *u, int iter
     }
 }
 
-/* Whether the mass is to be set anew. The next look is when the stiffness, changing on as it did, would have
- * come half the way to that: a look costs as much as some evaluations. */
+/* Whether the mass is to be set anew, at a change above 1. Otherwise schedule the next check for when the
+ * stiffness, at its present rate, has gone half the remaining way: a check costs as much as several
+ * evaluations. */
 static bool note_mass_change(struct relaxation *r, double change)
 {
     double a_check = fabs(change - r->mass_change) / (double)(r->checks - r->last_mass_check);
@@ -149,7 +150,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     return STATUS_OK;
 }
 
-/* *older becomes what *newer was, and that the state now. */
+/* Copy *newer to *older, and the present state to *newer. */
 static void keep(const struct relaxation *r, struct kept_state *newer, struct kept_state *older)
 {
     double *spare = older->u;
@@ -170,7 +171,7 @@ void relaxation_keep_check(struct relaxation *r)
     keep(r, &r->check_now, &r->check_before);
 }
 
-/* Go back to a state that was kept. */
+/* Return to a kept state. */
 static void go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
@@ -191,7 +192,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     r->load_rate = r->top_rate;
     go_back(r, &r->older);
     memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
-    for (int i = 0; i < 2; i++) { /* what was kept since that state leads to the inversion */
+    for (int i = 0; i < 2; i++) { /* the states kept since then lead to the inversion */
         relaxation_keep_state(r);
         relaxation_keep_check(r);
     }
@@ -200,7 +201,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     if (!(system_residual(r->system, r->u, r->residual).least_jacobian > 0.0)) {
         return false;
     }
-    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u); /* the way back is no move of the body */
+    memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u); /* the return is no increment of the motion */
     memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
     system_relaxation_mass(r->system, false, r->scratch);
     r->mass_change = 0.0;
@@ -212,7 +213,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     return r->failure == STATUS_OK;
 }
 
-/* Whether the mode that the acceleration shows is beyond the critical step. */
+/* Whether the frequency of the acceleration's mode exceeds the stability limit of the time step. */
 static bool is_unstable(struct relaxation *r, const double *acceleration)
 {
     memcpy(r->mode, acceleration, (size_t)r->size * sizeof *r->mode);
@@ -245,8 +246,8 @@ static double penetration_allowed(const struct relaxation *r)
     return penetration_share * r->largest_move;
 }
 
-/* Whether contacts give way by more than displacements or forces allow. What is within the tolerance of
- * displacements cannot be told from their error. */
+/* Whether the penetration exceeds its limits. A penetration within the tolerance of the displacements cannot
+ * be distinguished from their error. */
 static bool give_way(const struct relaxation *r)
 {
     double miss = system_contact_miss(r->system), tolerance = r->options->tolerance;

@@ -1,4 +1,4 @@
-/* What the parts of the relaxation share; see relaxation.h. */
+/* The state of a relaxation and the functions of its parts; see relaxation.h. */
 #pragma once
 
 #include "solid/preconditioner/frequency.h"
@@ -6,16 +6,16 @@
 #include "solid/relaxation/relaxation.h"
 
 enum { CHECK_INTERVAL = 10 };   /* steps between estimates */
-enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, where the preconditioner was measured */
+enum { FIRST_ITERATIONS = 30 }; /* of Lanczos, after the coarse space was measured */
 enum { WINDOWS = 8 };           /* recent Rayleigh quotients that the error estimate uses */
 
-/* Between augmentations, of contacts and of nodal pressures: damping times time. Modes that swing are stable
- * above 2 ln 3. */
+/* Least time between augmentations, of contacts and of nodal pressures, times the damping. Oscillating modes
+ * are stable above 2 ln 3. */
 #define RELAXATION_PAUSE 3.0
 
-/* A state to go back to. */
+/* A state to which the run may return. */
 struct kept_state {
-    double *u; /* and behind it the velocity */
+    double *u; /* followed by the velocity */
     double load;
 };
 
@@ -35,39 +35,40 @@ struct relaxation {
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
     double low2;                          /* current estimate of the lowest frequency, squared */
-    double spectrum2; /* what it may not be above: found at the load that is held; before, INFINITY */
+    double spectrum2; /* upper bound of low2, computed at the load that is held; INFINITY until then */
     double window[WINDOWS];
     int64_t checks;
-    double best_error; /* at the load that is held, since best_step: not yet half of it */
+    double best_error; /* at the load that is held, reached in best_step; the error has not halved since */
     int64_t best_step;
     double spacing;                           /* mean, of the nodes, m */
     double body_size;                         /* diagonal of the nodes' box, m */
-    double thickness;                         /* mean, across that, m */
-    double measured_frequency, measured_move; /* the largest ones, when the preconditioner was measured */
-    double usual_residual2;                   /* what the residual's norm, squared, is compared with */
-    bool unstable;                            /* it grew far above that in the last step */
-    int64_t calmed_step;                      /* the last step at which that was mended */
-    int64_t back_step;                        /* the last step that went back to a kept state */
-    int64_t augmented_step;                   /* when multipliers took over last */
+    double thickness;                         /* mean, across that diagonal, m */
+    double measured_frequency, measured_move; /* the largest ones when the coarse space was measured */
+    double usual_residual2;                   /* the residual's squared norm is compared with it */
+    bool unstable;                            /* it rose far above that in the last step */
+    int64_t calmed_step;                      /* of the last relaxation_calm */
+    int64_t back_step;                        /* of the last return to a kept state */
+    int64_t augmented_step;                   /* of the last augmentation */
     int64_t augmentations;                    /* of contacts at the load that is held */
-    int64_t steady_augmentations;             /* of pressures, all under the load that is held */
-    double pressures_lack; /* part of the nodal pressures that is still to come; see body_augment */
+    int64_t steady_augmentations;             /* consecutive ones of pressures at the load that is held */
+    double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
     enum status failure;
-    double load, load_rate;      /* steps of the ramp applied so far, and per step, at most top_rate */
-    double top_rate;             /* 1 until an inversion */
-    double moved;                /* of a node between the last two checks, m */
+    double load,
+        load_rate;   /* applied so far, in steps of the ramp; and its rate per step, at most top_rate */
+    double top_rate; /* 1 until an inversion */
+    double moved;    /* of a node between the last two checks, m */
     double largest_displacement; /* so far, in the norm of the mass */
     double largest_move;         /* so far, of a node, m */
-    bool spectrum_known;         /* spectrum2 is of the mass and the load as they are */
+    bool spectrum_known;         /* spectrum2 belongs to the present mass and load */
     double step_safety;          /* on the time step: 1 until an inversion */
     int64_t backtracks;
-    struct kept_state newer, older;            /* every so often, */
-    struct kept_state check_now, check_before; /* at the last two checks */
-    int64_t frames;                            /* given so far, but for the first, 0 */
+    struct kept_state newer, older;            /* the last two of relaxation_keep_state, */
+    struct kept_state check_now, check_before; /* and those of the last two checks */
+    int64_t frames;                            /* reported so far, without frame 0 */
     int64_t
-        at_full_load; /* steps since the load that is held, that of a frame or the full one, was reached */
+        at_full_load; /* steps at the load that is held, that of a frame or the full one; 0 while it grows */
     int64_t converged_checks; /* checks in a row with a small error */
-    double mass_change;       /* of the stiffness since the mass was set: 1 where it is set anew */
+    double mass_change; /* of the stiffness since the mass was set, by the change at which it is set anew */
     int64_t last_mass_check, next_mass_check; /* numbers of the last check of the mass and of the next */
 };
 
@@ -77,26 +78,28 @@ struct relaxation {
  * error. `before` holds the u at which the acceleration was measured. */
 void relaxation_estimate(struct relaxation *r);
 
-/* Find the lowest mode at u, where the residual is known: while fast modes die out a slow one does not show
- * in the increments. Takes the damping from it. False on failure. */
+/* Compute the lowest mode at u, where the residual is known, and set the damping by it. The increments do not
+ * show a slow mode while fast modes decay. False on failure. */
 bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct error *error);
 
-/* The spectrum at u, where the residual is known, by at most so many evaluations. False on failure. */
+/* The bounds of the spectrum at u, where the residual is known, by at most most_iterations evaluations. False
+ * on failure. */
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
                               struct spectrum *spectrum, struct error *error);
 
-/* The lowest eigenvalue is at most this. */
+/* Lower the estimate of the lowest eigenvalue to low2 if it is larger, and the damping with it. */
 void relaxation_damp_at_most(struct relaxation *r, double low2);
 
-/* Whether the error has not halved for so many periods of the lowest mode and steps. At the full load only.
- */
+/* Whether the load is held and the error has not halved for at least this many periods of the lowest mode and
+ * this many steps. */
 bool relaxation_stays(const struct relaxation *r, double periods, int64_t steps);
 
-/* The estimate that round-off alone makes: forces are known to some units in the last place of a cell's
- * stiffness times its size, which the mass is, and most of that is no slow mode. */
+/* The error estimate that round-off alone causes. The round-off of forces is some units in the last place of
+ * a cell's stiffness times its size. The mass is in proportion to that stiffness, and most of this noise is
+ * orthogonal to slow modes. */
 double relaxation_round_off(const struct relaxation *r);
 
-/* Keep the least error at the full load in view. */
+/* Update best_error and best_step. */
 void relaxation_note_best(struct relaxation *r);
 
 /* ---- relaxation_adapt.c: load, mass, time step and contacts that follow the run ---- */
@@ -107,62 +110,62 @@ double relaxation_body_size(const struct solid_system *system);
 /* Width of a bar that is as long as the box's diagonal and has the body's volume. */
 double relaxation_thickness(const struct solid_system *system);
 
-/* Steps to apply the load in: slow enough that the whole is strained by less than half a percent a step, so
- * that what follows the state can do so, and cells beside what moves by a few percent at most before the
- * front of the load, which passes about a cell in a step, takes the next ones along. Where that is too fast
- * for a cell it is inverted, and the load goes on slower (relaxation_step_back). */
+/* The number of steps of loading. In a step the body as a whole is strained by less than half a percent, so
+ * that mass and time step can follow the state. Cells beside a moving boundary are strained by a few percent
+ * at most before the front of the load, which passes about one cell in a step, reaches the next ones. If a
+ * cell is inverted nevertheless, the loading continues more slowly (relaxation_step_back). */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
 
-/* Let the load go on only as fast as the body can follow: forces may move it as far as prescribed
- * displacements never do in a step. */
+/* Reduce the rate of loading while the body moves farther in a step than prescribed displacements would move
+ * it: forces may. */
 void relaxation_control_load(struct relaxation *r);
 
-/* Take the critical step at u from the largest frequency. */
+/* Set the time step by the largest frequency at u, from this many power iterations. */
 void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
 
-/* The same at a check: while the load grows the frequency is taken to rise until the next check as it did
+/* The same at a check. While the load grows, the frequency is assumed to rise until the next check as much as
  * since the last one. */
 void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations);
 
-/* Let the mass follow the stiffness where the body has stiffened or softened since it was last set, so that
- * the critical step holds through large strains; and say when to look again. False on failure. */
+/* Set the mass anew if the body has stiffened or softened enough since it was last set, so that the critical
+ * step holds through large strains; and schedule the next such check. False on failure. */
 bool relaxation_update_mass(struct relaxation *r, struct error *error);
 
-/* What was known of the lowest mode was of another mass. */
+/* Discard what was computed of the lowest mode with the mass before. */
 void relaxation_note_new_mass(struct relaxation *r);
 
-/* Measure the preconditioner anew where the body has changed since that was done. False on failure. */
+/* Measure the coarse space anew if the body has changed enough since the last time. False on failure. */
 bool relaxation_update_preconditioner(struct relaxation *r, struct error *error);
 
-/* Measure the stiffness along the coarse fields of the preconditioner at the state where the residual is
- * known, and take the time step from it. */
+/* Measure the stiffness along the coarse fields of the preconditioner at r->residual_at, and set the time
+ * step anew. */
 MUST_CHECK enum status relaxation_measure_preconditioner(struct relaxation *r, struct error *error);
 
-/* At a check: keep the state. */
+/* Keep the state of a check. */
 void relaxation_keep_check(struct relaxation *r);
 
-/* Keep the state every so often; the older of two is safely before any instability that shows. */
+/* Keep a state. Of two kept ones the older precedes any instability that has become visible. */
 void relaxation_keep_state(struct relaxation *r);
 
-/* An inverted point: go back to a state before it, at rest, and go on with smaller steps and a slower load.
- * False when that has been tried often enough - the deformation itself inverts - and on failure. */
+/* After an inverted point: return to an earlier state, at rest, and continue with smaller steps and a slower
+ * load. False after too many attempts, as the deformation itself inverts points, and on failure. */
 bool relaxation_step_back(struct relaxation *r, struct error *error);
 
-/* Whether multipliers of contacts have to follow: always while the load grows, as left to the end they would
- * change at once; at the load that is held where contacts give way by more than they may, for displacements
- * or for forces. */
+/* Whether the contacts need an augmentation. While the load grows they always do, as otherwise the
+ * multipliers would change at once at the end. At a held load they do while the penetration, or the work of
+ * the contact forces along it, exceeds its limit. */
 bool relaxation_contacts_lack(const struct relaxation *r);
 
-/* Whether a converged state may stand; notes what contacts penetrate. */
+/* Whether the contacts admit a converged state; reports their penetration. */
 bool relaxation_contacts_hold(struct relaxation *r);
 
-/* A mode may be unstable, which the acceleration shows. If it is: go on from the check before the last, at
- * rest, with the time step of that mode. */
+/* If the mode of the acceleration is unstable at the present time step, return to the state of the check
+ * before the last and set the time step by that mode. */
 void relaxation_calm(struct relaxation *r, const double *acceleration);
 
-/* ---- relaxation_report.c: what the caller is told on the way ---- */
+/* ---- relaxation_report.c: progress and frames ---- */
 
-/* The share of the load at which u is. A run that begins near its result has all of it from its first step
+/* The share of the load at u. A run with a given start (system_start) has the whole load from its first step
  * on. */
 double relaxation_load_share(const struct relaxation *r);
 
@@ -177,18 +180,17 @@ MUST_CHECK enum status relaxation_row_forces(struct relaxation *r, const double 
 /* Whether the caller asks for frames. */
 bool relaxation_gives_frames(const struct relaxation *r);
 
-/* The load at which the next equilibrium is sought, in steps of the ramp: that of the next frame, at last the
- * whole load. */
+/* The load of the next equilibrium, in steps of the ramp: that of the next frame, or the whole load. */
 double relaxation_load_to_hold(const struct relaxation *r);
 
-/* Give u, which is in equilibrium, as the next frame. False on failure. */
+/* Report u, which is in equilibrium, as the next frame. False on failure. */
 bool relaxation_give_frame(struct relaxation *r, struct error *error);
 
-/* ---- relaxation_state.c: memory, and what a checkpoint holds ---- */
+/* ---- relaxation_state.c: memory and checkpoints ---- */
 
 MUST_CHECK enum status relaxation_allocate(struct relaxation *r, struct error *error);
 
 void relaxation_release(struct relaxation *r);
 
-/* What the next step needs of those before: see base/state.h. */
+/* Visit all that the next step needs from the steps before; see base/state.h. */
 MUST_CHECK enum status relaxation_visit(void *run, const struct state *state, struct error *error);

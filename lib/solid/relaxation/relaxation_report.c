@@ -1,4 +1,4 @@
-/* What a relaxation tells its caller: progress, frames, and the forces of the conditions. */
+/* Progress and frames of a relaxation, and the forces of the conditions. */
 #include "solid/relaxation/relaxation_private.h"
 
 #include <math.h>

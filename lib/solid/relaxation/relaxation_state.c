@@ -1,4 +1,4 @@
-/* The memory of a relaxation, and what a checkpoint holds of it. */
+/* Memory and checkpoints of a relaxation. */
 #include "solid/relaxation/relaxation_private.h"
 
 #include "base/memory.h"

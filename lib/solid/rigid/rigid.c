@@ -113,7 +113,7 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
             return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
                         (long long)(f + 1));
         }
-        normalise(dim, normal);
+        vector_normalise(dim, normal);
         for (int a = 0; a < dim && flip; a++) {
             normal[a] = -normal[a];
         }

@@ -1,5 +1,4 @@
-/* A rigid surface: line segments in 2D, triangles in 3D, with a side on which the body lies. Facets only, no
- * nodes of the body. */
+/* A rigid surface: line segments in 2D, triangles in 3D. The body lies on one side of it. */
 #pragma once
 
 #include "base/status.h"
@@ -25,17 +24,17 @@ struct rigid_surface {
     double *edge_normal; /* 3D: facet_count * 3 * 3, mean of the facets at the edge from corner k to k + 1 */
     bool *is_rim;        /* vertex_count: 2D an end of a curve, 3D on an edge without neighbour */
     bool *edge_is_rim;   /* 3D: facet_count * 3, no neighbour */
-    double *turn;        /* vertex_count: largest angle of a facet there with the mean normal, rad */
+    double *turn;        /* vertex_count: largest angle between a facet there and the mean normal, rad */
     struct rigid_branch *branch; /* branch_count: a tree of boxes, its root first */
     int64_t branch_count;
-    int32_t *in_order; /* facet_count: the facets as the branches have them */
+    int32_t *in_order; /* facet_count: the facets in the order of the branches */
 };
 
-/* Build from corner coordinates: corners[facet_count * dim * dim], m. Each facet's normal is (dy, -dx) of its
- * direction in 2D - to the right, walking along it - and right-handed in 3D; `flip` turns all of them. After
- * that they must point to the body's side. Corners closer than 1e-9 of the surface's extent are one vertex.
- * STATUS_INPUT for no facets, facets of no size, coordinates that are not finite, facets that stand twice,
- * and two facets that meet but disagree on the side. */
+/* Build from corner coordinates: corners[facet_count * dim * dim], m. The normal of a facet is (dy, -dx) in
+ * 2D, to the right of its direction, and right-handed in 3D; `flip` reverses all normals. They must then
+ * point to the body's side. Corners closer than 1e-9 of the surface's extent are one vertex. STATUS_INPUT for
+ * no facets, degenerate or repeated facets, coordinates that are not finite, and two facets that meet but
+ * disagree on the side. */
 MUST_CHECK enum status rigid_build(int dim, int64_t facet_count, const double *corners, bool flip,
                                    struct rigid_surface *surface, struct error *error);
 void rigid_free(struct rigid_surface *surface);
@@ -44,28 +43,28 @@ void rigid_free(struct rigid_surface *surface);
 struct rigid_contact {
     bool found;       /* false: nothing within reach, or x lies beyond an open rim, where the surface ends */
     double distance;  /* how far x may move before contact can begin: the unsigned distance to the closest
-                         point; beyond a rim, that to being over the facets there or level with them,
-                         whichever is less; `reach` when nothing is within */
+                     point; beyond a rim, the lesser of the distances to the region above the facets there and
+                     to their plane; `reach` if nothing is within */
     bool on_edge;     /* the closest point is on an edge or a vertex */
     double gap;       /* signed distance: positive on the body's side, m */
     double normal[3]; /* unit, the direction in which the gap grows */
-    int64_t facet;    /* that of the closest point, */
-    double weight[3]; /* and the weights of its corners there, sum 1 */
+    int64_t facet;    /* facet of the closest point, */
+    double weight[3]; /* and barycentric coordinates of the point */
 };
 
-/* A filter of the facets that may be the closest one. `considers` is called for facets that may be within
- * reach, then `admits` for a facet f whose closest point to x is x - away. */
+/* A filter of facets. `considers` is called for facets that may be within reach, then `admits` for a facet f
+ * whose closest point to x is x - away. */
 struct rigid_filter {
     bool (*considers)(void *context, int64_t f);
     bool (*admits)(void *context, int64_t f, const double *away);
     void *context;
 };
 
-/* The sign is that of the pseudo-normal of the closest facet, edge or vertex (Baerentzen and Aanaes, IEEE
- * Trans. Vis. Comput. Graph. 11, 2005), right at convex and concave corners alike.
+/* The pseudo-normal of the closest facet, edge or vertex gives the sign of the gap, at convex and concave
+ * corners alike (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
  *
- * From behind, beyond a crease that is concave as the body sees it, the closest point and `normal` are
- * continuous functions of x; the gap is minus the distance to a set that is convex there. */
+ * Behind a crease that is concave on the body's side, the closest point and `normal` are continuous functions
+ * of x; the gap there is minus the distance to a convex set. */
 struct rigid_contact rigid_closest(const struct rigid_surface *surface, const double *x, double reach);
 
 /* The same among the facets that the filter admits. */

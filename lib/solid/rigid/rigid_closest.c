@@ -13,7 +13,7 @@ static const double same = 1e-12;
 /* Offsets and distances below this part of the extent are round-off. */
 static const double round_off = 1e-12;
 
-enum { MOST_DEPTH = 64 }; /* of the tree: halves of at most INT32_MAX facets */
+enum { MOST_DEPTH = 64 }; /* of the tree: INT32_MAX facets are halved 31 times */
 
 struct nearest {
     int64_t facet;    /* -1: none yet */
@@ -42,7 +42,7 @@ static enum feature edge_feature(int k, double s, double weight[3])
     return (enum feature)(ON_EDGE_0 + k);
 }
 
-/* The closest point by the weights of its corners, which must come as zeros. */
+/* weight[3], zeros: becomes the barycentric coordinates of the closest point. */
 static enum feature closest_on_segment(const double *a, const double *b, const double *x, double weight[3])
 {
     double ab[2], ax[2];
@@ -121,7 +121,7 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     }
     here.feature = dim == 2 ? closest_on_segment(a, b, x, weight)
                             : closest_on_triangle(a, b, corner_of(surface, f, 2), x, weight);
-    /* From the first corner, so that an offset of the origin costs nothing. */
+    /* Relative to the first corner, so that an offset of the origin costs no digits. */
     memcpy(here.point, a, (size_t)dim * sizeof *a);
     for (int k = 1; k < dim; k++) {
         double side[3] = {0.0, 0.0, 0.0};
@@ -178,7 +178,7 @@ static struct nearest find_nearest(const struct rigid_surface *surface, const do
     return nearest;
 }
 
-/* The normal that decides on the sign at the nearest point. */
+/* The normal that decides the sign at the nearest point. */
 static const double *pseudo_normal(const struct rigid_surface *surface, const struct nearest *nearest)
 {
     int dim = surface->dim;
@@ -194,14 +194,14 @@ static const double *pseudo_normal(const struct rigid_surface *surface, const st
     return vector_dot(dim, joint, joint) > 0.5 ? joint : normal;
 }
 
-/* For a nearest point on a rim: how far x is beyond the rim, and its least distance from being over the
- * surface or level with it. */
+/* For a nearest point on a rim: how far x is beyond the rim, and its least distance from the region above the
+ * surface and from the surface's plane. */
 static double beyond_rim(const struct rigid_surface *surface, const struct nearest *nearest,
                          const double *away, double *least_distance)
 {
     int dim = surface->dim;
-    /* At a corner of triangles the plane of the mean normal, from which those of the facets there turn by no
-     * more than an angle; at the end of a segment and on an edge the plane of the facet. */
+    /* At a corner of triangles, use the plane of the mean normal; the planes of the facets turn from it by at
+     * most `turn`. At the end of a segment and on an edge, use the plane of the facet. */
     bool corner = dim == 3 && nearest->feature < ON_EDGE_0;
     const double *normal = corner ? pseudo_normal(surface, nearest) : surface->normal + nearest->facet * dim;
     double aside[3] = {away[0], away[1], away[2]}, height = vector_dot(dim, away, normal);
@@ -249,7 +249,7 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     memcpy(contact.weight, nearest.weight, sizeof contact.weight);
     contact.on_edge = nearest.feature != ON_FACE;
     if (nearest.feature == ON_FACE) {
-        /* From a corner: free of the cancellation in the distance to the point on the face. */
+        /* Measured from a corner, the gap has no cancellation. */
         vector_subtract(dim, x, corner_of(surface, nearest.facet, 0), away);
         contact.gap = vector_dot(dim, away, normal);
         contact.distance = fabs(contact.gap);

@@ -1,6 +1,6 @@
-/* The motion of a rigid surface: a rotation about an axis that stays where it is, then a translation, each
- * scaled by a load curve. The rotation is finite and exact. The surface itself is not changed: a point is
- * transformed to the frame in which the surface is at rest, and results are transformed back. */
+/* The motion of a rigid surface: a finite rotation about a fixed axis, then a translation, each scaled by a
+ * load curve. The surface itself is not changed: a point is transformed to the frame in which the surface is
+ * at rest, and results are transformed back. */
 #pragma once
 
 #include "base/status.h"
@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 struct rigid_motion {
-    bool moves;            /* false: the rest means nothing, the surface stays */
+    bool moves;            /* false: the surface stays, and the rest is not used */
     double translation[3]; /* at factor 1, m */
     double point[3];       /* on the axis of rotation, m */
     double axis[3];        /* of rotation, unit; in 2D (0, 0, 1) */
@@ -17,8 +17,8 @@ struct rigid_motion {
     int32_t translation_curve, rotation_curve; /* load curves that scale them */
 };
 
-/* Where a surface is: x = point + R (X - point) + shift for a place X of the surface at rest. Only the first
- * dim components and, of R, the first dim rows and columns count. */
+/* The placement of a surface: x = point + R (X - point) + shift for a place X of the surface at rest. Only
+ * the first dim components, rows and columns are used. */
 struct rigid_place {
     bool moved; /* false: as at rest */
     double R[3][3];
@@ -35,7 +35,7 @@ struct rigid_place rigid_place_at(const struct rigid_motion *motion, const doubl
 void rigid_place_to_rest(const struct rigid_place *place, int dim, const double *x, double *X);
 void rigid_place_from_rest(const struct rigid_place *place, int dim, const double *X, double *x);
 
-/* A direction at rest, turned with the surface; in place. */
+/* Turn a direction at rest with the surface, in place. */
 void rigid_place_turn(const struct rigid_place *place, int dim, double *direction);
 
 /* An upper bound of the length of the path of a point of the surface, at X at rest, as the factors go from 0

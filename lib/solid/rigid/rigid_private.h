@@ -1,4 +1,4 @@
-/* The parts of building a rigid surface; private to lib/solid. */
+/* Steps of building a rigid surface; private to lib/solid. */
 #pragma once
 
 #include "base/box.h"
@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Fill vertex_normal, edge_normal, turn and the rims of a surface whose facets and normals are
- * made. STATUS_INPUT where two facets disagree on the side. */
+/* Set vertex_normal, edge_normal, turn and the rims from facets and normals. STATUS_INPUT where two facets
+ * disagree on the side. */
 MUST_CHECK enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error);
 
 /* An edge of a triangle; it goes from corner k to k + 1. */
@@ -19,20 +19,12 @@ struct half_edge {
     int64_t slot;      /* facet * 3 + k */
 };
 
-/* 3D: edges[facet_count * 3] of a surface, those on one edge together. */
+/* 3D: edges[facet_count * 3] = the half-edges of a surface, sorted so that those on one edge are
+ * consecutive. */
 void rigid_list_edges(const struct rigid_surface *surface, struct half_edge *edges);
 
 /* The end of the run of half-edges on one edge that begins at `first`. */
 int64_t rigid_edge_end(const struct half_edge *edges, int64_t first, int64_t count);
 
-/* Fill branch, branch_count and in_order. */
+/* Set branch, branch_count and in_order. */
 MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);
-
-/* Make v unit; a zero vector stays zero. */
-static inline void normalise(int dim, double *v)
-{
-    double sum = vector_dot(dim, v, v);
-    for (int a = 0; a < dim && sum > 0.0; a++) {
-        v[a] /= sqrt(sum);
-    }
-}

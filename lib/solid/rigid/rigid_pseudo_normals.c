@@ -14,14 +14,14 @@ static enum status fail_sides(int64_t one, int64_t other, struct error *error)
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* The error of a facet that stands twice: it would have twice the weight in normals, and hide rims. */
+/* The error of a repeated facet: it would have twice the weight in normals, and hide rims. */
 static enum status fail_twice(int64_t one, int64_t other, struct error *error)
 {
     return fail(error, STATUS_INPUT, "rigid surface: facets %lld and %lld are the same: remove one",
                 (long long)(one + 1), (long long)(other + 1));
 }
 
-/* 2D: no segment stands twice. */
+/* 2D: check that no segment is repeated. */
 static enum status check_segments(const struct rigid_surface *surface, struct error *error)
 {
     SCRATCH struct placed *segments = NULL; /* each by its two vertices as one number */
@@ -125,7 +125,7 @@ static enum status join_edge(struct rigid_surface *surface, const struct half_ed
     for (int64_t i = 0; i < count; i++) {
         add_scaled(3, 1.0, surface->normal + edges[i].slot / 3 * 3, normal);
     }
-    normalise(3, normal);
+    vector_normalise(3, normal);
     for (int64_t i = 0; i < count; i++) {
         memcpy(surface->edge_normal + edges[i].slot * 3, normal, sizeof normal);
         surface->edge_is_rim[edges[i].slot] = count == 1;
@@ -181,7 +181,7 @@ enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct erro
         }
     }
     for (int64_t v = 0; v < surface->vertex_count; v++) {
-        normalise(surface->dim, surface->vertex_normal + v * surface->dim);
+        vector_normalise(surface->dim, surface->vertex_normal + v * surface->dim);
     }
     for (int64_t c = 0; c < surface->facet_count * surface->dim; c++) {
         int64_t vertex = surface->facet[c];

@@ -1,4 +1,4 @@
-/* A tree of boxes over the facets of a rigid surface, halved along the longest side again and again. */
+/* A tree of boxes over the facets of a rigid surface, halved recursively along the longest side. */
 #include "base/lists.h"
 #include "base/memory.h"
 #include "solid/rigid/rigid_private.h"
@@ -17,8 +17,8 @@ static struct box facet_box(const struct rigid_surface *surface, int64_t f)
     return box;
 }
 
-/* The branch of the facets placed[first] to before placed[end], with all below it. Halves differ by one facet
- * at the most, so that the depth is that of their number's bits. */
+/* The branch of the facets placed[first] to before placed[end], with all branches below it. Halves differ by
+ * at most one facet, so the depth is at most the number of bits of the facet count. */
 static void grow(struct rigid_surface *surface, struct placed *placed, int64_t first, int64_t end)
 {
     int64_t at = surface->branch_count++;

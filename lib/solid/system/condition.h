@@ -1,4 +1,4 @@
-/* Prescribed displacements, as assembly takes them and messages name them. The arrays are the caller's. */
+/* Prescribed displacements: the input of assembly. The arrays are the caller's. */
 #pragma once
 
 #include "approx/shape/boundary.h"
@@ -9,7 +9,7 @@ enum condition_kind { CONDITION_COMPONENTS, CONDITION_NORMAL, CONDITION_TABLE, C
 /* A prescribed displacement, of averages over facets or of values at nodes. */
 struct condition {
     const char *name;
-    const char *where;       /* in front of messages about it: "brain.scene:12: [displacement skull]" */
+    const char *where;       /* prefix of messages about it: "brain.scene:12: [displacement skull]" */
     struct facet_set facets; /* or, where there are none, */
     const int32_t *nodes;    /* node_count: ascending */
     int64_t node_count;
@@ -22,10 +22,10 @@ struct condition {
     double unit;          /* in units of so many m */
     const char *table;    /* its name, for messages */
     int32_t curve;
-    /* CONDITION_POINTS, where nothing above but the names and the curve is used: */
+    /* CONDITION_POINTS, which uses only the names and the curve of the above: */
     struct measured measured; /* points anywhere in the body */
-    const int64_t *line;      /* measured.count: of each in its table */
-    struct neighbours field;  /* the nodes that the field is made of there, */
-    const double *field_phi;  /* and their shares */
-    double model_error;       /* see measured.h; 0: root mean square of what was measured */
+    const int64_t *line;      /* measured.count: line of each in its table */
+    struct neighbours field;  /* at each point: the nodes of the field, */
+    const double *field_phi;  /* and their shape functions */
+    double model_error;       /* see measured.h, m; 0: root mean square of the measured components */
 };

@@ -1,4 +1,4 @@
-/* Load curves: the factor of a load over the time s = t/T of the scene, 0 at its begin and 1 at its end. */
+/* Load curves: the factor of a load over the time s = t/T of the scene, from 0 to 1. */
 #pragma once
 
 #include "base/status.h"
@@ -7,9 +7,9 @@
 #include <stdint.h>
 
 enum curve_kind {
-    CURVE_SMOOTH, /* 10 s^3 - 15 s^4 + 6 s^5: begins and ends without velocity and acceleration */
+    CURVE_SMOOTH, /* 10 s^3 - 15 s^4 + 6 s^5: no velocity and acceleration at s = 0 and 1 */
     CURVE_LINEAR, /* s */
-    CURVE_STEP,   /* 1 from the begin */
+    CURVE_STEP,   /* 1 from s = 0 on */
     CURVE_TABLE   /* through given points, monotone between them */
 };
 
@@ -21,24 +21,24 @@ struct load_curve {
     gsl_interp *spline;    /* CURVE_TABLE */
 };
 
-/* A curve of the kinds without table. Needs no curve_free, allows it. */
+/* A curve of a kind without table; curve_free is allowed but not needed. */
 struct load_curve curve_of_kind(enum curve_kind kind);
 
 /* A curve through `count` points (time, factor), rows of 2 in `points`, which are copied: Steffen's piecewise
- * cubic (Astron. Astrophys. 239, 1990), which is smooth, takes every point, and never overshoots between two
- * of them; a line for 2 points. `end` > 0 is the time of s = 1: the scene's end_time, or 1 in a quasi-static
- * scene. Errors, as `row N: ...` counting from 1: STATUS_INPUT for fewer than two points, values that are not
- * finite, times that do not increase, a first time after 0, a last time before `end`; STATUS_SYSTEM for
- * memory. */
+ * cubic (Astron. Astrophys. 239, 1990), which is smooth, interpolates, and never overshoots between two
+ * points; a line for 2 points. `end` > 0 is the time of s = 1: the scene's end_time, or 1 in a quasi-static
+ * scene. STATUS_INPUT, with a message `row N: ...` counting from 1, for fewer than two points, values that
+ * are not finite, times that do not increase, a first time after 0, and a last time before `end`.
+ * STATUS_SYSTEM: memory. */
 MUST_CHECK enum status curve_tabulate(struct load_curve *curve, int64_t count, const double *points,
                                       double end, struct error *error);
 
-/* The factor at s, and its derivative by s. Outside of [0, 1] the factor stays at its end value. Safe to call
- * from several threads. */
+/* The factor at s, and its derivative by s. Outside of [0, 1] the factor keeps its value at the end.
+ * Thread-safe. */
 double curve_value(const struct load_curve *curve, double s);
-
-/* The largest factor that it takes, by its size; of a table at its points. */
-double curve_largest(const struct load_curve *curve);
 double curve_rate(const struct load_curve *curve, double s);
+
+/* The largest absolute factor; of a table at its points. */
+double curve_largest(const struct load_curve *curve);
 
 void curve_free(struct load_curve *curve);

@@ -1,5 +1,5 @@
 /* Energies of a run and their balance: kinetic + internal + contact + dissipated = external work + energy at
- * the begin. */
+ * the start. */
 #pragma once
 
 #include "solid/system/system.h"
@@ -10,8 +10,8 @@ struct energy {
     double kinetic;    /* 1/2 v- M v+, of the velocities half a step before and after */
     double internal;   /* elastic, of the body and the constraint penalties */
     double contact;    /* of the contacts' penalties */
-    double work;       /* of loads and prescribed motion, since the begin */
-    double dissipated; /* by damping, since the begin */
+    double work;       /* of loads and prescribed motion, since the start */
+    double dissipated; /* by damping, since the start */
     double error;      /* of the balance, relative to the largest energy so far */
 };
 enum { ENERGY_COLUMNS = 7 };
@@ -26,26 +26,26 @@ void energy_log_free(struct energy_log *log);
 MUST_CHECK enum status energy_log_state(struct energy_log *log, const struct state *state,
                                         struct error *error);
 
-/* The balance of a run by central differences. Works are summed by the trapezium rule over each step's
- * displacement; with the kinetic energy 1/2 v- M v+ the balance of a linear system then holds to round-off,
- * and its error otherwise is that of the step. */
+/* The balance of a run by central differences. Works are summed by the trapezium rule over the displacement
+ * of each step. With the kinetic energy 1/2 v- M v+, the balance of a linear system then holds to round-off;
+ * otherwise its error is that of the time step. */
 struct energy_balance {
-    double start;            /* energy at the begin */
+    double start;            /* energy at the start */
     double work, dissipated; /* since then */
-    double largest;          /* energy so far; at first a floor below which energies are round-off */
+    double largest;          /* energy so far; initially a bound below which energies are round-off */
     double worst;            /* largest |error| so far */
 };
 
 struct energy_balance energy_balance_begin(const struct solid_system *system);
 
-/* Complete a row whose time, kinetic, internal and contact are known; the first one is the begin. */
+/* Set work, dissipated and error of a row; `first`: it is the row of the start. */
 void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row);
 
-/* 1/2 v M w */
+/* 1/2 v M w, J (2D: J/m). */
 double energy_kinetic(const struct solid_system *system, const double *v, const double *w);
 
 /* Energy of the body at u, and of the constraint penalties at system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
-/* Sum over all contacts at their last evaluation. */
+/* contact_energy of all contacts. */
 double energy_contact(const struct solid_system *system);

@@ -6,21 +6,21 @@
 struct progress {
     int64_t step;
     double time;  /* s; 0..1 of the load in relaxation */
-    double move;  /* relaxation: largest motion of a node between the last two calls, m; INFINITY where the
-                     iteration went back in between */
+    double move;  /* relaxation: largest motion of a node between the last two calls, m; INFINITY if the
+                 iteration returned to an earlier state in between */
     double error; /* relaxation: estimated remaining error relative to the displacement; dynamics: error of
                      the energy balance relative to the largest energy */
-    double remaining; /* estimated share of the steps still to go, 0..1, negative: unknown */
+    double remaining; /* estimated share of the steps that remain, 0..1; negative: unknown */
     const double *u;  /* parameters */
-    /* The run's state at this step: state(run, ...), from which a run of the same system and options goes on
-     * to the same bits. */
+    /* state(run, ...) visits the run's state at this step. A run of the same system and options that is
+     * restored from it gives the same bits. */
     state_function *state;
     void *run;
 };
 
-/* Called every so many steps, and at once when the run is interrupted; returns false to stop the run. */
+/* Called at regular intervals, and as soon as the run is interrupted; returns false to stop the run. */
 typedef bool progress_function(void *context, const struct progress *progress);
 
-/* Receives frame `number` (from 1; 0: the state at the begin), the parameters u at `time` (as in struct
+/* Receives frame `number` (from 1; 0: the state at the start), the parameters u at `time` (as in struct
  * progress). */
 typedef void frame_function(void *context, int64_t number, double time, const double *u);

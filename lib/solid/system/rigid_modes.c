@@ -11,15 +11,16 @@
 #include <string.h>
 
 enum { MOST_MODES = EIGEN_MOST };
-/* A row counts as a condition on rigid modes from this value on, by the sum of its weights. */
+/* A row constrains a rigid mode if its value for the mode is at least this share of the sum of its
+ * weights. */
 static const double least_value = 1e-4;
-/* A motion has a share in those that are free from this square on, and of these a rotation. */
+/* Least squared singular value: of a free motion of a part, and of the rotation in it. */
 static const double least_share2 = 1e-8;
-/* Free motions that hang together and are looked at. */
+/* Most coupled free motions that are kept. */
 enum { MOST_FREE = 300 };
 
-/* The motions of the parts of a body that conditions leave free: of each part, coefficients of its rigid
- * modes. */
+/* The motions of the parts of a body that conditions leave free, as coefficients of the rigid modes of each
+ * part. */
 struct parts {
     const struct solid_system *system;
     int32_t count;
@@ -59,8 +60,8 @@ static int32_t part_of(const struct parts *parts, int32_t node)
     return parts->of_node == NULL ? 0 : parts->of_node[node];
 }
 
-/* Add to the condition that is collected: `factor` times the motion of a node along a direction, as the
- * node of part p moves. */
+/* Add to the condition that is collected: `factor` times the motion of a node along a direction, as a node of
+ * part p. */
 static void add_node(struct parts *parts, int32_t p, int32_t node, double factor, const double *direction)
 {
     int dim = parts->system->dim, modes = parts->space.columns[p] > 0 ? mode_count(dim) : 0; /* 0: held */
@@ -72,7 +73,7 @@ static void add_node(struct parts *parts, int32_t p, int32_t node, double factor
     null_space_add(&parts->space, p, factor, value);
 }
 
-/* The average of each row from `first` on, along its direction, is held. */
+/* Impose that the average of each row from `first` on does not move along the row's direction. */
 static enum status hold_rows(struct parts *parts, const struct constraint_rows *rows, int64_t first,
                              struct error *error)
 {
@@ -90,7 +91,7 @@ static enum status hold_rows(struct parts *parts, const struct constraint_rows *
     return STATUS_OK;
 }
 
-/* A node moves with either of its parts. */
+/* Impose that both parts of a joint move its node alike. */
 static enum status hold_joint(struct parts *parts, const struct joint *joint, struct error *error)
 {
     for (int a = 0; a < parts->system->dim; a++) {
@@ -109,7 +110,8 @@ static void parts_free(struct parts *parts)
     free(parts->box);
 }
 
-/* Springs of measured points hold as rows do. Rows come first, so that what they hold is small. */
+/* The null space of all conditions. Springs of measured points count as rows. Rows are imposed first: they
+ * shrink the bases. */
 static enum status parts_find(struct parts *parts, int64_t joint_count, const struct joint *joint,
                               struct error *error)
 {
@@ -135,7 +137,8 @@ static enum status parts_find(struct parts *parts, int64_t joint_count, const st
     return STATUS_OK;
 }
 
-/* basis[count][MOST_MODES]: orthonormal, the free motions of part p, whatever the others do then. */
+/* basis[count][MOST_MODES]: an orthonormal basis of the free motions of part p, with any motions of the
+ * others. */
 static int free_modes(const struct parts *parts, int32_t p, double basis[][MOST_MODES])
 {
     int n = parts->space.size, columns = parts->space.columns[p], count = 0;
@@ -156,7 +159,7 @@ static int free_modes(const struct parts *parts, int32_t p, double basis[][MOST_
     return count;
 }
 
-/* A rotation of coefficients `mode`: its axis, and a point of it. */
+/* Append a rotation with the coefficients `mode`: its axis, and a point on it. */
 static void put_rotation(const struct box *box, const double *mode, struct rigid_modes *modes)
 {
     int dim = box->dim;
@@ -174,7 +177,7 @@ static void put_rotation(const struct box *box, const double *mode, struct rigid
     modes->turns++;
 }
 
-/* The free modes of part p as translations, and rotations across them. */
+/* Split the free modes of part p into translations, and rotations orthogonal to these. */
 static void split_modes(const struct parts *parts, int32_t p, struct rigid_modes *modes)
 {
     int dim = parts->system->dim, n = mode_count(dim);

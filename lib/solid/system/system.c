@@ -55,7 +55,7 @@ enum status system_state(struct solid_system *system, const struct state *state,
  * this share of the largest prescribed displacement. */
 static const double most_missed = 1e-4;
 
-/* The row of another section that acts nearest to row r in much the same direction, or -1. */
+/* The nearest row of another section that acts in a similar direction as row r, or -1. */
 static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
 {
     const struct constraint_rows *rows = &system->rows;
@@ -115,7 +115,7 @@ static enum status check_dropped(const struct solid_system *system, struct const
             most = fmax(most, fabs(factor[i]));
         }
         memset(u, 0, (size_t)size * sizeof *u);
-        for (int i = 0; i < 3; i++) { /* more than once: rows may be close to dependent */
+        for (int i = 0; i < 3; i++) { /* repeated: rows may be nearly dependent */
             constraint_project(constraint, factor, u);
         }
         double missed = constraint_violation(constraint, factor, u, &row);
@@ -158,7 +158,7 @@ static void corner_position(const struct solid_system *system, const struct boun
     average_place(&average, dim, system->X + (int64_t)averages->node[a] * dim, u, x);
 }
 
-/* The pressure at quadrature point p of the deformed facets. */
+/* The pressure at quadrature point p of the deformed facets, Pa, at factor 1. */
 static double pressure_at(const struct solid_system *system, const struct pressure_load *load, int64_t p,
                           const double *u)
 {
@@ -175,8 +175,8 @@ static double pressure_at(const struct solid_system *system, const struct pressu
     return presses ? depth : 0.0;
 }
 
-/* Forces of a following pressure: the force on a deformed facet is divided among its quadrature points like
- * its area at rest. */
+/* Forces of a following pressure. The force on a deformed facet is divided among its quadrature points in
+ * proportion to their areas at rest. */
 static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
                          const double *u, double *residual)
 {
@@ -329,7 +329,7 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
     for (int64_t n = 0; n < system->node_count; n++) {
         sum += mass[n];
     }
-    /* A node without stiffness needs some mass; no force acts on it. */
+    /* A node without stiffness needs a mass, though no force acts on it. */
     double least = 1e-6 * sum / (double)system->node_count;
     for (int64_t n = 0; n < system->node_count; n++) {
         mass[n] = fmax(mass[n], least);

@@ -1,4 +1,4 @@
-/* The contacts of a system, all at once. */
+/* Operations on all contacts of a system. */
 #include "solid/system/system.h"
 
 #include "base/clock.h"

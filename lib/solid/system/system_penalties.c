@@ -1,4 +1,4 @@
-/* Constraint penalties of a system, and springs of measured points, which are kept among them. */
+/* Constraint penalties of a system, and springs of measured points, which are stored with them. */
 #include "solid/system/system.h"
 
 #include "base/chunks.h"

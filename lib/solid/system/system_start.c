@@ -1,8 +1,8 @@
-/* A run that begins near its result. */
+/* The start of a run near its result. */
 #include "base/memory.h"
 #include "solid/system/system.h"
 
-/* Each curve becomes a constant, the value at its end. */
+/* Replace each curve by the constant that is its value at the end. */
 static enum status hold_curves(struct solid_system *system, struct error *error)
 {
     for (int64_t i = 0; i < system->curve_count; i++) {
@@ -14,7 +14,7 @@ static enum status hold_curves(struct solid_system *system, struct error *error)
     return STATUS_OK;
 }
 
-/* One more curve, which falls from 1 to 0. */
+/* Append a curve that falls from 1 to 0. */
 static enum status add_falling_curve(struct solid_system *system, struct error *error)
 {
     static const double falling[] = {0.0, 1.0, 1.0, 0.0};

@@ -43,7 +43,7 @@ static enum status add_group(struct group_list *list, const char *name, struct e
     return STATUS_OK;
 }
 
-/* Empty groups of these names. */
+/* Append empty groups with these names. */
 static enum status add_named(struct group_list *list, const struct names *names, struct error *error)
 {
     for (int64_t i = 0; i < names->count; i++) {
@@ -52,7 +52,7 @@ static enum status add_named(struct group_list *list, const struct names *names,
     return STATUS_OK;
 }
 
-/* Sort items by the group that of_group[count] says: those of a group keep their order. */
+/* Sort items into the groups of_group[count]; items of a group keep their order. */
 static enum status sort_items(struct group_list *list, int64_t count, const int32_t *of_group,
                               const int32_t *item, struct error *error)
 {
@@ -72,7 +72,7 @@ static enum status sort_items(struct group_list *list, int64_t count, const int3
 
 /* ---- reading ---- */
 
-/* facet[rows]: the boundary's facet that each row of `facets` is; the boundary takes over its order of nodes,
+/* facet[rows]: the facet of the boundary of each row of `facets`. The boundary takes over its order of nodes,
  * so that unchanged groups are written as they were. */
 static enum status find_facets(struct group_body *body, const struct named_facets *named, int32_t *facet,
                                struct error *error)
@@ -193,7 +193,7 @@ enum status group_check_name(const char *name, struct error *error)
     return STATUS_OK;
 }
 
-/* Cells of a new region leave the one they were in. */
+/* Remove the cells of a new region from their former regions. */
 static void take_cells(struct group_list *regions, const bool *chosen)
 {
     for (int64_t g = 0; g < regions->count; g++) {

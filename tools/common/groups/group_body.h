@@ -1,4 +1,4 @@
-/* The groups of a stream as lists that can be changed: facet groups, node sets, regions. */
+/* The groups of a stream as modifiable lists: facet groups, node sets, regions. */
 #pragma once
 
 #include "approx/cells/cells.h"
@@ -14,7 +14,7 @@ struct group {
     char *name;
     int64_t count;
     int32_t *item;          /* count: facets of the boundary, nodes or cells */
-    const char *expression; /* the caller's that made it; NULL: came with the stream */
+    const char *expression; /* that made it, the caller's; NULL: from the stream */
 };
 
 struct group_list {
@@ -24,33 +24,33 @@ struct group_list {
 };
 
 struct group_body {
-    struct cells cells; /* none: only nodes can be grouped */
-    struct faces
-        boundary;  /* faces of one cell, oriented outward; those that the stream names as it has them */
-    int32_t *node; /* 0, 1, ...: the nodes as items of one corner */
+    struct cells cells;    /* none: only nodes can be grouped */
+    struct faces boundary; /* faces of one cell, oriented outward; named facets with their order of nodes */
+    int32_t *node;         /* 0, 1, ...: the nodes as items of one corner */
     struct items items[GROUP_KINDS];
     struct group_list groups[GROUP_KINDS]; /* regions are disjoint */
     double diagonal;                       /* of the box of the nodes, m */
 };
 
 /* Read nodes, cells and groups of a stream, which must outlive the body; to be freed also on failure.
- * STATUS_INPUT for sections that do not fit, and for facets that are no face of exactly one cell. */
+ * STATUS_INPUT for sections that do not fit, and for facets that are not the face of exactly one cell. */
 MUST_CHECK enum status group_body_read(const struct stream *stream, struct group_body *body,
                                        struct error *error);
 void group_body_free(struct group_body *body);
 
-/* Index of a name in a list, or -1. */
+/* The index of a name in a list, or -1. */
 int64_t group_find(const struct group_list *list, const char *name);
 
-/* Add a group of the chosen items, or replace the one of that name; a region takes its cells from the others.
- * `expression` is kept for reference: the caller keeps it alive. */
+/* Add a group of the chosen items, or replace the one with this name; cells of a region are removed from
+ * other regions. `expression` is kept and must outlive the body. */
 MUST_CHECK enum status group_put(struct group_body *body, enum group_kind kind, const char *name,
                                  const bool *chosen, const char *expression, struct error *error);
 void group_remove(struct group_list *list, int64_t index);
 
-/* Is this a name for a group: no blanks, commas, quotes, colons, and no word of the expressions? */
+/* STATUS_INPUT for an invalid name: one with blanks, commas, quotes or colons, or a word of the
+ * expressions. */
 MUST_CHECK enum status group_check_name(const char *name, struct error *error);
 
-/* Put the lists that were changed back into the stream. STATUS_INPUT when cells belong to no region. */
+/* Put the modified lists into the stream. STATUS_INPUT if a cell belongs to no region. */
 MUST_CHECK enum status group_body_write(const struct group_body *body, struct stream *stream,
                                         struct error *error);

@@ -1,4 +1,4 @@
-/* Terms that choose by place, and by what is near the points or surfaces of a file. */
+/* Terms that choose by position, and by distance from the points or surfaces of a file. */
 #include "groups/group_terms.h"
 
 #include "base/box.h"
@@ -12,10 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Points on the boundary of a shape belong to it, whatever the round-off: this part of the body's diagonal.
- */
+/* Points within this share of the body's diagonal of a shape belong to it, for round-off. */
 #define SLACK 1e-9
-/* How far corners of facets may lie from their plane by default. */
+/* Default distance of corners of facets from a plane, as a share of the diagonal. */
 #define FLATNESS 1e-6
 
 /* ---- arguments ---- */
@@ -117,7 +116,7 @@ enum status term_plane(const struct term *term)
     return STATUS_OK;
 }
 
-/* low:AXIS,PART% and high:AXIS,PART%: everything within a part of the body's box from one of its ends. */
+/* low:AXIS,PART% and high:AXIS,PART%: all within a share of the body's box from one of its ends. */
 enum status term_end(const struct term *term)
 {
     static const char *const axes[] = {"x", "y", "z", "long"};
@@ -144,7 +143,7 @@ enum status term_end(const struct term *term)
     }
     if (axis == 3) {
         axis = 0;
-        for (int a = 1; a < dim; a++) { /* equal sides differ by round-off: the first of them */
+        for (int a = 1; a < dim; a++) { /* equal sides differ by round-off: take the first of them */
             bool longer = box.high[a] - box.low[a] > (box.high[axis] - box.low[axis]) * (1 + 1e-6);
             axis = longer ? a : axis;
         }

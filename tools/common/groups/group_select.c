@@ -25,7 +25,7 @@ static void combine(enum joint joint, int64_t count, const bool *term, bool *cho
     }
 }
 
-/* Index of a word that joins terms, or JOINTS. */
+/* The index of a word that joins terms, or JOINTS. */
 static enum joint joint_of(const char *word)
 {
     int joint = 0;
@@ -35,7 +35,7 @@ static enum joint joint_of(const char *word)
     return (enum joint)joint;
 }
 
-/* "grown:N" or "shrunk:N": grow what is chosen so far by N rings. */
+/* "grown:N" or "shrunk:N": grow or shrink the selection so far by N rings. */
 static enum status grow(const struct group_body *body, enum group_kind kind, const char *word, bool *chosen,
                         struct error *error)
 {
@@ -48,7 +48,7 @@ static enum status grow(const struct group_body *body, enum group_kind kind, con
                        chosen, error);
 }
 
-/* Terms and words alternate; chosen[] is what they give from left to right. */
+/* Evaluate terms and the words between them from left to right, into chosen[]. */
 static enum status evaluate(const struct group_body *body, enum group_kind kind, char *expression,
                             double unit, bool *chosen, bool *term, struct error *error)
 {

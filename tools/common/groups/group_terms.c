@@ -9,8 +9,8 @@
 
 /* ---- items of one kind by those of another ---- */
 
-/* Choose by items of some kind: these, or the nodes of such facets or cells, the facets of such cells, the
- * facets or cells all of whose nodes are such. Facets choose no cells. */
+/* Choose by the items `in` of kind `from`: these items, the nodes of these facets or cells, the facets of
+ * these cells, or the facets or cells all of whose nodes are in. Facets choose no cells. */
 static enum status choose_by(const struct term *term, enum group_kind from, const bool *in)
 {
     const struct group_body *body = term->body;
@@ -42,7 +42,7 @@ static enum status choose_all(const struct term *term)
     return STATUS_OK;
 }
 
-/* The whole boundary: of nodes those on it. */
+/* Choose the whole boundary, or the nodes on it. */
 static enum status choose_boundary(const struct term *term)
 {
     SCRATCH bool *facets = NULL;
@@ -142,7 +142,7 @@ static enum status fail_unknown(const struct term *term, enum group_kind kind)
                 term->text, group_kind_names[kind], list->count > 0 ? names : "none");
 }
 
-/* The items of a group of some kind, as items of the kind that is being chosen. */
+/* Choose by the items of a group of kind `from`. */
 static enum status choose_named(const struct term *term, enum group_kind from, const char *name)
 {
     const struct group_list *list = &term->body->groups[from];

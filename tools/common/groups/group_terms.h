@@ -3,7 +3,7 @@
 
 #include "groups/group_select.h"
 
-/* What a term is evaluated with. */
+/* A term, and the input of its evaluation. */
 struct term {
     const struct group_body *body;
     enum group_kind kind;
@@ -14,12 +14,12 @@ struct term {
     struct error *error;
 };
 
-/* Between `least` and `most` numbers. */
+/* Parse `least` to `most` numbers; `form` describes them in messages. */
 MUST_CHECK enum status term_numbers(const struct term *term, int least, int most, const char *form,
                                     double values[], int *count);
 void term_scale(int count, double values[], double unit);
 
-/* A direction has a length. */
+/* Check that a direction has a length. */
 MUST_CHECK enum status term_check_direction(const struct term *term, const double *direction);
 
 /* Terms by place, and by a file. */

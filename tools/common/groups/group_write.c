@@ -1,11 +1,11 @@
-/* Groups that were changed, back into the stream. */
+/* Writing modified groups into the stream. */
 #include "groups/group_body.h"
 
 #include "base/memory.h"
 
 #include <string.h>
 
-/* "names=a,b" of the groups, allocated. */
+/* *text = "names=a,b" of the groups, to be freed. */
 static enum status names_attribute(const struct group_list *list, char **text, struct error *error)
 {
     size_t size = sizeof "names=";

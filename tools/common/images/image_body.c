@@ -12,7 +12,7 @@ static const double most_ratio = 100; /* body to image */
 
 enum { LABELS_MOST = 256 };
 
-/* The world axis that voxel axes a and b are square to, -1 for none. */
+/* The world axis to which voxel axes a and b are perpendicular; -1: none. */
 static int axis_across(const struct image *image, int a, int b)
 {
     for (int w = 0; w < 3; w++) {
@@ -27,8 +27,8 @@ static int axis_across(const struct image *image, int a, int b)
     return -1;
 }
 
-/* The same image with its world axes and voxel axes in the order of the body's, or back. A voxel axis of one
- * slice may move behind the others without moving values. */
+/* Bring the world and voxel axes of an image into the order of the body, or back. The voxel axis across a
+ * slice may be moved behind the others without moving values. */
 static void reorder(struct image *image, const struct image_axes *axes, bool back)
 {
     struct image before = *image;
@@ -65,7 +65,7 @@ void image_from_body(struct image *image, const struct image_axes *axes)
     reorder(image, axes, true);
 }
 
-/* Determinant of the axes of a grid in dim dimensions, from the world to voxels. */
+/* Determinant of the map from world coordinates to voxels in dim dimensions. */
 static double determinant(const struct image *grid, int dim)
 {
     double m[3][4];
@@ -121,7 +121,7 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
     return owner;
 }
 
-/* The box of the voxels' centres, m. */
+/* The box of the voxel centres, m. */
 static struct box image_box(const struct image *image)
 {
     double corner[8][3];
@@ -146,7 +146,7 @@ static const char *box_text(const struct box *box, char text[160])
     return text;
 }
 
-/* Units and spaces that cannot be. */
+/* Exit if body and image do not overlap, or have impossible sizes. */
 void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
                          const double *x, int64_t inside)
 {
@@ -181,16 +181,16 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
     }
 }
 
-/* A label and how many voxels have it, before and after. */
+/* A label, and its number of voxels before and after. */
 struct label {
     double value;
     int64_t voxels[2];
 };
 
-/* Count the voxels of each label of an image; false where the values are no labels. */
+/* Count the voxels of each label of an image; false if its values are not labels. */
 static bool count_labels(const struct image *image, int which, struct label *labels, int *count)
 {
-    int l = 0; /* most often as that of the voxel before */
+    int l = 0; /* usually that of the previous voxel */
     for (size_t v = 0; v < image_voxels(image); v++) {
         double value = image->values[v];
         if (l >= *count || labels[l].value != value) {

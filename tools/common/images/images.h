@@ -5,14 +5,14 @@
 
 #include "io/image/image_sample.h"
 
-/* Read an image from a file ("-": standard input), tell what was assumed; exits on failure. */
+/* Read an image from a file ("-": standard input), and report assumptions; exits on failure. */
 void tool_read_image(const struct tool *tool, const char *file, struct image *image);
 
 /* The value of the option -i, or linear. Exits on another name. */
 enum image_method tool_image_method(const struct tool *tool);
 
-/* Exits when the name of tool->output ends neither in .nii nor in .nii.gz, or standard output is a terminal:
- * to be called before long work. */
+/* Exit if the name of tool->output ends neither in .nii nor in .nii.gz, or standard output is a terminal.
+ * Call this before long computations. */
 void tool_check_image_output(const struct tool *tool);
 
 /* Write an image to tool->output, compressed unless its name ends in .nii, or compressed to standard output;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Labels of an image without a table. */
+/* Most labels of an image without a table. */
 enum { MOST_UNNAMED = 256, MOST_VALUES = 32767 };
 static const double largest_diagonal = 10, smallest_diagonal = 1e-3;
 
@@ -37,7 +37,7 @@ struct values {
     uint16_t label[MOST_VALUES];
 };
 
-/* Where a value stands, or where it would. */
+/* The place of a value in the list, or the place where it would be inserted. */
 static int32_t find_value(const struct values *values, double value)
 {
     int32_t low = 0, high = values->count;
@@ -86,7 +86,7 @@ static void collect_values(const struct tool *tool, const struct image *image, s
     }
 }
 
-/* Names label_1, label_2, ... for an image without a table. */
+/* Make the names label_1, label_2, ... for an image without a table. */
 static void name_values(const struct tool *tool, const struct values *values, struct label_table *table)
 {
     for (int32_t v = 0; v < values->count; v++) {
@@ -106,7 +106,7 @@ static void name_values(const struct tool *tool, const struct values *values, st
     }
 }
 
-/* The label of each value, by the table. */
+/* Find the label of each value by the table. */
 static void label_values(const struct tool *tool, struct values *values, struct label_image *image,
                          const char *table)
 {
@@ -167,7 +167,8 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
 
 /* ---- space ---- */
 
-/* The axis of the grid that runs along a world axis, the two others across it. Exits when there is none. */
+/* The axis of the grid that is parallel to a world axis, with the two others perpendicular to it. Exits if
+ * there is none. */
 static int grid_axis(const struct tool *tool, const struct image *image, int world)
 {
     int found = 3;
@@ -205,7 +206,7 @@ static void take_slice(struct image *image, int axis, size_t slice)
     image->size[axis] = 1;
 }
 
-/* "z=12mm" */
+/* Parse "z=12mm". */
 static void parse_slice(const struct tool *tool, const char *text, int *axis, double *place)
 {
     double unit = 1;
@@ -239,7 +240,7 @@ static void choose_slice(const struct tool *tool, struct image *image, const cha
     take_slice(image, axis, (size_t)fmax(0, floor(index + 0.5)));
 }
 
-/* An image of one slice lies in a plane across a world axis. */
+/* Set the plane of an image of one slice, which must be perpendicular to a world axis. */
 static void set_plane(const struct tool *tool, const struct image *image, struct labels *labels)
 {
     int flat = -1, flats = 0, count = 0, world = 0;
@@ -307,7 +308,7 @@ static void check_size(const struct tool *tool, const struct label_image *image,
     }
 }
 
-/* Tell what is kept and reaches the border of the image, where the body is cut off. */
+/* Note the kept labels that reach the border of the image, where the body is cut off. */
 static void note_border(const struct tool *tool, const struct label_image *image)
 {
     const int64_t *size = image->labels.size;

@@ -86,8 +86,7 @@ static enum status make_facets(const struct label_image *image, const struct lab
     return STATUS_OK;
 }
 
-/* Nodes of faces between two regions, a face once for each of its nodes: counted or, where there is room,
- * stored. */
+/* Count the nodes of faces between two regions, once for each face; store them if there is an array. */
 static int64_t find_interfaces(const struct cells *cells, const int32_t *region, const int32_t *across,
                                struct member *member)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A ball, or the voxels of a mask that are not 0. */
+/* A ball, or the nonzero voxels of a mask. */
 struct place {
     struct label_ball ball;
     struct image mask;
@@ -35,7 +35,7 @@ static bool is_within(const struct place *place, const struct labels *labels, co
     return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
 }
 
-/* "X,Y,Z,RADIUS", in 2D "X,Y,RADIUS". */
+/* Parse "X,Y,Z,RADIUS", in 2D "X,Y,RADIUS". */
 static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
 {
     double value[4] = {0};
@@ -47,7 +47,7 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
             tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted", text, dim + 1);
         }
         if (strchr(word, '0') != NULL && strspn(word, "+-0.") == strcspn(word, "cmu")) {
-            value[count++] = 0; /* 0 and 0mm, which is no length above 0 */
+            value[count++] = 0; /* 0 and 0mm, which parse_length refuses */
             continue;
         }
         TOOL_TRY(tool, parse_length(word + negative, "--part", &value[count], &error));
@@ -78,7 +78,7 @@ static void check_name(const struct tool *tool, const struct label_image *image,
     }
 }
 
-/* The label of voxels of a region in the last part, added where it is new. */
+/* The label of voxels of a region in the last part, which is added if it is new. */
 static int32_t part_label(const struct tool *tool, const struct label_ball *ball, struct label_image *image,
                           int32_t region)
 {

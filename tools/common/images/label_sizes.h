@@ -1,4 +1,4 @@
-/* Where the cells of a label image are to be smaller: at interfaces, and by sizes of a solution. */
+/* Local sizes of the cells of a label image: at interfaces, and from the sizes of a solution. */
 #pragma once
 
 #include "images/label_image.h"
@@ -10,15 +10,15 @@
 bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
                        double spacing, double *finest);
 
-/* Sizes at the nodes of cells: views of the stream. */
+/* Sizes at the nodes of cells, as views of a stream. */
 struct label_sizes {
     struct stream stream;
     struct cells cells;
     const double *size; /* cells.node_count, m, positive; NULL: no sizes */
 };
 
-/* Read the stream `file` (NULL: no sizes), whose sections are nodes.x, cells and size, in the dimension of
- * the image. Exits on failure. */
+/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
+ * image. Exits on failure. */
 void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
                       struct label_sizes *sizes);
 void label_sizes_free(struct label_sizes *sizes);

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where facets meet at an edge their nodes move farther than the gap: at most by this factor. */
+/* Where facets meet at an edge, nodes must move farther than the gap, at most by this factor. */
 static const double most_stretch = 2;
 
 void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
@@ -42,8 +42,8 @@ static void unit_normal(const struct label_cells *mesh, int64_t facet, double no
     }
 }
 
-/* Nodes of the facets moved outward along the mean normal of the facets there, so far that each of these
- * facets is off by the gap. place[node_count * dim]. */
+/* place[node_count * dim]: nodes of the facets moved outward along the mean normal of the facets there, so
+ * far that each of these facets moves by the gap. */
 static void move_outward(const struct label_cells *mesh, const struct label_surface_options *options,
                          double *mean, double *least, double *place)
 {
@@ -86,7 +86,8 @@ static void print_triangles(FILE *file, const struct label_cells *mesh,
     }
 }
 
-/* Curves: from the first edge not yet walked on along next[], by the node that an edge begins at. */
+/* Print curves, each from the first edge that has not been visited along next[], which is indexed by the
+ * first node of an edge. */
 static void print_curves(FILE *file, const struct label_cells *mesh,
                          const struct label_surface_options *options, const double *place, int64_t *next)
 {
@@ -99,11 +100,11 @@ static void print_curves(FILE *file, const struct label_cells *mesh,
             next[mesh->facet[2 * f]] = f;
         }
     }
-    /* Curves that end, between two junctions of three labels, are begun at their begin. */
+    /* Open curves, between two junctions of three labels, start at their first node. */
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t f = 0; f < mesh->facet_count && pass == 0; f++) {
             if (is_chosen(mesh, options, f) && next[mesh->facet[2 * f + 1]] >= 0) {
-                next[mesh->facet[2 * f + 1]] += mesh->facet_count; /* has one before it */
+                next[mesh->facet[2 * f + 1]] += mesh->facet_count; /* there is an edge before this node */
             }
         }
         for (int64_t n = 0; n < mesh->node_count; n++) {

@@ -6,7 +6,6 @@
 
 #include "io/files/table.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows)
@@ -21,7 +20,7 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
     }
 }
 
-/* Keep the points in cells of the regions in a list, with commas between. */
+/* Keep the points in cells of the regions in a comma-separated list. */
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {

@@ -1,11 +1,11 @@
-/* Where images are sampled: the points of a table or of a stream. */
+/* The points of a table or of a stream at which images are sampled. */
 #pragma once
 
 #include "tool.h"
 
-/* The points, and what comes of them. */
+/* The points, and the values there. */
 struct sample_points {
-    const char *what; /* the points in messages */
+    const char *what; /* name of the points in messages */
     int dim;
     int64_t count;
     double *x;     /* count * dim, m; owned */
@@ -16,7 +16,7 @@ struct sample_points {
 /* The rows of a table of coordinates in a unit, m; exits on failure. */
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows);
 
-/* The points of a section of a stream, which is read into *stream; regions: of integration points only those
- * in cells of these, names with commas between, NULL: all. Exits on failure. */
+/* The points of a section of a stream, which is read into *stream. regions: comma-separated names; only
+ * integration points in cells of these are kept; NULL: all. Exits on failure. */
 void sample_points_section(const struct tool *tool, const char *file, const char *name, const char *regions,
                            struct stream *stream, struct sample_points *rows);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The place in the other state that is seen at x: for places outside of the body x itself. */
+/* place[]: the position in the other state that corresponds to x; outside of the body x itself. */
 static void find_place(const struct warp_job *job, int64_t v, const double x[3], double place[3],
                        struct warp_report *report)
 {
@@ -25,7 +25,7 @@ static void find_place(const struct warp_job *job, int64_t v, const double x[3],
     report->inconsistency = fmax(report->inconsistency, residual);
 }
 
-/* The value of the moved image at voxel v, which shows `place`. */
+/* Set the value of the moved image at voxel v, that of the source at `place`. */
 static void put_value(const struct warp_job *job, int64_t v, const double place[3],
                       struct warp_report *report)
 {
@@ -45,7 +45,7 @@ static void put_value(const struct warp_job *job, int64_t v, const double place[
     }
 }
 
-/* One row of voxels. */
+/* Process one row of voxels. */
 static void do_row(const struct warp_job *job, int64_t row, struct warp_report *report)
 {
     struct image *result = job->result;

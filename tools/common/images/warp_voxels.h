@@ -6,7 +6,7 @@
 #include "approx/field/motion.h"
 #include "io/image/image_sample.h"
 
-/* What was asked for. */
+/* The options of a run. */
 struct warp_request {
     enum image_method method;
     bool fills, marks_vacated, field, inverse, verbose;
@@ -14,23 +14,23 @@ struct warp_request {
     char section[32]; /* u, u.frame.K */
 };
 
-/* What has come of it. */
+/* The outcome: numbers of voxels, and largest values. */
 struct warp_report {
-    int64_t moved, vacated,
-        beyond;              /* voxels: in the moved body; uncovered; whose place is outside of the image */
-    int64_t doubly, inexact; /* in two cells; whose place was not found */
-    double farthest;         /* displacement, m */
-    double inconsistency;    /* |place(X) - x|, m */
+    int64_t moved, vacated, beyond; /* in the moved body; uncovered; with a place outside of the image */
+    int64_t doubly, inexact;        /* in two cells; whose place was not found */
+    double farthest;                /* displacement, m */
+    double inconsistency;           /* |place(X) - x|, m */
 };
 
-/* Everything that the loop over voxels reads. */
+/* The input of the loop over voxels. */
 struct warp_job {
     const struct warp_request *request;
     const struct image *source; /* NULL: the field is written */
     double source_voxel[3][4];
     const struct motion *motion;
-    const int32_t *owner, *other; /* the body where the voxels see it; and in its other state, or NULL */
-    double tolerance;             /* m */
+    const int32_t *owner,
+        *other;       /* cell of each voxel in the state of the result; and in the other state, or NULL */
+    double tolerance; /* m */
     const struct image_axes *axes;
     struct image *result;
 };

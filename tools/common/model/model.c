@@ -7,9 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double farthest_moments = 1e6; /* of the body's size */
+static const double farthest_moments = 1e6; /* sizes of the body */
 
-/* Moments about a point that far away are differences of huge numbers: a unit or a sign is wrong. */
+/* Refuse moments about a point farther away: they are differences of huge numbers, and a unit or a sign is
+ * wrong. */
 static enum status check_moments(const struct model *model, struct error *error)
 {
     const struct scene_output *output = &model->scene->output;

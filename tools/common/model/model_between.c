@@ -19,8 +19,8 @@ static double mean_width(const struct model *model, const struct facet_set *set)
     return sum / (double)set->count;
 }
 
-/* Append to `kept` the facets of a list, each once: the faces of the boundary that they are have the bit of
- * the list from then on. Returns how many there are. */
+/* Append the facets of a list to `kept`, each once, and set the bit of the list in listed[] for their faces
+ * of the boundary. Returns their number. */
 static int64_t keep_facets(int dim, const struct facet_set *set, const int64_t *face, uint8_t bit,
                            uint8_t *listed, int32_t *kept)
 {
@@ -70,7 +70,7 @@ enum status model_between(struct model *model, const struct scene_contact *secti
     if (common > 0) {
         lists[1] = lists[0];
     }
-    /* Points of the finer ones press on the others. */
+    /* The points of the finer facets press on the others. */
     bool finer = common > 0 || mean_width(model, &lists[0]) <= mean_width(model, &lists[1]);
     contact->facets = lists[finer ? 0 : 1];
     contact->opposite = lists[finer ? 1 : 0];

@@ -1,4 +1,4 @@
-/* Displacements, loads and contacts of a scene, as the assembly takes them. */
+/* Displacements, loads and contacts of a scene, as input of assembly. */
 #include "model/model.h"
 
 #include "io/files/surface.h"
@@ -72,7 +72,7 @@ static enum status add_displacement(struct model *model, const struct scene_disp
     return STATUS_OK;
 }
 
-/* The fluid of a section that has one. */
+/* Set the fluid of a load, if its section has one. */
 static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
                              struct error *error)
 {
@@ -124,7 +124,7 @@ static enum status add_loads(struct model *model, struct error *error)
     } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
                  {scene->forces, scene->force_count, LOAD_FORCE},
                  {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
-    /* In dynamics gravity acts from the begin; in a quasi-static scene it grows smoothly. */
+    /* In dynamics gravity acts from the start; in a quasi-static scene it grows smoothly. */
     const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     struct load *loads;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
@@ -143,7 +143,7 @@ static enum status add_loads(struct model *model, struct error *error)
     return STATUS_OK;
 }
 
-/* Corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
+/* Read the corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
 static enum status read_surface(struct model *model, const struct scene_contact *section,
                                 struct contact_condition *contact, struct error *error)
 {
@@ -194,7 +194,8 @@ static enum status add_contact(struct model *model, const struct scene_contact *
     return add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
 }
 
-/* The contacts that the scene has more of: what was added stays, as its curves belong to the system. */
+/* Add the contacts of the scene that the model does not have; those it has keep their curves, which belong to
+ * the system. */
 static enum status add_contacts(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;

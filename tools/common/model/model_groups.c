@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* wanted[present->count]: whether each of the groups, which are `what`, is among the names. */
+/* wanted[present->count]: whether each group is among the names; `what` are groups in messages. */
 static enum status choose(const struct scene_label *label, const struct name_list *names, const char *what,
                           const struct names *present, bool *wanted, struct error *error)
 {

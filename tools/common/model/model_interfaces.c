@@ -3,13 +3,14 @@
 
 #include <stdio.h>
 
-/* Above such a jump forces, too, may be off: on layers of three cells by 10 % at 20 : 1, 16 % at 100 : 1. */
+/* Above this jump forces may be wrong, too: on layers of three cells by 10 % at 20 : 1, by 16 % at 100 :
+ * 1. */
 static const double large_jump = 20.0;
 
-/* The most regions that a remedy spells out. */
+/* Most regions that a remedy lists. */
 enum { MOST_NAMED = 8 };
 
-/* The interface where supports do worst: the regions, the stiffer one first, and the ratio of the moduli. */
+/* The interface with the largest jump: its regions, the stiffer one first, and the ratio of the moduli. */
 struct worst {
     double ratio;
     int32_t region[2];
@@ -20,8 +21,9 @@ static double modulus_of(const struct material_list *materials, int32_t cell)
     return materials->items[materials->of_cell[cell]].shear_modulus;
 }
 
-/* *crossed: the interface with the largest jump of the modulus among those that supports reach across;
- * *softer: among those where supports stop, but what lies on the interface belongs to the softer side. */
+/* *crossed: the interface with the largest jump of the modulus among those across which supports reach;
+ * *softer: among those where supports stop, but faces and nodes on the interface belong to the softer
+ * side. */
 static void find_worst(const struct assembly *input, const int32_t *region, struct worst *crossed,
                        struct worst *softer)
 {
@@ -42,7 +44,7 @@ static void find_worst(const struct assembly *input, const int32_t *region, stru
     }
 }
 
-/* The argument of support -i: the regions by decreasing modulus, without the last. */
+/* text[256] = the argument of support -i: the regions by decreasing modulus, without the last. */
 static void remedy(const struct names *names, const double *modulus, char text[256])
 {
     int64_t count = names->count;

@@ -16,7 +16,7 @@ static void set_material(const struct scene_material *section, struct material *
     material_set_moduli(material, section->youngs_modulus, section->poisson_ratio);
 }
 
-/* Row `row` of a table is that of point q, and holds moduli. */
+/* Check that row `row` of a table belongs to point q, and contains valid moduli. */
 static enum status check_row(const struct model *model, const struct scene_material *section,
                              const struct table *table, int64_t row, int64_t q, struct error *error)
 {
@@ -45,7 +45,8 @@ static enum status check_row(const struct model *model, const struct scene_mater
     return STATUS_OK;
 }
 
-/* One row per integration point of the section's regions, in the order of the points: coordinates, E, nu. */
+/* Read a table with one row for each integration point of the section's regions, in their order: coordinates,
+ * E, nu. */
 static enum status add_point_table(struct model *model, int64_t m, struct error *error)
 {
     struct material_list *list = &model->assembly.materials;
@@ -74,7 +75,7 @@ static enum status add_point_table(struct model *model, int64_t m, struct error 
     return STATUS_OK;
 }
 
-/* The material of each region: material[names->count], -1 where the scene names none. */
+/* material[names->count]: the material of each region; -1: the scene names none. */
 static enum status materials_of_regions(const struct scene *scene, const struct names *names,
                                         int32_t *material, struct error *error)
 {
@@ -96,7 +97,7 @@ static enum status materials_of_regions(const struct scene *scene, const struct 
     return STATUS_OK;
 }
 
-/* The material of each cell: from cells.region and the scene. */
+/* Set the material of each cell from cells.region and the scene. */
 static enum status materials_of_cells(struct model *model, struct error *error)
 {
     const struct cells *cells = &model->assembly.cells;

@@ -1,4 +1,4 @@
-/* Measured points of a section: what the table says of them, and the field there. */
+/* Measured points of a section: their table, and the field there. */
 #include "model/model.h"
 
 #include "stages/stages.h"
@@ -57,7 +57,7 @@ static enum status read_section(struct point_section *p, struct error *error)
     return STATUS_OK;
 }
 
-/* The model owns the arrays that the condition points to. */
+/* Give the arrays of the field to the model and the condition. */
 static enum status keep_field(struct point_section *p, struct field_table *field, struct error *error)
 {
     enum status status = STATUS_OK;
@@ -79,7 +79,7 @@ static enum status keep_field(struct point_section *p, struct field_table *field
     return status;
 }
 
-/* Points that are too far from the body, and the field at the others. */
+/* Refuse points that are too far from the body, and set the field at the others. */
 static enum status find_field(struct point_section *p, struct error *error)
 {
     const struct cells *cells = &p->model->assembly.cells;

@@ -12,17 +12,17 @@ struct tissue {
     double (*moduli)[2]; /* count: E, Pa, and nu of each */
 };
 
-/* Read a table of rows value, E (Pa), nu. Errors as table_read; values that do not ascend, moduli that cannot
- * be. */
+/* Read a table of rows value, E (Pa), nu. Errors as table_read; STATUS_INPUT for values that do not ascend,
+ * and for invalid moduli. */
 MUST_CHECK enum status tissue_read(const char *path, struct tissue *tissue, struct error *error);
 
 /* From the values "E,NU" of an option, one for each tissue. */
 MUST_CHECK enum status tissue_parse(int count, const char *const text[], struct tissue *tissue,
                                     struct error *error);
 
-/* moduli[2]: E and nu. By the table: linear between the values of its rows, constant beyond them (*beyond is
- * then counted up). By probabilities value[count]: the means weighted by them, negative ones taken as 0;
- * false where there is no tissue. */
+/* moduli[2]: E and nu. With a table: linear between the values of its rows, constant beyond them (*beyond is
+ * then incremented). With probabilities value[count]: the means weighted by these, negative ones as 0; false
+ * if there is no tissue. */
 bool tissue_moduli(const struct tissue *tissue, const double *value, double moduli[2], int64_t *beyond);
 
 void tissue_free(struct tissue *tissue);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is cut of a section: its rows by "nodes.x" or "cells", or, by what they name, those of "facets" or
- * "sets.idx"; NULL: it is left out. */
+/* How a section is cut: its rows follow "nodes.x" or "cells", or belong to "facets" or "sets.idx"; NULL: it
+ * is left out. */
 static const char *rows_of(const struct cut_body *whole, const struct section *section)
 {
     static const char *const cut[] = {"nodes.x", "cells", "facets", "sets.idx"};
@@ -31,7 +31,7 @@ static bool has(const struct cut_body *whole, const char *name, const char *othe
     return stream_find(whole->stream, name) != NULL || stream_find(whole->stream, other) != NULL;
 }
 
-/* Check what goes with the cells of a body: the others of its sections are cut as they are. */
+/* Check the groups of a body; its other sections are cut unchecked. */
 static void check_groups(const struct cut_body *whole)
 {
     const struct tool *tool = whole->tool;
@@ -49,7 +49,7 @@ static void check_groups(const struct cut_body *whole)
                                &error));
 }
 
-/* Take out what cannot be cut, and keep what the rest was. */
+/* Remove sections that cannot be cut, and keep a copy of the others. */
 void cut_body_keep_sections(struct cut_body *whole)
 {
     struct stream *stream = whole->stream;
@@ -70,7 +70,7 @@ void cut_body_keep_sections(struct cut_body *whole)
     for (int64_t i = 0; i < stream->section_count; i++) {
         struct section *kept = &whole->sections[i];
         *kept = stream->sections[i];
-        stream->sections[i].owned = false; /* freed at the end: they are replaced for each part */
+        stream->sections[i].owned = false; /* replaced for each part; the data is freed at the end */
         kept->name = tool_memory(whole->tool, strdup(kept->name));
         kept->attributes = tool_memory(whole->tool, strdup(kept->attributes));
     }
@@ -92,8 +92,7 @@ static void put(const struct cut_body *whole, const char *name, enum element_typ
     TOOL_TRY(whole->tool, stream_put(whole->stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
-/* Put these rows of a section; where `place` is given, its values are node numbers and become places there.
- */
+/* Put these rows of a section. If `place` is given, the values are node numbers n and become place[n]. */
 static void put_rows(const struct cut_body *whole, const struct section *section, const int32_t *row,
                      int64_t count, const int32_t *place)
 {
@@ -119,7 +118,7 @@ static void put_numbers(const struct cut_body *whole, const char *name, const ch
              stream_put_copy(whole->stream, name, TYPE_I4, count, 1, attributes, number, &error));
 }
 
-/* Facets whose nodes are all there and belong to a cell that is. */
+/* Put the facets of a cell of the part. */
 static void put_facets(const struct cut_body *whole, const int32_t *place, const bool *has_cell)
 {
     const struct section *facets = kept_section(whole, "facets"), *set = kept_section(whole, "facets.set");
@@ -179,7 +178,7 @@ static void put_sets(const struct cut_body *whole, const int32_t *place)
     put_numbers(whole, "part.set", "", row, count);
 }
 
-/* The stream becomes that of one part. */
+/* Turn the stream into that of one part. */
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body)
 {
     int32_t *place, *owner;

@@ -1,4 +1,4 @@
-/* A body cut into parts (see part): the stream of the whole becomes that of each part in turn. */
+/* Cutting a body into parts (see part): the stream of the whole is turned into that of each part in turn. */
 #pragma once
 
 #include "tool.h"
@@ -21,14 +21,14 @@ struct cut_body {
     int32_t *own_cell;
     double *radius;
     int32_t *owner, *work;
-    uint32_t cut; /* tells parts of this cut from others */
+    uint32_t cut; /* distinguishes parts of this cut from others */
 };
 
-/* Take what cannot be cut out of the stream, with a note, and keep what the rest was. Exits with a message on
- * failure, as what follows. */
+/* Remove sections that cannot be cut from the stream, with a note, and keep a copy of the others. Exits with
+ * a message on failure, as do the functions below. */
 void cut_body_keep_sections(struct cut_body *whole);
 
-/* The stream becomes that of one part, which has the sections of lib/README.md, "A body in parts". */
+/* Turn the stream into that of one part, with the sections of lib/README.md, "Of a body in parts". */
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body);
 
 void cut_body_free(struct cut_body *whole);

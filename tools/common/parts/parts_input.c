@@ -26,7 +26,7 @@ static enum status fail_missing(const char *file, int64_t number, int64_t count,
                 (long long)count);
 }
 
-/* Part `number`, of `count` if that is known. */
+/* Read the file of part `number`. */
 static enum status read_file(const char *file, int64_t number, int64_t count, struct stream *stream,
                              struct error *error)
 {
@@ -42,7 +42,7 @@ static enum status read_file(const char *file, int64_t number, int64_t count, st
     return status;
 }
 
-/* How many parts there are, as the first one says. */
+/* *count: number of parts, from the first part. */
 static enum status count_parts(const char *file, const struct stream *stream, int64_t *count,
                                struct error *error)
 {
@@ -67,7 +67,7 @@ static enum status look_for_last(const struct tool *tool, const char *operand, i
     return status;
 }
 
-/* The first part is read by the first process, and all learn how many there are. */
+/* Let the first process read the first part; all processes get the number of parts. */
 static int64_t begin(const struct tool *tool, const char *operand, struct stream *stream)
 {
     struct error error;
@@ -90,7 +90,7 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
     return count;
 }
 
-/* The checksums of all parts as one. */
+/* A checksum of the checksums of all parts. */
 static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first)
 {
     SCRATCH uint32_t *each = NULL;
@@ -103,7 +103,7 @@ static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, c
     return (uint32_t)crc;
 }
 
-/* For each row of face averages the process that has read it: the one whose part owns the row. */
+/* For each row of face averages, the process that has read it: that of the part that owns the row. */
 static void list_readers(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first,
                          struct parts_input *parts)
 {
@@ -119,7 +119,7 @@ static void list_readers(const struct tool *tool, const struct rejoin *rejoin, c
     }
 }
 
-/* Read the files of the parts that are this process's, the first one as it was read already. */
+/* Read the files of this process's parts; the first part is in *start. */
 static enum status read_own(struct rejoin *rejoin, const char *operand, const int64_t *first,
                             const struct stream *start, struct error *error)
 {

@@ -8,7 +8,7 @@
 /* Everything is packed in units of UNIT bytes, so that values are aligned; sent in units of UNIT_SENT. */
 enum { UNIT = 8, UNIT_SENT = 64 };
 
-/* A buffer that is appended to. Where `at` is NULL, bytes are counted and not stored. */
+/* A buffer to which bytes are appended; if `at` is NULL they are only counted. */
 struct pack {
     char *at;
     size_t size;
@@ -52,7 +52,7 @@ static void pack_stream(struct pack *pack, const struct stream *stream)
     }
 }
 
-/* The converse of pack_bytes: the next `size` bytes, in place. */
+/* The inverse of pack_bytes: the next `size` bytes, in place. */
 static char *take(struct pack *pack, size_t size)
 {
     char *bytes = pack->at + pack->size;
@@ -87,7 +87,7 @@ static enum status unpack_stream(struct pack *pack, struct stream *stream, struc
     return STATUS_OK;
 }
 
-/* What this process has read, as bytes; units[count]: how much each process has. */
+/* Pack the sections that this process has read; (*units)[count]: the size of each process's data. */
 static enum status pack_own(const struct rejoin *rejoin, struct pack *own, int64_t **units,
                             struct error *error)
 {

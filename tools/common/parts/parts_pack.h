@@ -3,8 +3,8 @@
 
 #include "parts/rejoin.h"
 
-/* Fill in the streams of the parts that are elsewhere: their sections, of large tables the heads without
- * rows, and provenance. Process r has the parts from first[r] to before first[r + 1]; all call this together.
- * *packed holds what they consist of: to be freed behind them. One process: nothing, and NULL. */
+/* Set the streams of parts that other processes have read: sections, large tables without rows, and
+ * provenance. Process r has the parts from first[r] to before first[r + 1]. Collective. *packed holds the
+ * data of these streams, to be freed after them; NULL for one process. */
 MUST_CHECK enum status parts_share_small(struct rejoin *rejoin, const int64_t *first, void **packed,
                                          struct error *error);

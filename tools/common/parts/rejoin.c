@@ -23,7 +23,8 @@ static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *
     return number;
 }
 
-/* Numbers in the whole, ascending, one for each row of `like`. */
+/* The section `name` of a part: one number from `least` to before `below` for each of `rows` rows, perhaps
+ * ascending. Exits if it is not. */
 static const int32_t *numbers(const struct rejoin *rejoin, const struct rejoin_part *part, const char *name,
                               int64_t rows, int64_t least, int64_t below, bool ascending)
 {
@@ -67,7 +68,7 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
         numbers(rejoin, part, "part.cell", part->cells.count, 0, attribute(rejoin, part, "cells"), true);
 }
 
-/* Exit where a number from 0 to parts - 1 belongs to none of the parts that were read. */
+/* Exit if one of the numbers 0 to parts - 1 belongs to none of the parts that were read. */
 static void check_numbers(const struct rejoin *rejoin)
 {
     int64_t parts = rejoin->part[0].parts, number = 0;
@@ -83,7 +84,7 @@ static void check_numbers(const struct rejoin *rejoin)
     }
 }
 
-/* The version in a line of provenance, where that is of this program: "PROGRAM VERSION ...". */
+/* The version in a provenance line of this program, "PROGRAM VERSION ..."; NULL: another program. */
 static const char *version_of(const char *line, const char *program, size_t *length)
 {
     size_t name = strcspn(program, " ");
@@ -94,7 +95,7 @@ static const char *version_of(const char *line, const char *program, size_t *len
     return line + name + 1;
 }
 
-/* Two parts must not have been made by different versions of a program. */
+/* Exit if parts were made by different versions of a program. */
 static void check_versions(const struct rejoin *rejoin, const struct rejoin_part *part)
 {
     const struct rejoin_part *first = &rejoin->part[0];
@@ -113,7 +114,7 @@ static void check_versions(const struct rejoin *rejoin, const struct rejoin_part
     }
 }
 
-/* Each part once, in the order of their numbers. */
+/* Sort the parts by their numbers; exit if one is repeated. */
 static void sort_parts(struct rejoin *rejoin)
 {
     const struct tool *tool = rejoin->tool;
@@ -186,7 +187,7 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
     }
 }
 
-/* Nodes and cells of the whole. */
+/* Map the nodes and cells of the parts to those of the whole. */
 static void map_body(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;
@@ -221,7 +222,7 @@ static void map_body(struct rejoin *rejoin)
 }
 
 /* Mark the nodes of each part that have cells outside of it. Supports there may differ from those of the
- * whole body: no list that the part owns may hold such a node. */
+ * whole body: no list owned by the part may contain such a node. */
 static void find_edges(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;
@@ -244,7 +245,7 @@ static void find_edges(struct rejoin *rejoin)
     }
 }
 
-/* Facets and members of sets belong to the part that owns their first node. */
+/* Map facets, or members of sets; each belongs to the part that owns its first node. */
 static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *name, const char *numbered)
 {
     for (int64_t k = 0; k < rejoin->part_count; k++) {
@@ -269,7 +270,7 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
     rejoin_check_rows(rejoin, kind, name);
 }
 
-/* Integration points follow their cells. */
+/* Map the integration points, which belong to the parts of their cells. */
 static void map_points(struct rejoin *rejoin)
 {
     int64_t *begin, cells = rejoin->rows[ROWS_CELLS];

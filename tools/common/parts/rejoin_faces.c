@@ -7,8 +7,8 @@
 
 #include <stdlib.h>
 
-/* The face of the whole that is a part's face, whose first cell is its own; they have the same nodes in the
- * same order. begin, face: the faces of each cell. */
+/* The face of the whole that equals a part's face whose first cell the part owns: it has the same nodes in
+ * the same order. begin, face: the faces of each cell. */
 static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *part, const int64_t *begin,
                          const int32_t *face, int64_t local)
 {
@@ -65,7 +65,7 @@ static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const
     }
 }
 
-/* The side of each cell of the whole, for the caller to free; NULL where supports stop at no interfaces. */
+/* The side of each cell of the whole, to be freed; NULL: supports stop at no interface. */
 static int32_t *whole_sides(const struct rejoin *rejoin)
 {
     int32_t *side = NULL;

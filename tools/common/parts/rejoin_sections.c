@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the table of sections calls the rows. */
+/* The names of the rows in the table of sections. */
 static const char *const row_names[ROWS_KINDS] = {
     [ROWS_NODES] = "nodes.x",           [ROWS_CELLS] = "cells",
     [ROWS_FACETS] = "facets",           [ROWS_SETS] = "sets.idx",
@@ -25,7 +25,7 @@ static enum rows_of rows_called(const char *name)
     return (enum rows_of)rows;
 }
 
-/* Lists in the parts, one for each of `rows`, and where each of them begins in the whole. */
+/* Lists of the parts, one for each of `rows`, and the start of each in the whole. */
 struct joined_lists {
     char prefix[32];
     enum rows_of rows;
@@ -51,7 +51,7 @@ bool rejoin_is_large(const char *name)
 
 /* ---- rows ---- */
 
-/* The section of part k; the message names the part where it is missing or made otherwise. */
+/* The section of part k. Exits, naming the part, if it is missing or of another kind. */
 static const struct section *section_of(const struct rejoin *rejoin, int64_t k, const char *name,
                                         const struct section *like)
 {
@@ -73,7 +73,7 @@ static void put(const struct rejoin *rejoin, struct stream *stream, const char *
     TOOL_TRY(rejoin->tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
-/* Numbers of nodes or cells of a part become those of the whole. */
+/* Turn numbers of nodes or cells of a part into those of the whole. */
 static void renumber(const struct rejoin *rejoin, const struct rejoin_part *part,
                      const struct section_kind *kind, int32_t *value, int64_t count)
 {
@@ -89,8 +89,8 @@ static void renumber(const struct rejoin *rejoin, const struct rejoin_part *part
     }
 }
 
-/* Put a section that has a row for each of `rows` or, with lists, as many as each of them is long. Parts that
- * have none of its rows may lack it. */
+/* Put a section that has a row for each of `rows`, or with lists for each of their entries. Parts without
+ * such rows may lack it. */
 static void put_rows(const struct rejoin *rejoin, struct stream *stream, const char *name, enum rows_of rows,
                      const struct joined_lists *lists)
 {
@@ -140,8 +140,8 @@ static void put_rows(const struct rejoin *rejoin, struct stream *stream, const c
 
 /* ---- lists ---- */
 
-/* The lists of part k, none where these are large and elsewhere. A list with a node at the edge of the part
- * may differ from that of the whole body. */
+/* The lists of part k; none if they are large and elsewhere. Refuses an own list with a node at the edge of
+ * the part, which may differ from that of the whole body. */
 static enum status view_part(const struct rejoin *rejoin, int64_t k, struct joined_lists *lists,
                              struct error *error)
 {
@@ -169,7 +169,7 @@ static enum status view_part(const struct rejoin *rejoin, int64_t k, struct join
     return STATUS_OK;
 }
 
-/* Where each list begins in the whole. */
+/* Set the start of each list in the whole. */
 static void join_lists(const struct rejoin *rejoin, struct joined_lists *lists)
 {
     int64_t rows = rejoin->rows[lists->rows];
@@ -188,7 +188,7 @@ static void join_lists(const struct rejoin *rejoin, struct joined_lists *lists)
     }
 }
 
-/* The lists of which this is the section of beginnings, X.ptr, or of members, X.idx. */
+/* View the lists of the section X.ptr or X.idx. */
 static void view_lists(const struct rejoin *rejoin, const char *name, struct joined_lists *lists)
 {
     char ptr[64];
@@ -210,7 +210,7 @@ enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
         const struct rejoin_part *part = &rejoin->part[k];
         const struct section *values = stream_find(&part->stream, "face.phi");
         if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
-            continue; /* every process finds that out for itself */
+            continue; /* each process checks its own parts */
         }
         RETURN_IF_ERROR(view_part(rejoin, k, &lists, error));
         if (!part->elsewhere && values->rows != lists.of[k].ptr[lists.of[k].count]) {
@@ -220,7 +220,7 @@ enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
     return STATUS_OK;
 }
 
-/* The pairs around corners of each list of a part, as lists of their own: of[k].idx is not set. */
+/* Make lists of the pairs around corners in each list of each part; their idx is not set. */
 static void list_around(const struct rejoin *rejoin, const struct neighbours *of, struct neighbours *around)
 {
     int64_t *ptr, i = 0;
@@ -234,7 +234,7 @@ static void list_around(const struct rejoin *rejoin, const struct neighbours *of
     *around = (struct neighbours){.count = of->count, .ptr = ptr};
 }
 
-/* X.around, the pairs that see each other around corners, and X.image. */
+/* Put X.around, the pairs that see each other around corners, and X.image. */
 static void put_around(const struct rejoin *rejoin, struct stream *stream, const struct joined_lists *lists)
 {
     char name[64];
@@ -268,7 +268,7 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
     }
 }
 
-/* All that belongs to lists; in the order in which support and shapefn write it. */
+/* Put all sections of some lists, in the order in which support and shapefn write them. */
 static void put_lists(const struct rejoin *rejoin, struct stream *stream, const struct section *ptr)
 {
     char name[64];
@@ -283,7 +283,7 @@ static void put_lists(const struct rejoin *rejoin, struct stream *stream, const 
     put_around(rejoin, stream, &lists);
 }
 
-/* A section with a row for each pair of lists that are in the stream already. */
+/* Put a section with a row for each pair of lists that are already in the stream. */
 static void put_pairs(const struct rejoin *rejoin, struct stream *stream, const char *name, const char *idx)
 {
     FREED_BY(lists_free) struct joined_lists lists = {0};
@@ -294,7 +294,7 @@ static void put_pairs(const struct rejoin *rejoin, struct stream *stream, const 
     put_rows(rejoin, stream, name, lists.rows, &lists);
 }
 
-/* ---- what is made of the whole body ---- */
+/* ---- sections made from the whole body ---- */
 
 static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const struct section *section)
 {
@@ -316,7 +316,7 @@ static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const 
     return false;
 }
 
-/* Where each set ends, from the members that the parts own. */
+/* Put the ends of the sets, from the members that the parts own. */
 static void put_sets(const struct rejoin *rejoin, struct stream *stream, const struct section *first)
 {
     int64_t *ptr;
@@ -341,9 +341,9 @@ static void put_sets(const struct rejoin *rejoin, struct stream *stream, const s
     put(rejoin, stream, first->name, TYPE_I8, first->rows, 1, first->attributes, ptr);
 }
 
-/* ---- all ---- */
+/* ---- all sections ---- */
 
-/* Put one section of part 0, with what goes with it; false if it is none that can be. */
+/* Put one section of part 0, with the sections that belong to it; false if it cannot be joined. */
 static bool put_section(const struct rejoin *rejoin, struct stream *stream, const struct section *section)
 {
     const char *name = section->name;
@@ -366,7 +366,7 @@ static bool put_section(const struct rejoin *rejoin, struct stream *stream, cons
         put_rows(rejoin, stream, name, rows, NULL);
     } else if (kind->rows_of != NULL && text_ends(kind->rows_of, ".idx")) {
         put_pairs(rejoin, stream, name, kind->rows_of);
-    } else { /* pairs around corners that are another part's only */
+    } else { /* pairs around corners that only other parts have */
         return text_ends(name, ".around") || text_ends(name, ".image");
     }
     return true;

@@ -40,7 +40,7 @@ void run_drop_tables(struct stream *stream)
     sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
 }
 
-/* The number behind that of the last frame. */
+/* The number that follows that of the last frame. */
 static int64_t next_frame(const struct stream *stream)
 {
     char name[40];
@@ -64,7 +64,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
     if (status == STATUS_VERDICT && !run->folds.reported) {
         run_folds_describe(run, FOLDED, folds, sizeof folds);
     }
-    /* One line, whatever the names in it contain. */
+    /* fail() makes one line of it, whatever the names in it contain. */
     bool in_part = folds[0] != '\0' && run_folds_touch_in_part(run);
     fail(&reason, status, "%s%s%s%s", text, folds[0] != '\0' ? "; " : "", folds,
          in_part ? ": let all of it touch (facets = *, against = *)" : "");

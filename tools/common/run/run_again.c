@@ -1,5 +1,5 @@
-/* A body whose parts pass through each other is computed once more, with contact of its boundary with itself.
- * So this contact, whose search takes time in each step, is modelled where a scene needs it. */
+/* If parts of a body pass through each other, it is computed again with contact of its boundary with itself.
+ * The search for this contact takes time in each step, so it is only used where it is needed. */
 #include "run/run.h"
 
 #include <stdio.h>

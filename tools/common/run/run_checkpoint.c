@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* ---- signals: a run that is asked to end finishes its step ---- */
+/* ---- signals: the run ends after the current step ---- */
 
 static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
 static volatile sig_atomic_t caught;
@@ -14,8 +14,8 @@ static void on_signal(int number)
     caught = number;
 }
 
-/* From now on SIGINT, SIGTERM and SIGHUP, unless ignored, only set the flag returned: their number, 0 before.
- * The second one of a kind ends the process at once. */
+/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, only set the returned flag to their number; it is initially
+ * 0. A second signal of the same kind ends the process at once. */
 static const volatile sig_atomic_t *catch_signals(void)
 {
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
@@ -29,7 +29,7 @@ static const volatile sig_atomic_t *catch_signals(void)
     return &caught;
 }
 
-/* Give the signals their default actions back. */
+/* Restore the default actions of the signals. */
 static void release_signals(void)
 {
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
@@ -49,7 +49,7 @@ static void share(const struct run *run, struct stream *stream, const struct sec
                                    section->attributes, section->data, false, &error));
 }
 
-/* The frames that the run had given. */
+/* Copy the frames of the restored run into the stream. */
 static void take_frames(struct run *run)
 {
     const struct stream *restored = &run->checkpoint.restored;
@@ -68,7 +68,7 @@ static bool agree(int64_t number)
     return ranks_most(ranks, number) == number && ranks_most(ranks, -number) == -number;
 }
 
-/* Exits where several processes do not have the same before them: they would not do the same. */
+/* Exit if several processes have different scenes, inputs or checkpoints: they would not do the same. */
 static void compare_processes(const struct run *run)
 {
     const struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -139,7 +139,7 @@ const struct state *run_checkpoint_state(const struct run *run)
     return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
 }
 
-/* What to see where the run is: the cloud, the frames so far, and the field at this step. */
+/* Put sections for viewing the checkpoint: the cloud, the frames so far, and the field at this step. */
 static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
 {
     static const char *const names[] = {"nodes.x", "cells", "cells.region"};
@@ -160,7 +160,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     TOOL_TRY(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error));
 }
 
-/* The state of the run and of what this program saw of it. */
+/* The state of the run, and of the checks of this program. */
 struct whole_state {
     struct run *run;
     const struct progress *progress;
@@ -192,7 +192,7 @@ done:
     return status;
 }
 
-/* The first process writes, when it is time. A failure that is to end the run. */
+/* Write a checkpoint, by the first process. Returns a failure that must end the run. */
 static enum status keep(struct run *run, const struct progress *progress, bool interrupted)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -204,7 +204,7 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
     checkpoint->status = write_now(run, progress, &checkpoint->error);
     if (checkpoint->status != STATUS_OK && !interrupted) {
         run_clear_progress(&run->display);
-        if (is_first) { /* better now than when it is needed */
+        if (is_first) { /* fail now rather than when the checkpoint is needed */
             return checkpoint->status;
         }
         tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",

@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More than this part of a contact's force, or of the facets held, on patches less than three nodes across.
- */
+/* A contact or condition is reported if more than this share of its force, or of its facets, is on patches
+ * less than three nodes across. */
 static const double most_thin = 0.5;
 
-/* More than this part of the forces that is missing because contacts still give way. */
+/* Forces are reported if more than this share is missing because of the remaining penetration. */
 static const double most_missing = 0.01;
 
 /* Positions of the nodes. */
@@ -29,7 +29,7 @@ static double *deformed(const struct run *run)
     return x;
 }
 
-/* How far the rows of conditions move the body at most, m. */
+/* The largest displacement prescribed by rows of conditions, m. */
 static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
 {
     double most = 0.0;
@@ -39,7 +39,7 @@ static double prescribed_motion(const struct solid_system *system, const struct 
     return most;
 }
 
-/* How far the surface moves at most at `count` places, m. */
+/* The largest motion of the surface at `count` places, m. */
 static double own_motion(const struct solid_system *system, const struct contact *contact,
                          const double *place, int64_t count)
 {
@@ -55,8 +55,8 @@ static double own_motion(const struct solid_system *system, const struct contact
                          curve_largest(&system->curves[motion->rotation_curve]));
 }
 
-/* How far the surface is from the points of its contact at rest, at least, m: by the boxes around both, and
- * by the points, which in front of an open rim tell less, until one is within `enough`. */
+/* A lower bound of the distance of the surface from the points of its contact at rest, m: from the boxes
+ * around both, and from the points, until one is within `enough`. */
 static double distance_at_rest(const struct contact *contact, double enough)
 {
     const struct rigid_branch *box = contact->surface.branch;
@@ -78,8 +78,8 @@ static double distance_at_rest(const struct contact *contact, double enough)
     return fmax(sqrt(between2), nearest);
 }
 
-/* A body that is moved by more than so many times its size may be one of mm whose scene has m for mm; by more
- * than so many, no scene means it. */
+/* A motion of more than many_sizes sizes of the body is noted: the scene may have m in place of mm. More than
+ * most_sizes is refused. */
 static const double many_sizes = 10.0, most_sizes = 1e4;
 
 static void check_motion(const struct run *run, const char *where, const char *what, double way)
@@ -95,8 +95,8 @@ static void check_motion(const struct run *run, const char *where, const char *w
     }
 }
 
-/* How far the surface goes beside the body and beyond it, m: a wide surface that turns moves far at its rim
- * alone, and one that begins far away has a way to go. */
+/* The motion of the surface at the body, m: not that at the rim of a wide surface that turns, nor the way of
+ * a surface that starts far away. */
 static double motion_at_body(const struct run *run, const struct contact *contact)
 {
     double motion = own_motion(&run->model->system, contact, contact->rest, contact->count);
@@ -108,7 +108,7 @@ void run_contacts_begin(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
     const struct assembly *input = &run->model->assembly;
-    /* What is thrown or pushed in time may go anywhere. */
+    /* In dynamics a body with loads or an initial velocity may move anywhere. */
     bool anywhere = input->in_time && (input->load_count > 0 || assembly_has_gravity(input) ||
                                        run->scene->initial.table != NULL);
     double prescribed =
@@ -191,7 +191,7 @@ void run_contacts_give_way(struct run *run, double miss, double allowed, double 
         }
     }
     if (!input->in_time && miss > most_share * motion) {
-        run->last_good = -1.0; /* the frames are all there */
+        run->last_good = -1.0; /* all frames have been given */
         run_fail(run, STATUS_VERDICT, "%s: contacts give way by %.2g m, where the body moves %.2g m: %s",
                  run->scene->path, miss, motion, remedy);
     }
@@ -230,7 +230,7 @@ static void judge_patch(struct run *run, const struct contact *contact, const st
     char place[96];
     if (patch->inside > slack) {
         point_text(system->dim, patch->place, place);
-        run->last_good = -1.0; /* the frames are all there */
+        run->last_good = -1.0; /* all frames have been given */
         run_fail(
             run, STATUS_VERDICT,
             "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and "

@@ -6,20 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A surface that has left the body again is within the chords of a curved boundary by less than this share of
- * a facet's width. */
+/* A surface that has left the body may be inside of the chords of a curved boundary by less than this share
+ * of a facet's width. */
 static const double most_inside = 0.1;
 
-/* Coordinates of row `row` of points or nodes, as text. */
+/* place = the coordinates of row `row` of points or nodes, as text. */
 static void place_of(const struct run *run, const double *x, int64_t row, char place[96])
 {
     point_text(run->scene->dim, x + row * run->scene->dim, place);
 }
 
-/* Contacts may give way by this share of the largest displacement at the end, as in quasi-static scenes. */
+/* Largest penetration of contacts at the end, as a share of the largest displacement, as in quasi-static
+ * scenes. */
 static const double most_given = 1e-3;
 
-/* A verdict other than done ends the run, naming where it went wrong and what to change. */
+/* End the run with a verdict if it is not done, with the place of the failure and the remedy. */
 static void judge(struct run *run, const struct dynamics_report *report)
 {
     const struct scene *scene = run->scene;
@@ -79,7 +80,7 @@ static void tell_report(const struct run *run, const struct dynamics_report *rep
             report->least_jacobian);
 }
 
-/* The log becomes the section `energy`. */
+/* Put the log as section `energy`. */
 static void put_energy(const struct run *run, const struct energy_log *log)
 {
     _Static_assert(sizeof(struct energy) == ENERGY_COLUMNS * sizeof(double), "a row of numbers");

@@ -16,7 +16,7 @@ struct totals {
     double *moment;        /* rows * moment_count, N m (2D: N) */
 };
 
-/* A force on an average of the deformed body acts at the mean of its places, as the weights have the sum 1
+/* Add a force on an average. It acts at the average of the deformed positions, as the weights have the sum 1
  * and reproduce linear fields. */
 static void add_force(const struct run *run, const struct average *average, const double *force, int64_t row,
                       struct totals *totals)
@@ -36,10 +36,10 @@ static void add_force(const struct run *run, const struct average *average, cons
     }
     vector_cross(arm, f, moment);
     add_scaled(count, 1.0, moment + 3 - count,
-               totals->moment + row * count); /* in 2D the last of the three */
+               totals->moment + row * count); /* in 2D only the last component */
 }
 
-/* Of the conditions, and of the constraint penalties that back them. */
+/* Add the forces of the conditions and of their constraint penalties. */
 static void add_conditions(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
@@ -50,7 +50,7 @@ static void add_conditions(const struct run *run, struct totals *totals)
         double share = 0.0;
         struct average average = constraint_rows_average(rows, r);
         for (int64_t i = 0; i < average.length; i++) {
-            share += average.phi[i]; /* 1 but for round-off */
+            share += average.phi[i]; /* 1 up to round-off */
         }
         for (int a = 0; a < dim; a++) {
             force[a] = share * run->model->row_force[r] * rows->direction[r * dim + a];
@@ -89,9 +89,9 @@ static const char *name_of_row(const struct scene *scene, int64_t r)
                                          : scene->contacts[r - scene->displacement_count].label.name;
 }
 
-/* Attributes of a table of vectors, allocated. "unit=N ... rows=bottom,top", a row for each condition; or in
- * one row, behind the time: "unit=1,N,N,N,N ... cols=time,bottom.x,bottom.y,top.x,top.y". `more` is put in
- * between, `components` are their letters. */
+/* The attributes of a table of vectors, to be freed: "unit=N MORE rows=bottom,top" with a row for each
+ * condition; or in one row, after the time: "unit=1,N,N,N,N MORE cols=time,bottom.x,bottom.y,top.x,top.y".
+ * `components`: the letters of the components. */
 static char *attributes_of_rows(const struct run *run, const char *unit, const char *more,
                                 const char *components, int64_t rows, bool in_one_row)
 {
@@ -121,7 +121,7 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
     return attributes;
 }
 
-/* Section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
+/* Put section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
 static void put_vectors(const struct run *run, const struct moment *moment, const char *name,
                         const char *name_of_frames, const char *unit, const char *more,
                         const char *components, int64_t rows, double *values)

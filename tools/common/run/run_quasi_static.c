@@ -6,7 +6,7 @@ static const char beyond_limit[] =
     "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
     "a dynamic scene, or refine there; frames show up to which load it stands";
 
-/* A verdict other than converged ends the run: nothing half-done passes for a result. */
+/* End the run if it has not converged: no incomplete result is given. */
 static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
@@ -55,7 +55,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
-        /* The relaxation has gone back several times, and let the load grow more slowly each time. */
+        /* The relaxation has gone back several times, with a slower load each time. */
         run_fail(
             run, STATUS_VERDICT,
             "%s: step %lld%s: integration point %lld at %s is inverted (J = %.3g), however slowly the load "
@@ -75,8 +75,8 @@ static void judge(struct run *run, const struct relaxation_report *report)
              run->model->interfaces.text[0] != '\0' ? ", or stop supports at interfaces (support -i)" : "");
 }
 
-/* How far the iteration may have left the field from where it would end, m: the relaxation, and contacts that
- * still give way. */
+/* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
+ * contacts. */
 static double error_left(const struct relaxation_report *report)
 {
     return report->error * report->largest_move + report->penetration;

@@ -22,7 +22,7 @@ static void put(const struct run *run, const struct moment *moment, const char *
     run_put(run, full, rows, cols, timed, values);
 }
 
-/* The field at the nodes, and its parameters. */
+/* Put the field at the nodes, and its parameters. */
 static void put_field(const struct run *run, const struct moment *moment, const double *u)
 {
     int dim = run->scene->dim;
@@ -93,7 +93,7 @@ static void green_lagrange_strain(const double F[9], double strain[9])
     }
 }
 
-/* tensors[points * 9]: their symmetric components, as section `name`. */
+/* Put the symmetric components of tensors[points * 9] as section `name`. */
 static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
                         const char *kind, const double *tensors)
 {
@@ -110,7 +110,7 @@ static void put_tensors(const struct run *run, const struct moment *moment, cons
     put(run, moment, name, points, count, attributes, values);
 }
 
-/* What the scene asks for at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
+/* Put the requested fields at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
  * ratio. */
 static void put_point_fields(struct run *run, const struct moment *moment)
 {
@@ -166,7 +166,7 @@ void run_append_row(const struct run *run, const char *name, double time, const 
     run_put(run, name, rows + 1, count + 1, attributes, table);
 }
 
-/* Gap, pressure and place of every contact node of every contact. */
+/* Put gap, pressure and place of every contact node of every contact. */
 static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;
@@ -190,7 +190,7 @@ static void put_gaps(const struct run *run, const struct moment *moment)
         dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure", values);
 }
 
-/* Of the state of rest. What the loads did on the way there means nothing: relaxation is no motion. */
+/* Put the energies of the equilibrium. The work of loads during a relaxation has no meaning. */
 static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
@@ -208,7 +208,7 @@ static void put_energy(struct run *run, const struct moment *moment)
             is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", row);
 }
 
-/* What the scene asks for besides u, of the state run->u at which the system was evaluated last. */
+/* Put the requested output besides u, for the state run->u at which the system was evaluated last. */
 static void put_state(struct run *run, const struct moment *moment)
 {
     const struct scene_output *output = &run->scene->output;
@@ -234,7 +234,7 @@ void run_put_results(struct run *run)
 {
     struct model *model = run->model;
     double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
-    /* Bring F, stresses and gaps to the final state. */
+    /* Evaluate F, stresses and gaps at the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
     free(scratch);

@@ -10,29 +10,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bodies of a model: what hangs together by cells. */
+/* The bodies of a model: parts that are connected by cells. */
 struct bodies {
     int32_t count;
     int32_t *of_node;          /* node_count */
-    int64_t *cell;             /* count: one of its cells, whose region names it */
-    bool *touches;             /* count: a contact acts on it, with a rigid surface or a body that stays */
-    bool *stays;               /* count: it is held in some direction, or touches */
+    int64_t *cell;             /* count: one of its cells, whose region is named in messages */
+    bool *touches;             /* count: a contact acts on it, with a rigid surface or a constrained body */
+    bool *stays;               /* count: it is constrained in some direction, or touches */
     struct rigid_modes *modes; /* count */
 };
 
-/* of_node[n]: the first node of its body; then its number. Nodes in no cell are bodies of their own. */
+/* Number the bodies: of_node[n]. Nodes without cell are bodies of their own. */
 static void join_cells(const struct cells *cells, struct bodies *bodies)
 {
     int32_t *first = bodies->of_node;
     set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, first);
     for (int64_t n = 0; n < cells->node_count; n++) {
-        /* The first node comes before the others: it has its number by then. */
+        /* The first node of a body comes before the others, so it already has a number. */
         int32_t of = first[n];
         first[n] = of == n ? bodies->count++ : first[of];
     }
 }
 
-/* Mark the bodies of nodes. */
+/* Mark the bodies of the nodes of `at`. */
 static void mark_bodies(const struct bodies *bodies, const struct boundary_averages *at, bool *marked)
 {
     for (int64_t a = 0; a < at->count; a++) {
@@ -40,8 +40,8 @@ static void mark_bodies(const struct bodies *bodies, const struct boundary_avera
     }
 }
 
-/* Bodies of a contact between facets of bodies hold each other, when another one of them stays. Returns
- * whether more bodies touch. */
+/* Mark bodies of a contact between facets as touching if another one of them stays. Returns whether more
+ * bodies touch. */
 static bool hold_each_other(struct bodies *bodies, const struct contact *contact, bool *there)
 {
     int64_t staying = 0;
@@ -60,7 +60,7 @@ static bool hold_each_other(struct bodies *bodies, const struct contact *contact
     return more;
 }
 
-/* The bodies that contacts act on. */
+/* Find the bodies on which contacts act. */
 static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
                                  struct error *error)
 {
@@ -111,7 +111,7 @@ static void bodies_free(struct bodies *bodies)
     FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->modes);
 }
 
-/* A direction in words, its largest component positive, round-off taken out. */
+/* text = a direction with positive largest component, without round-off. */
 static void direction_text(int dim, const double *direction, char text[96])
 {
     double x[3];
@@ -125,7 +125,7 @@ static void direction_text(int dim, const double *direction, char text[96])
     point_text(dim, x, text);
 }
 
-/* "may move along (1, 0), may turn about (0, 0.1)" */
+/* text = "may move along (1, 0), may turn about (0, 0.1)". */
 static void modes_text(int dim, double size, const struct rigid_modes *modes, char *text, size_t room)
 {
     char what[96], where[96];
@@ -151,7 +151,7 @@ static void modes_text(int dim, double size, const struct rigid_modes *modes, ch
     }
 }
 
-/* "the body", or "body 2 (region lump, near (0.1, 0.2))", numbered from 1 */
+/* text = "the body", or "body 2 (region lump, near (0.1, 0.2))", numbered from 1. */
 static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
                              char text[256], struct error *error)
 {
@@ -167,8 +167,7 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     return STATUS_OK;
 }
 
-/* Parts of bodies that are joined by nodes alone, at corners and edges of cells: by cells with common faces,
- * see cells_parts. */
+/* Parts of bodies (cells_parts) that share only nodes, at corners and edges of cells. */
 struct hinged {
     int64_t *cell; /* one of each part */
     struct joint *joint;
@@ -177,7 +176,7 @@ struct hinged {
     bool complete;
 };
 
-/* Several cells of a part may find the same joint: that does no harm. */
+/* Find the parts and their joints; several cells of a part may find the same joint. */
 static enum status hinged_find(const struct model *model, const struct folds *folds, struct hinged *hinged,
                                struct error *error)
 {
@@ -203,8 +202,8 @@ static void hinged_free(struct hinged *hinged)
     FREE_ALL(hinged->cell, hinged->joint, hinged->modes);
 }
 
-/* Note the largest part that may move where nodes join it to others, and how many more there are. What a
- * contact acts on may be held by it. */
+/* Note the largest part that may move at the nodes that join it to others, and the number of others. Parts on
+ * which a contact acts do not count. */
 static void note_hinged(const struct run *run, const struct bodies *bodies)
 {
     FREED_BY(hinged_free) struct hinged hinged = {0};
@@ -241,7 +240,7 @@ static void note_hinged(const struct run *run, const struct bodies *bodies)
     }
 }
 
-/* Bodies from number `first` on that may move or turn, and that no contact acts on. */
+/* The number of bodies from `first` on that may move or turn, and on which no contact acts. */
 static int64_t count_free(const struct bodies *bodies, int64_t first)
 {
     int64_t count = 0;

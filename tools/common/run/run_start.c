@@ -1,5 +1,5 @@
-/* A run that begins from the field of another one, near its result: of a coarser mesh, or of other materials
- * or loads. */
+/* The start of a run from the field of another one, near its result: of a coarser mesh, or with other
+ * materials or loads. */
 #include "run/run.h"
 
 #include "io/checkpoint/checkpoint.h"
@@ -52,7 +52,7 @@ void run_start(struct run *run)
         tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
                   run->start.name);
     }
-    if (system->rows.start == NULL) { /* once, where it is computed again */
+    if (system->rows.start == NULL) { /* only once if it is computed again */
         TOOL_TRY(run->tool, system_start(system, run->u, &error));
     }
 }
