@@ -119,7 +119,7 @@ static void frequencies(struct strained *s, double *largest, double *lowest)
 {
     double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
     struct spectrum spectrum;
-    scratch = zeros(4 * s->size, sizeof *scratch);
+    scratch = zeros(5 * s->size, sizeof *scratch);
     for (int64_t i = 0; i < s->size; i++) {
         start[i] = sin(1.0 + (double)(i * i % 97));
     }

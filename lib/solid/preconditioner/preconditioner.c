@@ -29,39 +29,12 @@ static int64_t centre_count(const struct solid_system *system)
     return count < most ? count : most;
 }
 
-/* L^-T Z of the scalar coarse fields, by rows. */
-static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
-{
-    const struct ranks *ranks = p->factor.ranks;
-    int64_t nodes = p->node_count, *first = NULL;
-    int field[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
-    RETURN_IF_ERROR(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
-    first = p->field_first;
-    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
-    for (int64_t n = 0; n < nodes; n++) {
-        int count = coarse_space_at_node(&p->coarse, n, field, value);
-        for (int k = 0; k < count; k++) {
-            p->inverse_fields[field[k] * nodes + n] = value[k];
-        }
-    }
-    int64_t begin = first[ranks_rank(ranks)], end = first[ranks_rank(ranks) + 1];
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int64_t k = begin; k < end; k++) {
-        inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
-    }
-    ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
-    return STATUS_OK;
-}
-
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
 {
     RETURN_IF_ERROR(inverse_stiffness_factor(system, &p->factor, error));
     RETURN_IF_ERROR(inverse_stiffness_rows(&p->factor, &system->rows, &p->factor_rows, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
     system_relaxation_mass(system, true, p->at_rest);
-    RETURN_IF_ERROR(transform_fields(p, system->body.threads, error));
     return STATUS_OK;
 }
 
@@ -94,6 +67,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     }
     RETURN_IF_ERROR(NEW_ARRAY(&p->mass, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->vector, system->node_count * system->dim, error));
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
@@ -127,10 +101,9 @@ void preconditioner_free(struct preconditioner *p)
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     constraint_rows_free(&p->factor_rows);
-    FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
-             p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
-             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->contacts, p->impact,
-             p->pushed, p->opposite);
+    FREE_ALL(p->column_first, p->vector, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal,
+             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->held, p->inverse,
+             p->capacitance_inverse, p->amount, p->contacts, p->impact, p->pushed, p->opposite);
     *p = (struct preconditioner){0};
 }
 
@@ -159,14 +132,14 @@ static void divide_by_mass(const struct preconditioner *p, const double *x, doub
 void preconditioner_smooth(struct preconditioner *p, const double *force, double *result)
 {
     const struct inverse_factor *inverse = &p->factor;
-    double *on_inverse = p->on_inverse;
+    double *within = p->vector;
     if (inverse->rows.row_count == 0) {
         divide_by_mass(p, force, result);
         return;
     }
-    inverse_factor_apply(inverse, p->dim, force, on_inverse);
-    divide_by_mass(p, on_inverse, on_inverse);
-    inverse_factor_apply_transposed(inverse, p->dim, on_inverse, result);
+    inverse_factor_apply(inverse, p->dim, force, within);
+    divide_by_mass(p, within, within);
+    inverse_factor_apply_transposed(inverse, p->dim, within, result);
 }
 
 /* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
@@ -234,80 +207,64 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     constraint_spread(constraint, multiplier, acceleration);
 }
 
-/* L^-T move, into scratch; or the move itself. */
-static const double *on_inverse(const struct preconditioner *p, const double *move, double *scratch)
+/* y = D x */
+static void multiply_by_mass(const struct preconditioner *p, const double *x, double *y)
 {
-    if (p->factor.rows.row_count == 0) {
-        return move;
+    for (int64_t n = 0; n < p->node_count; n++) {
+        for (int64_t i = n * p->dim; i < (n + 1) * p->dim; i++) {
+            y[i] = p->mass[n] * x[i];
+        }
     }
-    memcpy(scratch, move, (size_t)(p->node_count * p->dim) * sizeof *move);
-    inverse_factor_solve_transposed(&p->factor, p->dim, scratch);
-    return scratch;
 }
 
-/* x . D y */
-static double weighted_product(const struct preconditioner *p, const double *x, const double *y)
+void preconditioner_unsmooth(const struct preconditioner *p, const double *move, double *force)
+{
+    const struct inverse_factor *inverse = &p->factor;
+    if (inverse->rows.row_count == 0) {
+        multiply_by_mass(p, move, force);
+        return;
+    }
+    memcpy(force, move, (size_t)(p->node_count * p->dim) * sizeof *move);
+    inverse_factor_solve_transposed(inverse, p->dim, force);
+    multiply_by_mass(p, force, force);
+    inverse_factor_solve(inverse, p->dim, force);
+}
+
+double preconditioner_square_diagonal(struct preconditioner *p, const double *x)
 {
     int dim = p->dim;
     double sum = 0.0;
+    if (p->factor.rows.row_count > 0) {
+        memcpy(p->vector, x, (size_t)(p->node_count * dim) * sizeof *x);
+        inverse_factor_solve_transposed(&p->factor, dim, p->vector);
+        x = p->vector;
+    }
     for (int64_t n = 0; n < p->node_count; n++) {
-        sum += p->mass[n] * vector_dot(dim, x + n * dim, y + n * dim);
+        sum += p->mass[n] * vector_dot(dim, x + n * dim, x + n * dim);
     }
     return sum;
 }
 
-/* amount[size] = Z^T B^-1 move = (L^-T Z)^T D L^-T move, of moved = L^-T move. */
-static void restrict_move(const struct preconditioner *p, const double *moved, double *amount)
+static double product(int64_t size, const double *x, const double *y)
 {
-    int dim = p->dim;
-    int64_t nodes = p->node_count;
-    if (p->factor.rows.row_count == 0) {
-        coarse_space_restrict(&p->coarse, p->mass, moved, amount);
-        return;
+    double sum = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        sum += x[i] * y[i];
     }
-    const struct ranks *ranks = p->factor.ranks;
-    const int64_t *first = p->field_first + ranks_rank(ranks);
-#pragma omp parallel for schedule(static)                                                                    \
-    num_threads(chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads)
-    for (int64_t k = first[0]; k < first[1]; k++) {
-        const double *field = p->inverse_fields + k * nodes;
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int64_t n = 0; n < nodes; n++) {
-            double weight = p->mass[n] * field[n];
-            for (int a = 0; a < dim; a++) {
-                sum[a] += weight * moved[n * dim + a];
-            }
-        }
-        memcpy(amount + k * dim, sum, (size_t)dim * sizeof *sum);
-    }
-    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, p->field_first);
-}
-
-/* Both moves in terms of L. */
-static void transform_both(struct preconditioner *p, const double **x, const double **y)
-{
-    double *scratch = p->on_inverse;
-    bool same = *x == *y;
-    *x = on_inverse(p, *x, scratch);
-    *y = same ? *x : on_inverse(p, *y, scratch + p->node_count * p->dim);
-}
-
-double preconditioner_product_diagonal(struct preconditioner *p, const double *x, const double *y)
-{
-    transform_both(p, &x, &y);
-    return weighted_product(p, x, y);
+    return sum;
 }
 
 double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
 {
     double *amount = p->amount, *solved = p->amount + p->size;
-    transform_both(p, &x, &y);
-    double sum = weighted_product(p, x, y);
+    preconditioner_unsmooth(p, x, p->vector);
+    double sum = product(p->node_count * p->dim, y, p->vector);
     if (p->size > 0) {
-        restrict_move(p, x, amount);
+        coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
         multiply(p->size, p->capacitance_inverse, amount, solved);
         if (y != x) {
-            restrict_move(p, y, amount);
+            preconditioner_unsmooth(p, y, p->vector);
+            coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
         }
         for (int64_t k = 0; k < p->size; k++) {
             sum -= amount[k] * solved[k];
@@ -316,12 +273,27 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
     return sum;
 }
 
+void preconditioner_multiply(struct preconditioner *p, const double *x, double *force)
+{
+    double *amount = p->amount, *solved = p->amount + p->size;
+    memcpy(p->vector, x, (size_t)(p->node_count * p->dim) * sizeof *x);
+    if (p->size > 0) {
+        preconditioner_unsmooth(p, x, force);
+        coarse_space_restrict(&p->coarse, NULL, force, amount);
+        multiply(p->size, p->capacitance_inverse, amount, solved);
+        for (int64_t k = 0; k < p->size; k++) {
+            solved[k] = -solved[k];
+        }
+        coarse_space_prolongate(&p->coarse, solved, p->vector);
+    }
+    preconditioner_unsmooth(p, p->vector, force);
+}
+
 void preconditioner_momentum(struct preconditioner *p, const double *velocity, double *amount,
                              double *momentum)
 {
-    const double *x = velocity, *y = velocity;
-    transform_both(p, &x, &y);
-    restrict_move(p, x, momentum);
+    preconditioner_unsmooth(p, velocity, p->vector);
+    coarse_space_restrict(&p->coarse, NULL, p->vector, momentum);
     if (p->constraint.rows != NULL) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
         release_rows(p, p->constraint.multiplier, momentum);

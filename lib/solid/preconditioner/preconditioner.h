@@ -36,10 +36,8 @@ struct preconditioner {
     double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
     struct inverse_factor factor;       /* node_count 0: none */
     struct constraint_rows factor_rows; /* G L^T */
-    double *inverse_fields;             /* coarse.count rows of node_count: L^-T of the coarse fields */
-    int64_t *field_first;               /* of several processes: the fields that each multiplies with, */
-    int64_t *column_first;              /* and the columns of the matrices that it computes */
-    double *on_inverse;                 /* 2 * node_count * dim: scratch */
+    int64_t *column_first;              /* of several processes: the columns of matrices that each computes */
+    double *vector;                     /* node_count * dim: scratch */
     struct constraint constraint;       /* with D */
     struct coarse_space coarse;         /* count 0: none, M = D */
     int64_t size;                       /* fields.count * dim: rows and columns of the matrices */
@@ -109,12 +107,14 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
 /* result = B force */
 void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
 
-/* x . B^-1 y */
-double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
-                                       const double *y);
+/* x . B^-1 x */
+double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
 
 /* x . M y for x and y that satisfy the homogeneous conditions. */
 double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
+
+/* force = M move, but for forces of the conditions, for a move that satisfies the homogeneous conditions. */
+void preconditioner_multiply(struct preconditioner *preconditioner, const double *move, double *force);
 
 /* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
  * preconditioner_restore.

@@ -1,69 +1,74 @@
 /* The diagonal mass, and the matrices of the mass and of the conditions on the coarse fields. */
 #include "solid/preconditioner/preconditioner_private.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
-#include "base/processor.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+enum { NODES_FOR_THREAD = 1000 };      /* see chunks_of */
 static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
 
-/* sum of weight x y: in a fixed order, several at a time. */
-ALL_SETS static double weighted_sum(int64_t count, const double *weight, const double *x, const double *y)
+/* rows[count * dim]: for each field k what L^-1 D L^-T makes of field `first` + a along it, in direction a.
+ * The fields stand for the directions of moves, field[node_count * dim] and force, as many. */
+static void weigh_fields(const struct preconditioner *p, int64_t first, double *field, double *force,
+                         double *rows)
 {
-    enum { CHAINS = 8 };
-    double chain[CHAINS] = {0.0}, sum = 0.0;
-    int64_t n = 0;
-    for (; n + CHAINS <= count; n += CHAINS) {
-        for (int c = 0; c < CHAINS; c++) {
-            chain[c] += weight[n + c] * x[n + c] * y[n + c];
-        }
+    int64_t dim = p->dim, count = p->coarse.count;
+    memset(field, 0, (size_t)(p->node_count * dim) * sizeof *field);
+    memset(rows, 0, (size_t)(count * dim) * sizeof *rows);
+    for (int64_t a = 0; a < dim && first + a < count; a++) {
+        rows[(first + a) * dim + a] = 1.0;
     }
-    for (; n < count; n++) {
-        sum += weight[n] * x[n] * y[n];
-    }
-    for (int c = 0; c < CHAINS; c++) {
-        sum += chain[c];
-    }
-    return sum;
+    coarse_space_prolongate(&p->coarse, rows, field);
+    preconditioner_unsmooth(p, field, force);
+    coarse_space_restrict(&p->coarse, NULL, force, rows);
 }
 
-/* weight = (L^-T Z)^T D L^-T Z, over so many nodes at a time that their fields stay in the cache. */
-static void weigh_inverse_fields(struct preconditioner *p)
+/* weight = Z^T B^-1 Z, `dim` fields at a time, each process and each thread some of these. */
+static enum status weigh_inverse_fields(struct preconditioner *p, struct error *error)
 {
-    enum { NODES_AT_ONCE = 1024 };
-    int64_t dim = p->dim, size = p->size, nodes = p->node_count;
-    for (int64_t begin = 0; begin < nodes; begin += NODES_AT_ONCE) {
-        int64_t count = nodes - begin < NODES_AT_ONCE ? nodes - begin : NODES_AT_ONCE;
-        for (int64_t i = 0; i < p->coarse.count; i++) {
-            for (int64_t k = 0; k <= i; k++) {
-                p->weight[i * dim * size + k * dim] +=
-                    weighted_sum(count, p->mass + begin, p->inverse_fields + i * nodes + begin,
-                                 p->inverse_fields + k * nodes + begin);
-            }
+    const struct ranks *ranks = p->factor.ranks;
+    int64_t dim = p->dim, count = p->coarse.count, values = p->node_count * dim;
+    int64_t times = (count + dim - 1) / dim;
+    SCRATCH int64_t *firsts = NULL;
+    SCRATCH double *rows = NULL, *vectors = NULL;
+    RETURN_IF_ERROR(ranks_share(ranks, times, NULL, &firsts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows, times * count * dim, error));
+    const int64_t *first = firsts + ranks_rank(ranks);
+    struct chunks chunks = chunks_for_threads(first[1] - first[0], values, NODES_FOR_THREAD);
+    RETURN_IF_ERROR(NEW_ARRAY(&vectors, 2 * chunks.count * values, error));
+#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        double *own = vectors + 2 * c * values;
+        for (int64_t t = first[0] + chunks_begin(&chunks, c); t < first[0] + chunks_begin(&chunks, c + 1);
+             t++) {
+            weigh_fields(p, t * dim, own, own + values, rows + t * count * dim);
         }
     }
-    for (int64_t i = 0; i < p->coarse.count; i++) {
+    ranks_gather(ranks, rows, (size_t)(count * dim) * sizeof *rows, firsts);
+    for (int64_t i = 0; i < count; i++) {
         for (int64_t k = 0; k <= i; k++) {
+            double weight = rows[(i / dim * count + k) * dim + i % dim];
             for (int64_t a = 0; a < dim; a++) {
-                p->weight[(i * dim + a) * size + k * dim + a] =
-                    p->weight[(k * dim + a) * size + i * dim + a] = p->weight[i * dim * size + k * dim];
+                p->weight[(i * dim + a) * p->size + k * dim + a] = weight;
+                p->weight[(k * dim + a) * p->size + i * dim + a] = weight;
             }
         }
     }
+    return STATUS_OK;
 }
 
 /* weight = Z^T B^-1 Z: directions do not couple. */
-static void weigh_coarse_space(struct preconditioner *p)
+static enum status weigh_coarse_space(struct preconditioner *p, struct error *error)
 {
     int64_t dim = p->dim, size = p->size;
     double *weight = p->weight, value[COARSE_MOST_AT_NODE];
     int field[COARSE_MOST_AT_NODE];
     memset(weight, 0, (size_t)(size * size) * sizeof *weight);
     if (p->factor.rows.row_count > 0) {
-        weigh_inverse_fields(p);
-        return;
+        return weigh_inverse_fields(p, error);
     }
     for (int64_t n = 0; n < p->node_count; n++) {
         int count = coarse_space_at_node(&p->coarse, n, field, value);
@@ -80,6 +85,7 @@ static void weigh_coarse_space(struct preconditioner *p)
             }
         }
     }
+    return STATUS_OK;
 }
 
 void preconditioner_add_fields(const struct preconditioner *p, const struct average *average, double *field)
@@ -156,7 +162,7 @@ enum status preconditioner_restore(struct preconditioner *p, const struct solid_
     RETURN_IF_ERROR(system_constrain(system, p->mass, within ? &p->factor : NULL,
                                      within ? &p->factor_rows : NULL, &p->constraint, error));
     if (p->size > 0) {
-        weigh_coarse_space(p);
+        RETURN_IF_ERROR(weigh_coarse_space(p, error));
         RETURN_IF_ERROR(weigh_conditions(p, error));
         preconditioner_invert(p, system);
     }

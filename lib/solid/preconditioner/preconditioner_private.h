@@ -8,6 +8,9 @@
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount);
 
+/* force = B^-1 move = L^-1 D L^-T move; not the same array. */
+void preconditioner_unsmooth(const struct preconditioner *preconditioner, const double *move, double *force);
+
 /* field[coarse.count] += the mean of each coarse field: Z^T phi, for one component of the displacement. */
 void preconditioner_add_fields(const struct preconditioner *preconditioner, const struct average *average,
                                double *field);

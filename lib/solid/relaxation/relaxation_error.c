@@ -71,11 +71,11 @@ void relaxation_estimate(struct relaxation *r)
     double least2 = least_of_window(r);
     r->largest_displacement =
         fmax(r->largest_displacement,
-             sqrt(preconditioner_product_diagonal(&r->preconditioner, r->before, r->before)));
+             sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
     double on_the_whole = ratio(
-        sqrt(preconditioner_product_diagonal(&r->preconditioner, r->acceleration, r->acceleration)) / least2,
+        sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least2,
         r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     /* Moves below the round-off of positions are none. */
