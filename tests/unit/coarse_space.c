@@ -177,13 +177,13 @@ TEST(ways)
                                 &error));
         double both = 0.0;
         for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-            both += coarse.share[0][c] * coarse.share[RING - 1][c];
+            both += coarse.share[c] * coarse.share[(RING - 1) * coarse.stride + c];
         }
         assert_true(with_ways ? both < 0.01 : both > 0.1);
         for (int64_t n = 0; n < ALL; n++) {
             double sum = 0.0;
             for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-                sum += coarse.share[n][c];
+                sum += coarse.share[n * coarse.stride + c];
             }
             NEAR_TO(sum, 1.0, 1e-14);
         }

@@ -82,8 +82,8 @@ static double *random_move(struct strained *s, struct random *random)
     return move;
 }
 
-/* M^-1 M is the identity on moves that the conditions admit, M is symmetric and positive, and accelerations
- * meet the conditions. */
+/* M^-1 M is the identity on moves that the conditions admit, M is symmetric and positive, its products are
+ * those of what it multiplies, and accelerations meet the conditions. */
 static void check_inverse(struct strained *s)
 {
     struct random random = {7};
@@ -98,6 +98,8 @@ static void check_inverse(struct strained *s)
     AT_MOST(fabs(product - work), 1e-8 * fabs(work));
     AT_MOST(fabs(preconditioner_product(&s->preconditioner, y, x) - product), 1e-8 * fabs(product));
     AT_MOST(0.0, preconditioner_product(&s->preconditioner, x, x));
+    preconditioner_multiply(&s->preconditioner, y, force);
+    AT_MOST(fabs(dot(s, x, force) - product), 1e-8 * fabs(product));
     double most = 0.0;
     for (int64_t i = 0; i < s->size; i++) {
         most = fmax(most, fabs(y[i]));

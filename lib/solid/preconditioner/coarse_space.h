@@ -13,11 +13,14 @@
 
 #include <stdint.h>
 
-enum { COARSE_MOST_CENTRES = 16 };
+enum { COARSE_MOST_CENTRES = 32 };
 enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 
 /* A number for each centre; 0 beyond centre_count. */
 typedef double of_centres[COARSE_MOST_CENTRES];
+
+/* Centres are taken four at a time. */
+enum { COARSE_FOUR = 4 };
 
 /* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or coordinate m - 1 relative
  * to the centre, divided by the radius. */
@@ -28,7 +31,8 @@ struct coarse_space {
     int64_t centre_count, count;
     of_centres centre[3]; /* dim coordinates, m */
     double radius;        /* within which a centre has a share, m */
-    of_centres *share;    /* node_count: sum 1 */
+    int64_t stride;       /* centre_count, up to a multiple of COARSE_FOUR */
+    double *share;        /* node_count * stride: sum 1, 0 beyond centre_count */
 };
 
 /* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. `neighbours` of each node; NULL: all

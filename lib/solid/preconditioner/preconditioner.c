@@ -1,6 +1,7 @@
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
+#include "base/dense.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
@@ -82,8 +83,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->weight, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->free_weight, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
@@ -102,8 +103,9 @@ void preconditioner_free(struct preconditioner *p)
     inverse_factor_free(&p->factor);
     constraint_rows_free(&p->factor_rows);
     FREE_ALL(p->column_first, p->vector, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal,
-             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->held, p->inverse,
-             p->capacitance_inverse, p->amount, p->contacts, p->impact, p->pushed, p->opposite);
+             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->held,
+             p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->impact, p->pushed,
+             p->opposite);
     *p = (struct preconditioner){0};
 }
 
@@ -115,6 +117,17 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
         for (int64_t i = 0; i < n; i++) {
             y[i] += x[k] * matrix[k * n + i];
         }
+    }
+}
+
+/* amount[size] := what it is by the inverse of the factorised matrix; 0 where the coarse fields are not used.
+ */
+static void solve(const struct preconditioner *p, const double *factor, double *amount)
+{
+    if (p->uses_coarse) {
+        dense_solve_large(p->size, factor, amount);
+    } else {
+        memset(amount, 0, (size_t)p->size * sizeof *amount);
     }
 }
 
@@ -184,11 +197,11 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
 {
     struct constraint *constraint = &p->constraint;
     const struct constraint_rows *rows = constraint->rows;
-    double *multiplier = constraint->multiplier, *solved = p->amount + p->size;
-    preconditioner_restrict_force(p, force, acceleration, p->amount);
+    double *multiplier = constraint->multiplier, *amount = p->amount;
+    preconditioner_restrict_force(p, force, acceleration, amount);
     if (p->size > 0) {
-        multiply(p->size, p->inverse, p->amount, solved);
-        coarse_space_prolongate(&p->coarse, solved, acceleration);
+        solve(p, p->stiffness_factor, amount);
+        coarse_space_prolongate(&p->coarse, amount, acceleration);
     }
     if (rows == NULL || rows->count == 0) {
         return;
@@ -200,7 +213,7 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
         const double *held = p->held + r * p->size;
         double sum = multiplier[r];
         for (int64_t k = 0; k < p->size; k++) {
-            sum += held[k] * solved[k];
+            sum += held[k] * amount[k];
         }
         multiplier[r] = -sum;
     }
@@ -261,7 +274,8 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
     double sum = product(p->node_count * p->dim, y, p->vector);
     if (p->size > 0) {
         coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
-        multiply(p->size, p->capacitance_inverse, amount, solved);
+        memcpy(solved, amount, (size_t)p->size * sizeof *amount);
+        solve(p, p->capacitance_factor, solved);
         if (y != x) {
             preconditioner_unsmooth(p, y, p->vector);
             coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
@@ -275,16 +289,16 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
 
 void preconditioner_multiply(struct preconditioner *p, const double *x, double *force)
 {
-    double *amount = p->amount, *solved = p->amount + p->size;
+    double *amount = p->amount;
     memcpy(p->vector, x, (size_t)(p->node_count * p->dim) * sizeof *x);
     if (p->size > 0) {
         preconditioner_unsmooth(p, x, force);
         coarse_space_restrict(&p->coarse, NULL, force, amount);
-        multiply(p->size, p->capacitance_inverse, amount, solved);
+        solve(p, p->capacitance_factor, amount);
         for (int64_t k = 0; k < p->size; k++) {
-            solved[k] = -solved[k];
+            amount[k] = -amount[k];
         }
-        coarse_space_prolongate(&p->coarse, solved, p->vector);
+        coarse_space_prolongate(&p->coarse, amount, p->vector);
     }
     preconditioner_unsmooth(p, p->vector, force);
 }
@@ -298,7 +312,8 @@ void preconditioner_momentum(struct preconditioner *p, const double *velocity, d
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
         release_rows(p, p->constraint.multiplier, momentum);
     }
-    multiply(p->size, p->capacitance_inverse, momentum, amount);
+    memcpy(amount, momentum, (size_t)p->size * sizeof *momentum);
+    solve(p, p->capacitance_factor, amount);
     multiply(p->size, p->free_weight, amount, p->amount);
     for (int64_t k = 0; k < p->size; k++) {
         momentum[k] -= p->amount[k];

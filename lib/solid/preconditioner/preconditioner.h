@@ -54,15 +54,16 @@ struct preconditioner {
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
     double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
-    double *weight;      /* Z^T D Z */
-    double *free_weight; /* Z^T D P Z */
-    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
-    double *contacts;            /* stiffness along the coarse fields of the contact nodes that A counts in */
-    bool *pushed;                /* contact_node_count: those that A counts in anew; scratch */
-    double *impact;              /* size * size + 2 * size: scratch */
-    double *inverse;             /* A^-1 */
-    double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
-    double *amount;              /* 2 * size: scratch */
+    double *weight;      /* Z^T B^-1 Z */
+    double *free_weight; /* Z^T B^-1 P Z */
+    double *held;     /* rows of the conditions * size: (G B G^T)^-1 G Z, what they put against each field */
+    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in */
+    bool *pushed;     /* contact_node_count: those that A counts in anew; scratch */
+    double *impact;   /* size * size + 2 * size: scratch */
+    double *stiffness_factor;   /* Cholesky factor of A, */
+    double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
+    bool uses_coarse;           /* they exist; else M = B^-1 */
+    double *amount;             /* 2 * size: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */

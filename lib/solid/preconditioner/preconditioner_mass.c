@@ -164,7 +164,7 @@ enum status preconditioner_restore(struct preconditioner *p, const struct solid_
     if (p->size > 0) {
         RETURN_IF_ERROR(weigh_coarse_space(p, error));
         RETURN_IF_ERROR(weigh_conditions(p, error));
-        preconditioner_invert(p, system);
+        preconditioner_factorise_both(p, system);
     }
     return STATUS_OK;
 }

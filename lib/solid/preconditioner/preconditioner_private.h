@@ -38,8 +38,8 @@ void preconditioner_add_contacts(const struct preconditioner *preconditioner,
  * it has, so that it is positive definite; 0: none makes it so. */
 double preconditioner_factorise(const struct preconditioner *preconditioner, double *matrix);
 
-/* The inverses, from what body, contacts and mass are. */
-void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
+/* The Cholesky factors, from what body, contacts and mass are. */
+void preconditioner_factorise_both(struct preconditioner *preconditioner, const struct solid_system *system);
 
 /* matrix[size * size] += stiffness row^T row */
 void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix);
