@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-enum { COARSE_MOST_CENTRES = 32 };
+enum { COARSE_MOST_CENTRES = 64 };
 enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 
 /* A number for each centre; 0 beyond centre_count. */
