@@ -18,28 +18,26 @@ static const double radius_factor = 1.5;
 static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
-/* share[..][c] = lengths of the shortest paths from a node, from neighbour to neighbour; infinite where there
- * is none. */
-static enum status path_lengths(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
-                                int64_t from, struct queue *queue, struct error *error)
+/* length[node_count]: of the shortest paths from a node, from neighbour to neighbour; infinite where there is
+ * none. */
+static enum status path_lengths(const struct coarse_space *coarse, const struct neighbours *neighbours,
+                                int64_t from, struct queue *queue, double *length, struct error *error)
 {
     int dim = coarse->dim;
-    int64_t stride = coarse->stride;
-    double *length = coarse->share + c;
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        length[n * stride] = INFINITY;
+        length[n] = INFINITY;
     }
-    length[from * stride] = 0.0;
+    length[from] = 0.0;
     RETURN_IF_ERROR(queue_push(queue, 0.0, (int32_t)from, error));
     while (queue->count > 0) {
         struct path_end end = queue_pop(queue);
-        int64_t last = end.length > length[end.node * stride] ? 0 : neighbours->ptr[end.node + 1];
+        int64_t last = end.length > length[end.node] ? 0 : neighbours->ptr[end.node + 1];
         for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
             int32_t next = neighbours->idx[i];
             double path = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
                                                        coarse->X + (int64_t)next * dim);
-            if (path < length[next * stride]) {
-                length[next * stride] = path;
+            if (path < length[next]) {
+                length[next] = path;
                 RETURN_IF_ERROR(queue_push(queue, path, next, error));
             }
         }
@@ -47,9 +45,11 @@ static enum status path_lengths(struct coarse_space *coarse, const struct neighb
     return STATUS_OK;
 }
 
-/* share[..][c] = distances from node `from`, which becomes centre c. */
+/* The shares of centre c = distances from node `from`, which becomes that centre; length[node_count]:
+ * scratch.
+ */
 static enum status add_centre(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
-                              int64_t from, struct queue *queue, struct error *error)
+                              int64_t from, struct queue *queue, double *length, struct error *error)
 {
     int dim = coarse->dim;
     const double *place = coarse->X + from * dim;
@@ -57,13 +57,12 @@ static enum status add_centre(struct coarse_space *coarse, const struct neighbou
         coarse->centre[a][c] = place[a];
     }
     if (neighbours != NULL) {
-        RETURN_IF_ERROR(path_lengths(coarse, neighbours, c, from, queue, error));
+        RETURN_IF_ERROR(path_lengths(coarse, neighbours, from, queue, length, error));
     }
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double straight = vector_distance(dim, coarse->X + n * dim, place);
-        double *share = coarse->share + n * coarse->stride + c;
-        double path = neighbours != NULL ? *share / most_detour : 0.0;
-        *share = isfinite(path) ? fmax(straight, path) : straight;
+        double path = neighbours != NULL ? length[n] / most_detour : 0.0;
+        coarse->share[n * coarse->stride + c] = isfinite(path) ? fmax(straight, path) : straight;
     }
     return STATUS_OK;
 }
@@ -74,14 +73,15 @@ static enum status pick_centres(struct coarse_space *coarse, const struct neighb
                                 struct error *error)
 {
     FREED_BY(queue_free) struct queue queue = {0};
-    SCRATCH double *least = NULL;
+    SCRATCH double *least = NULL, *length = NULL;
     int64_t next = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&length, coarse->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&least, coarse->node_count, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         least[n] = INFINITY;
     }
     for (int64_t c = 0; c < coarse->centre_count; c++) {
-        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, error));
+        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, length, error));
         for (int64_t n = 0; n < coarse->node_count; n++) {
             least[n] = fmin(least[n], coarse->share[n * coarse->stride + c]);
         }
