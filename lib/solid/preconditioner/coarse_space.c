@@ -174,19 +174,17 @@ KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int fir
     }
 }
 
-/* sum = what v, times weight unless NULL, does at the nodes from `begin` to before `end`. */
+/* sum = what v does at the nodes from `begin` to before `end`. */
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
-                           const double *weight, const double *v, coarse_amounts sum)
+                           const double *v, coarse_amounts sum)
 {
     for (int first = 0; first < coarse->centre_count; first += COARSE_FOUR) {
         four_centres all[4][3] = {{{0.0}}}, value[4];
         for (int64_t n = begin; n < end; n++) {
-            double scale = weight != NULL ? weight[n] : 1.0;
             monomials(coarse, dim, first, n, value);
             for (int a = 0; a < dim; a++) {
-                double scaled = scale * v[n * dim + a];
                 for (int m = 0; m <= dim; m++) {
-                    all[m][a] += value[m] * scaled;
+                    all[m][a] += value[m] * v[n * dim + a];
                 }
             }
         }
@@ -227,12 +225,12 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin
 }
 
 ALL_SETS static void collect_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
-                                   const double *weight, const double *v, coarse_amounts sum)
+                                   const double *v, coarse_amounts sum)
 {
     if (coarse->dim == 2) {
-        collect(coarse, 2, begin, end, weight, v, sum);
+        collect(coarse, 2, begin, end, v, sum);
     } else {
-        collect(coarse, 3, begin, end, weight, v, sum);
+        collect(coarse, 3, begin, end, v, sum);
     }
 }
 
@@ -246,15 +244,14 @@ ALL_SETS static void add_nodes(const struct coarse_space *coarse, int64_t begin,
     }
 }
 
-void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
-                           double *amount)
+void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount)
 {
     struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
     int dim = coarse->dim;
     coarse_amounts partial[CHUNKS_MOST];
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v, partial[c]);
+        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), v, partial[c]);
     }
     for (int m = 0; m <= dim; m++) {
         for (int a = 0; a < dim; a++) {

@@ -47,10 +47,8 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
                          double value[COARSE_MOST_AT_NODE]);
 
 /* amount[count * dim] = Z^T v, count > 0: what nodal vectors, such as forces, do along each field, in each
- * direction; or Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for
- * any number of threads and on any processor, here and below. */
-void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
-                           double *amount);
+ * direction. Threaded; the same bits for any number of threads and on any processor, here and below. */
+void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount);
 
 /* u[node_count * dim] += Z amount. */
 void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u);

@@ -184,7 +184,7 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     double *seen = p->constraint.multiplier;
     preconditioner_smooth(p, force, acceleration);
     if (p->size > 0) {
-        coarse_space_restrict(&p->coarse, NULL, force, amount);
+        coarse_space_restrict(&p->coarse, force, amount);
     }
     if (rows == NULL) {
         return;
@@ -273,12 +273,12 @@ double preconditioner_product(struct preconditioner *p, const double *x, const d
     preconditioner_unsmooth(p, x, p->vector);
     double sum = product(p->node_count * p->dim, y, p->vector);
     if (p->size > 0) {
-        coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
+        coarse_space_restrict(&p->coarse, p->vector, amount);
         memcpy(solved, amount, (size_t)p->size * sizeof *amount);
         solve(p, p->capacitance_factor, solved);
         if (y != x) {
             preconditioner_unsmooth(p, y, p->vector);
-            coarse_space_restrict(&p->coarse, NULL, p->vector, amount);
+            coarse_space_restrict(&p->coarse, p->vector, amount);
         }
         for (int64_t k = 0; k < p->size; k++) {
             sum -= amount[k] * solved[k];
@@ -293,7 +293,7 @@ void preconditioner_multiply(struct preconditioner *p, const double *x, double *
     memcpy(p->vector, x, (size_t)(p->node_count * p->dim) * sizeof *x);
     if (p->size > 0) {
         preconditioner_unsmooth(p, x, force);
-        coarse_space_restrict(&p->coarse, NULL, force, amount);
+        coarse_space_restrict(&p->coarse, force, amount);
         solve(p, p->capacitance_factor, amount);
         for (int64_t k = 0; k < p->size; k++) {
             amount[k] = -amount[k];
@@ -307,7 +307,7 @@ void preconditioner_momentum(struct preconditioner *p, const double *velocity, d
                              double *momentum)
 {
     preconditioner_unsmooth(p, velocity, p->vector);
-    coarse_space_restrict(&p->coarse, NULL, p->vector, momentum);
+    coarse_space_restrict(&p->coarse, p->vector, momentum);
     if (p->constraint.rows != NULL) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
         release_rows(p, p->constraint.multiplier, momentum);

@@ -23,7 +23,7 @@ static void weigh_fields(const struct preconditioner *p, int64_t first, double *
     }
     coarse_space_prolongate(&p->coarse, rows, field);
     preconditioner_unsmooth(p, field, force);
-    coarse_space_restrict(&p->coarse, NULL, force, rows);
+    coarse_space_restrict(&p->coarse, force, rows);
 }
 
 /* weight = Z^T B^-1 Z, `dim` fields at a time, each process and each thread some of these. */
