@@ -70,13 +70,12 @@ void relaxation_estimate(struct relaxation *r)
     r->checks++;
     double least2 = least_of_window(r);
     r->largest_displacement =
-        fmax(r->largest_displacement,
-             sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
+        fmax(r->largest_displacement, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
-    double on_the_whole = ratio(
-        sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least2,
-        r->largest_displacement);
+    double on_the_whole =
+        ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least2,
+              r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     /* Moves below the round-off of positions are none. */
     bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
