@@ -82,7 +82,7 @@ double system_largest_frequency(struct solid_system *system, struct precondition
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
         preconditioner_resist_open(p, system, mode, displaced);
-        eigenvalue = product(size, mode, displaced) / preconditioner_product(p, mode, mode);
+        eigenvalue = product(size, mode, displaced) / preconditioner_square(p, mode);
         preconditioner_apply(p, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {

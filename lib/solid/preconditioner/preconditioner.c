@@ -258,31 +258,21 @@ double preconditioner_square_diagonal(struct preconditioner *p, const double *x)
     return sum;
 }
 
-static double product(int64_t size, const double *x, const double *y)
+double preconditioner_square(struct preconditioner *p, const double *x)
 {
-    double sum = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        sum += x[i] * y[i];
+    double sum = 0.0, *amount = p->amount, *solved = p->amount + p->size;
+    if (p->size == 0) {
+        return preconditioner_square_diagonal(p, x);
     }
-    return sum;
-}
-
-double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
-{
-    double *amount = p->amount, *solved = p->amount + p->size;
     preconditioner_unsmooth(p, x, p->vector);
-    double sum = product(p->node_count * p->dim, y, p->vector);
-    if (p->size > 0) {
-        coarse_space_restrict(&p->coarse, p->vector, amount);
-        memcpy(solved, amount, (size_t)p->size * sizeof *amount);
-        solve(p, p->capacitance_factor, solved);
-        if (y != x) {
-            preconditioner_unsmooth(p, y, p->vector);
-            coarse_space_restrict(&p->coarse, p->vector, amount);
-        }
-        for (int64_t k = 0; k < p->size; k++) {
-            sum -= amount[k] * solved[k];
-        }
+    for (int64_t i = 0; i < p->node_count * p->dim; i++) {
+        sum += x[i] * p->vector[i];
+    }
+    coarse_space_restrict(&p->coarse, p->vector, amount);
+    memcpy(solved, amount, (size_t)p->size * sizeof *amount);
+    solve(p, p->capacitance_factor, solved);
+    for (int64_t k = 0; k < p->size; k++) {
+        sum -= amount[k] * solved[k];
     }
     return sum;
 }

@@ -111,8 +111,8 @@ void preconditioner_smooth(struct preconditioner *preconditioner, const double *
 /* x . B^-1 x */
 double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
 
-/* x . M y for x and y that satisfy the homogeneous conditions. */
-double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
+/* x . M x for a move x that satisfies the homogeneous conditions. */
+double preconditioner_square(struct preconditioner *preconditioner, const double *x);
 
 /* force = M move, but for forces of the conditions, for a move that satisfies the homogeneous conditions. */
 void preconditioner_multiply(struct preconditioner *preconditioner, const double *move, double *force);

@@ -57,7 +57,7 @@ void relaxation_estimate(struct relaxation *r)
         along += du[i] * (r->last_residual[i] - r->residual[i]);
     }
     memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
-    double bottom = preconditioner_product(&r->preconditioner, du, du);
+    double bottom = preconditioner_square(&r->preconditioner, du);
     double quotient = bottom > 0.0 ? along / bottom : 0.0;
     bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
     if (quotient > 0.0 && r->checks > 0 && !augmented) {
