@@ -3,6 +3,7 @@
 #include "base/chunks.h"
 #include "base/dense.h"
 #include "base/memory.h"
+#include "base/processor.h"
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 #include "solid/system/rigid_modes.h"
@@ -17,7 +18,10 @@ static const int64_t most_unknowns = 96;
 /* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
  * steps follow the distance of the centres by that of the nodes. */
 static const int64_t nodes_per_centre = 1000;
+/* Rows of conditions times unknowns of large bodies at most: 8 bytes each, and some more for a while. */
+static const int64_t most_held = 1 << 24;
 
+enum { HELD_AT_ONCE = 8 };
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
@@ -25,6 +29,8 @@ static int64_t centre_count(const struct solid_system *system)
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
     int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
+    int64_t held = system->rows.count * fields * system->dim;
+    of_large = held > 0 && most_held / held < of_large ? most_held / held : of_large;
     most = of_large > most ? of_large : most;
     most = most < COARSE_MOST_CENTRES ? most : COARSE_MOST_CENTRES;
     return count < most ? count : most;
@@ -155,6 +161,28 @@ void preconditioner_smooth(struct preconditioner *p, const double *force, double
     inverse_factor_apply_transposed(inverse, p->dim, within, result);
 }
 
+/* amount[k] -= column k of S^-1 G Z times values, for `count` columns from k on. */
+static void release_columns(const struct preconditioner *p, int64_t k, int64_t count, const double *values,
+                            double *amount)
+{
+    int64_t rows = p->constraint.rows->count;
+    const double *held = p->held + k * rows;
+    double sum[HELD_AT_ONCE];
+    memcpy(sum, amount + k, (size_t)count * sizeof *sum);
+    for (int64_t r = 0; r < rows; r++) {
+        if (count == HELD_AT_ONCE) {
+            for (int c = 0; c < HELD_AT_ONCE; c++) {
+                sum[c] -= held[c * rows + r] * values[r];
+            }
+        } else {
+            for (int c = 0; c < count; c++) {
+                sum[c] -= held[c * rows + r] * values[r];
+            }
+        }
+    }
+    memcpy(amount + k, sum, (size_t)count * sizeof *sum);
+}
+
 /* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
  */
 static void release_rows(const struct preconditioner *p, const double *values, double *amount)
@@ -166,12 +194,9 @@ static void release_rows(const struct preconditioner *p, const double *values, d
     struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
-        for (int64_t r = 0; r < rows->count; r++) {
-            const double *held = p->held + r * p->size;
-            for (int64_t k = begin; k < end && values[r] != 0.0; k++) {
-                amount[k] -= held[k] * values[r];
-            }
+        int64_t end = first[0] + chunks_begin(&chunks, c + 1);
+        for (int64_t k = first[0] + chunks_begin(&chunks, c); k < end; k += HELD_AT_ONCE) {
+            release_columns(p, k, end - k < HELD_AT_ONCE ? end - k : HELD_AT_ONCE, values, amount);
         }
     }
     ranks_gather(ranks, amount, sizeof *amount, p->column_first);
@@ -193,6 +218,14 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     release_rows(p, seen, amount);
 }
 
+/* y += a x */
+ALL_SETS static void add_held(int64_t count, double a, const double *x, double *restrict y)
+{
+    for (int64_t i = 0; i < count; i++) {
+        y[i] += a * x[i];
+    }
+}
+
 void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
 {
     struct constraint *constraint = &p->constraint;
@@ -207,15 +240,16 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
         return;
     }
     constraint_solve(constraint, multiplier);
-#pragma omp parallel for schedule(static)                                                                    \
-    num_threads(chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads)
-    for (int64_t r = 0; r < rows->count; r++) {
-        const double *held = p->held + r * p->size;
-        double sum = multiplier[r];
+    struct chunks chunks = chunks_for_threads(rows->count, rows->count * p->size, ENTRIES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
         for (int64_t k = 0; k < p->size; k++) {
-            sum += held[k] * amount[k];
+            add_held(end - begin, amount[k], p->held + k * rows->count + begin, multiplier + begin);
         }
-        multiplier[r] = -sum;
+        for (int64_t r = begin; r < end; r++) {
+            multiplier[r] = -multiplier[r];
+        }
     }
     constraint_spread(constraint, multiplier, acceleration);
 }

@@ -56,10 +56,11 @@ struct preconditioner {
     double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
     double *weight;      /* Z^T B^-1 Z */
     double *free_weight; /* Z^T B^-1 P Z */
-    double *held;     /* rows of the conditions * size: (G B G^T)^-1 G Z, what they put against each field */
-    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in */
-    bool *pushed;     /* contact_node_count: those that A counts in anew; scratch */
-    double *impact;   /* size * size + 2 * size: scratch */
+    double
+        *held; /* size columns of the conditions' rows: (G B G^T)^-1 G Z, what they put against each field */
+    double *contacts;           /* stiffness along the coarse fields of the contact nodes that A counts in */
+    bool *pushed;               /* contact_node_count: those that A counts in anew; scratch */
+    double *impact;             /* size * size + 2 * size: scratch */
     double *stiffness_factor;   /* Cholesky factor of A, */
     double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
     bool uses_coarse;           /* they exist; else M = B^-1 */

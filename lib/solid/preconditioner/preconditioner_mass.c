@@ -3,6 +3,7 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "base/sparse.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +101,34 @@ void preconditioner_add_fields(const struct preconditioner *p, const struct aver
     }
 }
 
+/* The coarse fields' means in the rows of the conditions, but for the rows' directions, as a sparse matrix.
+ */
+static enum status take_conditions(const struct preconditioner *p, struct sparse *conditions,
+                                   struct error *error)
+{
+    const struct constraint_rows *rows = p->constraint.rows;
+    int64_t count = p->coarse.count, most = 0;
+    double *field = p->amount;
+    for (int64_t r = 0; r < rows->count; r++) {
+        int64_t entries = COARSE_MOST_AT_NODE * constraint_rows_average(rows, r).length;
+        most += entries < count ? entries : count;
+    }
+    RETURN_IF_ERROR(sparse_new(rows->count, count, most, conditions, error));
+    for (int64_t r = 0, at = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        memset(field, 0, (size_t)count * sizeof *field);
+        preconditioner_add_fields(p, &average, field);
+        for (int64_t k = 0; k < count; k++) {
+            if (field[k] != 0.0) {
+                conditions->idx[at] = (int32_t)k;
+                conditions->value[at++] = field[k];
+            }
+        }
+        conditions->ptr[r + 1] = at;
+    }
+    return STATUS_OK;
+}
+
 /* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid.
  * Each process computes some columns. */
 static enum status weigh_conditions(struct preconditioner *p, struct error *error)
@@ -107,40 +136,30 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
     const struct ranks *ranks = p->factor.ranks;
     const struct constraint_rows *rows = p->constraint.rows;
     const int64_t *first = p->column_first;
-    int64_t size = p->size;
-    double *field = p->amount;
-    SCRATCH double *conditions = NULL, *solved = NULL; /* solved: by columns */
+    int64_t size = p->size, dim = p->dim;
+    FREED_BY(sparse_free) struct sparse conditions = {0};
+    RETURN_IF_ERROR(take_conditions(p, &conditions, error));
     memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
-    RETURN_IF_ERROR(NEW_ARRAY(&conditions, rows->count * size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&solved, rows->count * size, error));
+    memset(p->held, 0, (size_t)(size * rows->count) * sizeof *p->held);
     for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        memset(field, 0, (size_t)p->coarse.count * sizeof *field);
-        preconditioner_add_fields(p, &average, field);
-        for (int64_t i = 0; i < size; i++) {
-            conditions[r * size + i] = field[i / p->dim] * rows->direction[r * p->dim + i % p->dim];
+        for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
+            p->held[(conditions.idx[i / dim] * dim + i % dim) * rows->count + r] =
+                conditions.value[i / dim] * rows->direction[r * dim + i % dim];
         }
     }
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         double *weight = p->free_weight + k * size; /* or row: symmetric */
-        double *column = solved + k * rows->count;
-        for (int64_t r = 0; r < rows->count; r++) {
-            column[r] = conditions[r * size + k];
-        }
+        double *column = p->held + k * rows->count;
         envelope_solve(&p->constraint.factor, column);
         for (int64_t r = 0; r < rows->count; r++) {
-            for (int64_t i = 0; i < size && column[r] != 0.0; i++) {
-                weight[i] -= column[r] * conditions[r * size + i];
+            for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
+                weight[conditions.idx[i / dim] * dim + i % dim] -=
+                    column[r] * (conditions.value[i / dim] * rows->direction[r * dim + i % dim]);
             }
         }
     }
     ranks_gather(ranks, p->free_weight, (size_t)size * sizeof(double), first);
-    ranks_gather(ranks, solved, (size_t)rows->count * sizeof(double), first);
-    for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t k = 0; k < size; k++) {
-            p->held[r * size + k] = solved[k * rows->count + r];
-        }
-    }
+    ranks_gather(ranks, p->held, (size_t)rows->count * sizeof(double), first);
     return STATUS_OK;
 }
 
