@@ -44,6 +44,18 @@ void dense_solve(int64_t n, const double *factor, double *x)
     }
 }
 
+void dense_solve_large(int64_t n, const double *factor, double *x)
+{
+    for (int64_t k = 0; k < n; k++) {
+        x[k] /= factor[k * n + k];
+        add_row(n - k - 1, -x[k], factor + k * n + k + 1, x + k + 1);
+    }
+    for (int64_t i = n - 1; i >= 0; i--) {
+        x[i] /= factor[i * n + i];
+        add_row(i, -x[i], factor + i * n, x);
+    }
+}
+
 void dense_invert(int64_t n, double *factor)
 {
     for (int64_t i = 0; i < n; i++) { /* L^-1, in the place of L */

@@ -11,5 +11,8 @@ bool dense_factorise(int64_t n, double *matrix);
 /* x[n] := A^-1 x from the factor. */
 void dense_solve(int64_t n, const double *factor, double *x);
 
+/* The same for large n: several entries at a time, the sums in another order. */
+void dense_solve_large(int64_t n, const double *factor, double *x);
+
 /* The factor becomes A^-1, both triangles. */
 void dense_invert(int64_t n, double *factor);

@@ -8,9 +8,8 @@ enum { NODES = 34000 }; /* worth three threads */
 
 struct cloud {
     struct coarse_space coarse;
-    double *X, *v, *weight,
-        *amount;  /* v: vectors at nodes, amount: of the coarse fields, both without pattern */
-    int64_t size; /* of v */
+    double *X, *v, *amount; /* v: vectors at nodes, amount: of the coarse fields, both without pattern */
+    int64_t size;           /* of v */
 };
 
 static double *numbers(int64_t count, double low, double high, struct random *random)
@@ -34,7 +33,6 @@ static struct cloud make_cloud(int dim, int64_t node_count, int64_t centre_count
     GOOD(coarse_space_build(dim, node_count, cloud.X, NULL, centre_count, &cloud.coarse, &error));
     assert_int_equal(cloud.coarse.count, centre_count * (dim + 1));
     cloud.v = numbers(cloud.size, -1.0, 1.0, &random);
-    cloud.weight = numbers(node_count, 0.5, 2.0, &random);
     cloud.amount = numbers(cloud.coarse.count * dim, -1.0, 1.0, &random);
     return cloud;
 }
@@ -44,12 +42,11 @@ static void release(struct cloud *cloud)
     coarse_space_free(&cloud->coarse);
     free(cloud->X);
     free(cloud->v);
-    free(cloud->weight);
     free(cloud->amount);
 }
 
 /* What coarse_space_restrict and coarse_space_prolongate say, by plain sums. */
-static void sum_plainly(const struct cloud *cloud, const double *weight, double *amount, double *u)
+static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
 {
     const struct coarse_space *coarse = &cloud->coarse;
     int dim = coarse->dim, field[COARSE_MOST_AT_NODE];
@@ -58,8 +55,7 @@ static void sum_plainly(const struct cloud *cloud, const double *weight, double 
         int count = coarse_space_at_node(coarse, n, field, value);
         for (int k = 0; k < count; k++) {
             for (int a = 0; a < dim; a++) {
-                double scale = weight != NULL ? weight[n] : 1.0;
-                amount[field[k] * dim + a] += value[k] * scale * cloud->v[n * dim + a];
+                amount[field[k] * dim + a] += value[k] * cloud->v[n * dim + a];
                 u[n * dim + a] += value[k] * cloud->amount[field[k] * dim + a];
             }
         }
@@ -69,24 +65,21 @@ static void sum_plainly(const struct cloud *cloud, const double *weight, double 
 TEST_IN_EACH_DIM(plain_sums)
 {
     for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
-        for (int weighted = 0; weighted < 2; weighted++) {
-            struct cloud cloud = make_cloud(dim, NODES, centres);
-            int64_t size = cloud.coarse.count * dim;
-            const double *weight = weighted ? cloud.weight : NULL;
-            double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
-            double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
-            assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
-            sum_plainly(&cloud, weight, expected, field);
-            coarse_space_restrict(&cloud.coarse, weight, cloud.v, amount);
-            coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
-            ALL_NEAR(size, amount, expected, 1e-12 * NODES);
-            ALL_NEAR(cloud.size, u, field, 1e-13);
-            free(amount);
-            free(expected);
-            free(u);
-            free(field);
-            release(&cloud);
-        }
+        struct cloud cloud = make_cloud(dim, NODES, centres);
+        int64_t size = cloud.coarse.count * dim;
+        double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
+        double *u = array_new(cloud.size, sizeof *u), *field = array_new(cloud.size, sizeof *field);
+        assert_true(amount != NULL && expected != NULL && u != NULL && field != NULL);
+        sum_plainly(&cloud, expected, field);
+        coarse_space_restrict(&cloud.coarse, cloud.v, amount);
+        coarse_space_prolongate(&cloud.coarse, cloud.amount, u);
+        ALL_NEAR(size, amount, expected, 1e-12 * NODES);
+        ALL_NEAR(cloud.size, u, field, 1e-13);
+        free(amount);
+        free(expected);
+        free(u);
+        free(field);
+        release(&cloud);
     }
 }
 
@@ -107,7 +100,7 @@ TEST(same_bits)
             int k = i > 0;
             omp_set_num_threads(i + 1);
             memset(coarse[k], 0, (size_t)cloud.size * sizeof **coarse);
-            coarse_space_restrict(&cloud.coarse, cloud.weight, cloud.v, amounts[k]);
+            coarse_space_restrict(&cloud.coarse, cloud.v, amounts[k]);
             coarse_space_prolongate(&cloud.coarse, cloud.amount, coarse[k]);
             assert_memory_equal(amounts[0], amounts[k], (size_t)size * sizeof **amounts);
             assert_memory_equal(coarse[0], coarse[k], (size_t)cloud.size * sizeof **coarse);
@@ -177,13 +170,13 @@ TEST(ways)
                                 &error));
         double both = 0.0;
         for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-            both += coarse.share[0][c] * coarse.share[RING - 1][c];
+            both += coarse.share[c] * coarse.share[(RING - 1) * coarse.stride + c];
         }
         assert_true(with_ways ? both < 0.01 : both > 0.1);
         for (int64_t n = 0; n < ALL; n++) {
             double sum = 0.0;
             for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-                sum += coarse.share[n][c];
+                sum += coarse.share[n * coarse.stride + c];
             }
             NEAR_TO(sum, 1.0, 1e-14);
         }

@@ -66,7 +66,7 @@ TEST_IN_EACH_DIM(agrees_with_all_eigenvalues)
     int64_t size = l.system.node_count * dim;
     double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
     mass = zeros(l.system.node_count, sizeof *mass);
-    scratch = zeros(4 * size, sizeof *scratch);
+    scratch = zeros(5 * size, sizeof *scratch);
     for (int64_t i = 0; i < size; i++) { /* a strained state; a start without favour */
         u[i] = (i % dim == 0 ? -0.05 : 0.05 / (dim - 1)) * l.system.X[i];
         start[i] = sin(1.0 + (double)(i * i % 97));
@@ -101,7 +101,7 @@ TEST(a_block_compressed_beyond_biots_limit_is_not_stable)
         int64_t size = l.system.node_count * 2;
         double *u = lattice_vector(&l), *residual = lattice_vector(&l), *start = lattice_vector(&l);
         mass = zeros(l.system.node_count, sizeof *mass);
-        scratch = zeros(4 * size, sizeof *scratch);
+        scratch = zeros(5 * size, sizeof *scratch);
         for (int64_t i = 0; i < size; i++) {
             u[i] = ((i % 2 == 0 ? stretch[k] : across[k]) - 1.0) * l.system.X[i];
             start[i] = sin(1.0 + (double)(i * i % 97));

@@ -111,8 +111,8 @@ TEST(the_diagonal_is_one)
     release(&cube);
 }
 
-/* Solving undoes applying; rows of conditions act on y as they do on L^T y. */
-TEST(the_transpose_is_undone)
+/* Solving undoes applying, of L and of L^T; rows of conditions act on y as they do on L^T y. */
+TEST(both_factors_are_undone)
 {
     struct cube cube;
     FREED_BY(constraint_rows_free) struct constraint_rows rows = {0};
@@ -136,6 +136,10 @@ TEST(the_transpose_is_undone)
         transposed += u[i] * u[i];
     }
     AT_MOST(fabs(product / transposed - 1.0), 1e-10);
+    inverse_factor_solve(&cube.factor, 3, back);
+    for (int64_t i = 0; i < 3 * cube.n; i++) {
+        AT_MOST(fabs(back[i] - u[i]), 1e-9);
+    }
     inverse_factor_solve_transposed(&cube.factor, 3, u);
     for (int64_t i = 0; i < 3 * cube.n; i++) {
         AT_MOST(fabs(u[i] - y[i]), 1e-9);

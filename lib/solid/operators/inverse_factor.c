@@ -38,33 +38,56 @@ void inverse_factor_apply_transposed(const struct inverse_factor *factor, int di
     ranks_gather(factor->ranks, y, (size_t)dim * sizeof *y, factor->first);
 }
 
-/* The width is known when compiling; sums stay in registers. */
+/* Node n of x, from the entries of its row from `first` to before `last`, and that on the diagonal. The width
+ * is known when compiling, here and below; sums stay in registers. */
+static inline __attribute__((always_inline)) void solve_node(const struct sparse *matrix, int width,
+                                                             int64_t n, int64_t first, int64_t last,
+                                                             int64_t diagonal, double *x)
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int a = 0; a < width; a++) {
+        sum[a] = x[n * width + a];
+    }
+    for (int64_t i = first; i < last; i++) {
+        const double *at = x + (int64_t)matrix->idx[i] * width;
+        for (int a = 0; a < width; a++) {
+            sum[a] -= matrix->value[i] * at[a];
+        }
+    }
+    for (int a = 0; a < width; a++) {
+        x[n * width + a] = sum[a] / matrix->value[diagonal];
+    }
+}
+
+static inline __attribute__((always_inline)) void solve(const struct sparse *matrix, int width, double *x)
+{
+    for (int64_t n = 0; n < matrix->row_count; n++) {
+        int64_t last = matrix->ptr[n + 1] - 1;
+        solve_node(matrix, width, n, matrix->ptr[n], last, last, x);
+    }
+}
+
 static inline __attribute__((always_inline)) void solve_transposed(const struct sparse *matrix, int width,
                                                                    double *x)
 {
     for (int64_t n = matrix->row_count; n-- > 0;) {
         int64_t first = matrix->ptr[n];
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int a = 0; a < width; a++) {
-            sum[a] = x[n * width + a];
-        }
-        for (int64_t i = first + 1; i < matrix->ptr[n + 1]; i++) {
-            const double *at = x + (int64_t)matrix->idx[i] * width;
-            for (int a = 0; a < width; a++) {
-                sum[a] -= matrix->value[i] * at[a];
-            }
-        }
-        for (int a = 0; a < width; a++) {
-            x[n * width + a] = sum[a] / matrix->value[first];
-        }
+        solve_node(matrix, width, n, first + 1, matrix->ptr[n + 1], first, x);
+    }
+}
+
+void inverse_factor_solve(const struct inverse_factor *factor, int dim, double *x)
+{
+    if (dim == 2) {
+        solve(&factor->rows, 2, x);
+    } else {
+        solve(&factor->rows, 3, x);
     }
 }
 
 void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
 {
-    if (dim == 1) {
-        solve_transposed(&factor->transposed, 1, x);
-    } else if (dim == 2) {
+    if (dim == 2) {
         solve_transposed(&factor->transposed, 2, x);
     } else {
         solve_transposed(&factor->transposed, 3, x);

@@ -18,27 +18,26 @@ static const double radius_factor = 1.5;
 static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
-/* share[..][c] = lengths of the shortest paths from a node, from neighbour to neighbour; infinite where there
- * is none. */
-static enum status path_lengths(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
-                                int64_t from, struct queue *queue, struct error *error)
+/* length[node_count]: of the shortest paths from a node, from neighbour to neighbour; infinite where there is
+ * none. */
+static enum status path_lengths(const struct coarse_space *coarse, const struct neighbours *neighbours,
+                                int64_t from, struct queue *queue, double *length, struct error *error)
 {
     int dim = coarse->dim;
-    of_centres *length = coarse->share;
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        length[n][c] = INFINITY;
+        length[n] = INFINITY;
     }
-    length[from][c] = 0.0;
+    length[from] = 0.0;
     RETURN_IF_ERROR(queue_push(queue, 0.0, (int32_t)from, error));
     while (queue->count > 0) {
         struct path_end end = queue_pop(queue);
-        int64_t last = end.length > length[end.node][c] ? 0 : neighbours->ptr[end.node + 1];
+        int64_t last = end.length > length[end.node] ? 0 : neighbours->ptr[end.node + 1];
         for (int64_t i = neighbours->ptr[end.node]; i < last; i++) {
             int32_t next = neighbours->idx[i];
             double path = end.length + vector_distance(dim, coarse->X + (int64_t)end.node * dim,
                                                        coarse->X + (int64_t)next * dim);
-            if (path < length[next][c]) {
-                length[next][c] = path;
+            if (path < length[next]) {
+                length[next] = path;
                 RETURN_IF_ERROR(queue_push(queue, path, next, error));
             }
         }
@@ -46,9 +45,11 @@ static enum status path_lengths(struct coarse_space *coarse, const struct neighb
     return STATUS_OK;
 }
 
-/* share[..][c] = distances from node `from`, which becomes centre c. */
+/* The shares of centre c = distances from node `from`, which becomes that centre; length[node_count]:
+ * scratch.
+ */
 static enum status add_centre(struct coarse_space *coarse, const struct neighbours *neighbours, int64_t c,
-                              int64_t from, struct queue *queue, struct error *error)
+                              int64_t from, struct queue *queue, double *length, struct error *error)
 {
     int dim = coarse->dim;
     const double *place = coarse->X + from * dim;
@@ -56,12 +57,12 @@ static enum status add_centre(struct coarse_space *coarse, const struct neighbou
         coarse->centre[a][c] = place[a];
     }
     if (neighbours != NULL) {
-        RETURN_IF_ERROR(path_lengths(coarse, neighbours, c, from, queue, error));
+        RETURN_IF_ERROR(path_lengths(coarse, neighbours, from, queue, length, error));
     }
     for (int64_t n = 0; n < coarse->node_count; n++) {
         double straight = vector_distance(dim, coarse->X + n * dim, place);
-        double path = neighbours != NULL ? coarse->share[n][c] / most_detour : 0.0;
-        coarse->share[n][c] = isfinite(path) ? fmax(straight, path) : straight;
+        double path = neighbours != NULL ? length[n] / most_detour : 0.0;
+        coarse->share[n * coarse->stride + c] = isfinite(path) ? fmax(straight, path) : straight;
     }
     return STATUS_OK;
 }
@@ -72,16 +73,17 @@ static enum status pick_centres(struct coarse_space *coarse, const struct neighb
                                 struct error *error)
 {
     FREED_BY(queue_free) struct queue queue = {0};
-    SCRATCH double *least = NULL;
+    SCRATCH double *least = NULL, *length = NULL;
     int64_t next = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&length, coarse->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&least, coarse->node_count, error));
     for (int64_t n = 0; n < coarse->node_count; n++) {
         least[n] = INFINITY;
     }
     for (int64_t c = 0; c < coarse->centre_count; c++) {
-        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, error));
+        RETURN_IF_ERROR(add_centre(coarse, neighbours, c, next, &queue, length, error));
         for (int64_t n = 0; n < coarse->node_count; n++) {
-            least[n] = fmin(least[n], coarse->share[n][c]);
+            least[n] = fmin(least[n], coarse->share[n * coarse->stride + c]);
         }
         for (int64_t n = 0; n < coarse->node_count; n++) {
             next = least[n] > least[next] ? n : next;
@@ -101,12 +103,12 @@ static double weight_at(const struct coarse_space *coarse, double distance)
 static void share_unity(struct coarse_space *coarse)
 {
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        double sum = 0.0;
+        double *share = coarse->share + n * coarse->stride, sum = 0.0;
         for (int64_t c = 0; c < coarse->centre_count; c++) {
-            sum += coarse->share[n][c] = weight_at(coarse, coarse->share[n][c]);
+            sum += share[c] = weight_at(coarse, share[c]);
         }
         for (int64_t c = 0; c < coarse->centre_count; c++) {
-            coarse->share[n][c] /= sum;
+            share[c] /= sum;
         }
     }
 }
@@ -119,9 +121,10 @@ enum status coarse_space_build(int dim, int64_t node_count, const double *X,
                                     .node_count = node_count,
                                     .X = X,
                                     .centre_count = centre_count,
-                                    .count = centre_count * (dim + 1)};
+                                    .count = centre_count * (dim + 1),
+                                    .stride = (centre_count + COARSE_FOUR - 1) / COARSE_FOUR * COARSE_FOUR};
     if (centre_count > 0) {
-        RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, node_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&coarse->share, node_count * coarse->stride, error));
         RETURN_IF_ERROR(pick_centres(coarse, neighbours, error));
         share_unity(coarse);
     }
@@ -139,7 +142,7 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
 {
     int dim = coarse->dim, count = 0;
     for (int c = 0; c < coarse->centre_count; c++) {
-        double share = coarse->share[node][c];
+        double share = coarse->share[node * coarse->stride + c];
         for (int m = 0; m <= dim && share > 0.0; m++, count++) {
             double coordinate =
                 m == 0 ? 1.0 : (coarse->X[node * dim + m - 1] - coarse->centre[m - 1][c]) / coarse->radius;
@@ -155,8 +158,7 @@ typedef of_centres coarse_amounts[4][3];
 
 /* Numbers of four centres, which fit into one register of processors with AVX2: longer vectors would go
  * through memory there. */
-enum { FOUR = 4 };
-typedef double four_centres __attribute__((vector_size(8 * FOUR), aligned(8), may_alias));
+typedef double four_centres __attribute__((vector_size(8 * COARSE_FOUR), aligned(8), may_alias));
 typedef double two_centres __attribute__((vector_size(16)));
 
 #define FOUR_OF(from) (*(const four_centres *)(from))
@@ -166,25 +168,23 @@ typedef double two_centres __attribute__((vector_size(16)));
 KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int first, int64_t node,
                              four_centres value[4])
 {
-    value[0] = FOUR_OF(coarse->share[node] + first);
+    value[0] = FOUR_OF(coarse->share + node * coarse->stride + first);
     for (int a = 0; a < dim; a++) {
         value[a + 1] = value[0] * (coarse->X[node * dim + a] - FOUR_OF(coarse->centre[a] + first));
     }
 }
 
-/* sum = what v, times weight unless NULL, does at the nodes from `begin` to before `end`. */
+/* sum = what v does at the nodes from `begin` to before `end`. */
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
-                           const double *weight, const double *v, coarse_amounts sum)
+                           const double *v, coarse_amounts sum)
 {
-    for (int first = 0; first < coarse->centre_count; first += FOUR) {
+    for (int first = 0; first < coarse->centre_count; first += COARSE_FOUR) {
         four_centres all[4][3] = {{{0.0}}}, value[4];
         for (int64_t n = begin; n < end; n++) {
-            double scale = weight != NULL ? weight[n] : 1.0;
             monomials(coarse, dim, first, n, value);
             for (int a = 0; a < dim; a++) {
-                double scaled = scale * v[n * dim + a];
                 for (int m = 0; m <= dim; m++) {
-                    all[m][a] += value[m] * scaled;
+                    all[m][a] += value[m] * v[n * dim + a];
                 }
             }
         }
@@ -208,7 +208,7 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin
 {
     for (int64_t n = begin; n < end; n++) {
         four_centres sum[3] = {{0.0}}, value[4];
-        for (int first = 0; first < coarse->centre_count; first += FOUR) {
+        for (int first = 0; first < coarse->centre_count; first += COARSE_FOUR) {
             monomials(coarse, dim, first, n, value);
             for (int a = 0; a < dim; a++) {
                 four_centres part = value[0] * FOUR_OF(amount[0][a] + first);
@@ -225,12 +225,12 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin
 }
 
 ALL_SETS static void collect_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
-                                   const double *weight, const double *v, coarse_amounts sum)
+                                   const double *v, coarse_amounts sum)
 {
     if (coarse->dim == 2) {
-        collect(coarse, 2, begin, end, weight, v, sum);
+        collect(coarse, 2, begin, end, v, sum);
     } else {
-        collect(coarse, 3, begin, end, weight, v, sum);
+        collect(coarse, 3, begin, end, v, sum);
     }
 }
 
@@ -244,15 +244,14 @@ ALL_SETS static void add_nodes(const struct coarse_space *coarse, int64_t begin,
     }
 }
 
-void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
-                           double *amount)
+void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount)
 {
     struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
     int dim = coarse->dim;
     coarse_amounts partial[CHUNKS_MOST];
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), weight, v, partial[c]);
+        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), v, partial[c]);
     }
     for (int m = 0; m <= dim; m++) {
         for (int a = 0; a < dim; a++) {

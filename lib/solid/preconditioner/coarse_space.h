@@ -13,11 +13,14 @@
 
 #include <stdint.h>
 
-enum { COARSE_MOST_CENTRES = 16 };
+enum { COARSE_MOST_CENTRES = 64 };
 enum { COARSE_MOST_AT_NODE = 4 * COARSE_MOST_CENTRES };
 
 /* A number for each centre; 0 beyond centre_count. */
 typedef double of_centres[COARSE_MOST_CENTRES];
+
+/* Centres are taken four at a time. */
+enum { COARSE_FOUR = 4 };
 
 /* Fields are numbered c * (dim + 1) + m: the share of centre c, times 1 (m = 0) or coordinate m - 1 relative
  * to the centre, divided by the radius. */
@@ -28,7 +31,8 @@ struct coarse_space {
     int64_t centre_count, count;
     of_centres centre[3]; /* dim coordinates, m */
     double radius;        /* within which a centre has a share, m */
-    of_centres *share;    /* node_count: sum 1 */
+    int64_t stride;       /* centre_count, up to a multiple of COARSE_FOUR */
+    double *share;        /* node_count * stride: sum 1, 0 beyond centre_count */
 };
 
 /* Fields of so many centres, at most COARSE_MOST_CENTRES; none for 0. `neighbours` of each node; NULL: all
@@ -43,10 +47,8 @@ int coarse_space_at_node(const struct coarse_space *coarse, int64_t node, int fi
                          double value[COARSE_MOST_AT_NODE]);
 
 /* amount[count * dim] = Z^T v, count > 0: what nodal vectors, such as forces, do along each field, in each
- * direction; or Z^T (weight v) with a weight for each node, unless that is NULL. Threaded; the same bits for
- * any number of threads and on any processor, here and below. */
-void coarse_space_restrict(const struct coarse_space *coarse, const double *weight, const double *v,
-                           double *amount);
+ * direction. Threaded; the same bits for any number of threads and on any processor, here and below. */
+void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount);
 
 /* u[node_count * dim] += Z amount. */
 void coarse_space_prolongate(const struct coarse_space *coarse, const double *amount, double *u);

@@ -26,6 +26,15 @@ static double largest_entry(const double *vector, int64_t size)
     return largest;
 }
 
+static double product(int64_t size, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
 /* Mean spacing of the points. */
 static double point_spacing(const struct solid_system *system)
 {
@@ -69,15 +78,11 @@ double system_largest_frequency(struct solid_system *system, struct precondition
     double spacing = point_spacing(system);
     for (int it = 0; it < iterations; it++) {
         double epsilon = residual_along(system, u, spacing, mode, displaced, response);
-        double top = 0.0;
         for (int64_t i = 0; i < size; i++) {
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
         preconditioner_resist_open(p, system, mode, displaced);
-        for (int64_t i = 0; i < size; i++) {
-            top += mode[i] * displaced[i];
-        }
-        eigenvalue = top / preconditioner_product(p, mode, mode);
+        eigenvalue = product(size, mode, displaced) / preconditioner_square(p, mode);
         preconditioner_apply(p, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
@@ -143,18 +148,6 @@ static double largest_eigenvalue(int n, double *diagonal, const double *off_diag
     return largest;
 }
 
-/* product = M^-1 K move, from the change of the residual from u along the move. */
-static void apply(struct solid_system *system, struct preconditioner *p, const double *u,
-                  const double *residual, double spacing, const double *move, double *displaced,
-                  double *product)
-{
-    double epsilon = residual_along(system, u, spacing, move, displaced, product);
-    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
-        displaced[i] = (residual[i] - product[i]) / epsilon;
-    }
-    preconditioner_apply(p, displaced, product);
-}
-
 /* Whether `count` iterations suffice for the least eigenvalue: with fewer than a share of the ratio of the
  * frequencies the Ritz value stays on a plateau, at a higher mode. */
 static bool enough(int count, double largest, double least)
@@ -201,28 +194,33 @@ static int32_t most_moved(int dim, int64_t node_count, const double *vector)
     return node;
 }
 
-/* A Lanczos iteration at a state. */
+/* A Lanczos iteration at a state. With each vector goes M times it, so that M^-1 alone is applied. */
 struct lanczos {
     struct solid_system *system;
     struct preconditioner *preconditioner;
     const double *u, *residual;
     double spacing;
-    double *vector, *before, *product, *displaced; /* system->node_count * dim */
-    double norm;                                   /* of vector, in the product of the mass */
+    double *vector, *force, *force_before, *displaced, *response; /* system->node_count * dim */
+    double norm;                                                  /* of vector, in the product of the mass */
 };
+
+static int64_t lanczos_size(const struct lanczos *l)
+{
+    return l->system->node_count * l->system->dim;
+}
 
 /* From l->vector; false when its projection onto the admissible moves vanishes. */
 static bool lanczos_begin(struct lanczos *l)
 {
-    double whole = preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector);
+    double whole = preconditioner_square_diagonal(l->preconditioner, l->vector);
     constraint_project(&l->preconditioner->constraint, NULL, l->vector);
-    memset(l->before, 0, (size_t)(l->system->node_count * l->system->dim) * sizeof *l->before);
-    l->norm = sqrt(preconditioner_product(l->preconditioner, l->vector, l->vector));
-    return preconditioner_product_diagonal(l->preconditioner, l->vector, l->vector) >
-           least_free * least_free * whole;
+    memset(l->force_before, 0, (size_t)lanczos_size(l) * sizeof *l->force_before);
+    preconditioner_multiply(l->preconditioner, l->vector, l->force);
+    l->norm = sqrt(product(lanczos_size(l), l->vector, l->force));
+    return preconditioner_square_diagonal(l->preconditioner, l->vector) > least_free * least_free * whole;
 }
 
-/* Vectors in scratch[4 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
+/* Vectors in scratch[5 * node_count * dim]; l->vector is a copy of `start`, or pseudo-random for zeros. */
 static struct lanczos lanczos_at(struct solid_system *system, struct preconditioner *p, const double *u,
                                  const double *residual, const double *start, double *scratch)
 {
@@ -233,9 +231,10 @@ static struct lanczos lanczos_at(struct solid_system *system, struct preconditio
                         .residual = residual,
                         .spacing = point_spacing(system),
                         .vector = scratch,
-                        .before = scratch + size,
-                        .product = scratch + 2 * size,
-                        .displaced = scratch + 3 * size};
+                        .force = scratch + size,
+                        .force_before = scratch + 2 * size,
+                        .displaced = scratch + 3 * size,
+                        .response = scratch + 4 * size};
     memcpy(l.vector, start, (size_t)size * sizeof *start);
     if (largest_entry(start, size) == 0.0) {
         start_mode(l.vector, size);
@@ -243,22 +242,34 @@ static struct lanczos lanczos_at(struct solid_system *system, struct preconditio
     return l;
 }
 
-/* Entries k of the diagonal and beside it; before: the k-th vector, of norm 1. */
+/* l->vector, of norm 1 now, is the k-th one. */
+static void lanczos_scale(struct lanczos *l)
+{
+    double scale = 1.0 / l->norm;
+    for (int64_t i = 0; i < lanczos_size(l); i++) {
+        l->vector[i] *= scale;
+        l->force[i] *= scale;
+    }
+}
+
+/* Entries k of the diagonal and beside it, from the k-th vector; then the next one. K is the change of the
+ * residual from u along the vector. */
 static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off_diagonal)
 {
-    int64_t size = l->system->node_count * l->system->dim;
-    double coupling = k > 0 ? l->norm : 0.0, *product = l->product;
+    int64_t size = lanczos_size(l);
+    double coupling = k > 0 ? l->norm : 0.0, *next = l->force_before;
+    double epsilon = residual_along(l->system, l->u, l->spacing, l->vector, l->displaced, l->response);
     for (int64_t i = 0; i < size; i++) {
-        l->vector[i] /= l->norm;
+        next[i] = (l->residual[i] - l->response[i]) / epsilon - coupling * l->force_before[i];
     }
-    apply(l->system, l->preconditioner, l->u, l->residual, l->spacing, l->vector, l->displaced, product);
-    diagonal[k] = preconditioner_product(l->preconditioner, l->vector, product);
+    diagonal[k] = product(size, l->vector, next);
     for (int64_t i = 0; i < size; i++) {
-        product[i] -= diagonal[k] * l->vector[i] + coupling * l->before[i];
+        next[i] -= diagonal[k] * l->force[i];
     }
-    l->norm = off_diagonal[k] = sqrt(preconditioner_product(l->preconditioner, product, product));
-    memcpy(l->before, l->vector, (size_t)size * sizeof *l->before);
-    memcpy(l->vector, product, (size_t)size * sizeof *l->vector);
+    l->force_before = l->force;
+    l->force = next;
+    preconditioner_apply(l->preconditioner, next, l->vector);
+    l->norm = off_diagonal[k] = sqrt(product(size, l->vector, next));
 }
 
 enum status system_spectrum(struct solid_system *system, struct preconditioner *p, const double *u,
@@ -277,6 +288,7 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
         return STATUS_OK;
     }
     for (int k = 0; k < most_iterations && l.norm > 1e-12 * largest; k++) {
+        lanczos_scale(&l);
         lanczos_step(&l, k, diagonal, off_diagonal);
         largest = fmax(largest, diagonal[k]);
         spectrum->iterations = k + 1;
@@ -314,21 +326,24 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
     struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* the matrix first, */
+        lanczos_scale(&l);
         lanczos_step(&l, k, diagonal, off_diagonal);
     }
     least_eigenvector(count, diagonal, off_diagonal, spectrum->lowest, pivot, share);
     l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* then its vectors, of which the mode is a sum */
-        lanczos_step(&l, k, diagonal, off_diagonal);
+        lanczos_scale(&l);
         for (int64_t i = 0; i < size; i++) {
-            mode[i] += share[k] * l.before[i];
+            mode[i] += share[k] * l.vector[i];
         }
+        lanczos_step(&l, k, diagonal, off_diagonal);
     }
     stability->least = -INFINITY;
     for (int way = 0; way < 2; way++) { /* a contact that opens or closes does so one way */
         l = lanczos_at(system, p, u, residual, mode, scratch);
         (void)lanczos_begin(&l);
+        lanczos_scale(&l);
         lanczos_step(&l, 0, diagonal, off_diagonal);
         stability->least = fmax(stability->least, diagonal[0] / spectrum->largest);
         for (int64_t i = 0; i < size; i++) {

@@ -1,7 +1,9 @@
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
+#include "base/dense.h"
 #include "base/memory.h"
+#include "base/processor.h"
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 #include "solid/system/rigid_modes.h"
@@ -16,7 +18,10 @@ static const int64_t most_unknowns = 96;
 /* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
  * steps follow the distance of the centres by that of the nodes. */
 static const int64_t nodes_per_centre = 1000;
+/* Rows of conditions times unknowns of large bodies at most: 8 bytes each, and some more for a while. */
+static const int64_t most_held = 1 << 24;
 
+enum { HELD_AT_ONCE = 8 };
 enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
 
 static int64_t centre_count(const struct solid_system *system)
@@ -24,34 +29,11 @@ static int64_t centre_count(const struct solid_system *system)
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
     int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
+    int64_t held = system->rows.count * fields * system->dim;
+    of_large = held > 0 && most_held / held < of_large ? most_held / held : of_large;
     most = of_large > most ? of_large : most;
     most = most < COARSE_MOST_CENTRES ? most : COARSE_MOST_CENTRES;
     return count < most ? count : most;
-}
-
-/* L^-T Z of the scalar coarse fields, by rows. */
-static enum status transform_fields(struct preconditioner *p, int threads, struct error *error)
-{
-    const struct ranks *ranks = p->factor.ranks;
-    int64_t nodes = p->node_count, *first = NULL;
-    int field[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
-    RETURN_IF_ERROR(ranks_share(ranks, p->coarse.count, NULL, &p->field_first, error));
-    first = p->field_first;
-    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse_fields, p->coarse.count * nodes, error));
-    for (int64_t n = 0; n < nodes; n++) {
-        int count = coarse_space_at_node(&p->coarse, n, field, value);
-        for (int k = 0; k < count; k++) {
-            p->inverse_fields[field[k] * nodes + n] = value[k];
-        }
-    }
-    int64_t begin = first[ranks_rank(ranks)], end = first[ranks_rank(ranks) + 1];
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int64_t k = begin; k < end; k++) {
-        inverse_factor_solve_transposed(&p->factor, 1, p->inverse_fields + k * nodes);
-    }
-    ranks_gather(ranks, p->inverse_fields, (size_t)nodes * sizeof(double), first);
-    return STATUS_OK;
 }
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)
@@ -59,9 +41,7 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
     RETURN_IF_ERROR(inverse_stiffness_factor(system, &p->factor, error));
     RETURN_IF_ERROR(inverse_stiffness_rows(&p->factor, &system->rows, &p->factor_rows, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->at_rest, system->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->on_inverse, 2 * system->node_count * system->dim, error));
     system_relaxation_mass(system, true, p->at_rest);
-    RETURN_IF_ERROR(transform_fields(p, system->body.threads, error));
     return STATUS_OK;
 }
 
@@ -94,6 +74,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     }
     RETURN_IF_ERROR(NEW_ARRAY(&p->mass, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->vector, system->node_count * system->dim, error));
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
@@ -108,8 +89,8 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->weight, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->free_weight, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->inverse, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_inverse, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
@@ -127,10 +108,10 @@ void preconditioner_free(struct preconditioner *p)
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     constraint_rows_free(&p->factor_rows);
-    FREE_ALL(p->inverse_fields, p->field_first, p->column_first, p->on_inverse, p->at_rest, p->stiffness,
-             p->mass, p->body, p->active, p->normal, p->creased, p->turned, p->idle, p->patience, p->weight,
-             p->free_weight, p->held, p->inverse, p->capacitance_inverse, p->amount, p->contacts, p->impact,
-             p->pushed, p->opposite);
+    FREE_ALL(p->column_first, p->vector, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal,
+             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->held,
+             p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->impact, p->pushed,
+             p->opposite);
     *p = (struct preconditioner){0};
 }
 
@@ -142,6 +123,17 @@ static void multiply(int64_t n, const double *matrix, const double *x, double *r
         for (int64_t i = 0; i < n; i++) {
             y[i] += x[k] * matrix[k * n + i];
         }
+    }
+}
+
+/* amount[size] := what it is by the inverse of the factorised matrix; 0 where the coarse fields are not used.
+ */
+static void solve(const struct preconditioner *p, const double *factor, double *amount)
+{
+    if (p->uses_coarse) {
+        dense_solve_large(p->size, factor, amount);
+    } else {
+        memset(amount, 0, (size_t)p->size * sizeof *amount);
     }
 }
 
@@ -159,14 +151,36 @@ static void divide_by_mass(const struct preconditioner *p, const double *x, doub
 void preconditioner_smooth(struct preconditioner *p, const double *force, double *result)
 {
     const struct inverse_factor *inverse = &p->factor;
-    double *on_inverse = p->on_inverse;
+    double *within = p->vector;
     if (inverse->rows.row_count == 0) {
         divide_by_mass(p, force, result);
         return;
     }
-    inverse_factor_apply(inverse, p->dim, force, on_inverse);
-    divide_by_mass(p, on_inverse, on_inverse);
-    inverse_factor_apply_transposed(inverse, p->dim, on_inverse, result);
+    inverse_factor_apply(inverse, p->dim, force, within);
+    divide_by_mass(p, within, within);
+    inverse_factor_apply_transposed(inverse, p->dim, within, result);
+}
+
+/* amount[k] -= column k of S^-1 G Z times values, for `count` columns from k on. */
+static void release_columns(const struct preconditioner *p, int64_t k, int64_t count, const double *values,
+                            double *amount)
+{
+    int64_t rows = p->constraint.rows->count;
+    const double *held = p->held + k * rows;
+    double sum[HELD_AT_ONCE];
+    memcpy(sum, amount + k, (size_t)count * sizeof *sum);
+    for (int64_t r = 0; r < rows; r++) {
+        if (count == HELD_AT_ONCE) {
+            for (int c = 0; c < HELD_AT_ONCE; c++) {
+                sum[c] -= held[c * rows + r] * values[r];
+            }
+        } else {
+            for (int c = 0; c < count; c++) {
+                sum[c] -= held[c * rows + r] * values[r];
+            }
+        }
+    }
+    memcpy(amount + k, sum, (size_t)count * sizeof *sum);
 }
 
 /* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
@@ -180,12 +194,9 @@ static void release_rows(const struct preconditioner *p, const double *values, d
     struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = first[0] + chunks_begin(&chunks, c), end = first[0] + chunks_begin(&chunks, c + 1);
-        for (int64_t r = 0; r < rows->count; r++) {
-            const double *held = p->held + r * p->size;
-            for (int64_t k = begin; k < end && values[r] != 0.0; k++) {
-                amount[k] -= held[k] * values[r];
-            }
+        int64_t end = first[0] + chunks_begin(&chunks, c + 1);
+        for (int64_t k = first[0] + chunks_begin(&chunks, c); k < end; k += HELD_AT_ONCE) {
+            release_columns(p, k, end - k < HELD_AT_ONCE ? end - k : HELD_AT_ONCE, values, amount);
         }
     }
     ranks_gather(ranks, amount, sizeof *amount, p->column_first);
@@ -198,7 +209,7 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     double *seen = p->constraint.multiplier;
     preconditioner_smooth(p, force, acceleration);
     if (p->size > 0) {
-        coarse_space_restrict(&p->coarse, NULL, force, amount);
+        coarse_space_restrict(&p->coarse, force, amount);
     }
     if (rows == NULL) {
         return;
@@ -207,126 +218,126 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     release_rows(p, seen, amount);
 }
 
+/* y += a x */
+ALL_SETS static void add_held(int64_t count, double a, const double *x, double *restrict y)
+{
+    for (int64_t i = 0; i < count; i++) {
+        y[i] += a * x[i];
+    }
+}
+
 void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
 {
     struct constraint *constraint = &p->constraint;
     const struct constraint_rows *rows = constraint->rows;
-    double *multiplier = constraint->multiplier, *solved = p->amount + p->size;
-    preconditioner_restrict_force(p, force, acceleration, p->amount);
+    double *multiplier = constraint->multiplier, *amount = p->amount;
+    preconditioner_restrict_force(p, force, acceleration, amount);
     if (p->size > 0) {
-        multiply(p->size, p->inverse, p->amount, solved);
-        coarse_space_prolongate(&p->coarse, solved, acceleration);
+        solve(p, p->stiffness_factor, amount);
+        coarse_space_prolongate(&p->coarse, amount, acceleration);
     }
     if (rows == NULL || rows->count == 0) {
         return;
     }
     constraint_solve(constraint, multiplier);
-#pragma omp parallel for schedule(static)                                                                    \
-    num_threads(chunks_of(rows->count * p->size, ENTRIES_FOR_THREAD).threads)
-    for (int64_t r = 0; r < rows->count; r++) {
-        const double *held = p->held + r * p->size;
-        double sum = multiplier[r];
+    struct chunks chunks = chunks_for_threads(rows->count, rows->count * p->size, ENTRIES_FOR_THREAD);
+#pragma omp parallel for schedule(static) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
         for (int64_t k = 0; k < p->size; k++) {
-            sum += held[k] * solved[k];
+            add_held(end - begin, amount[k], p->held + k * rows->count + begin, multiplier + begin);
         }
-        multiplier[r] = -sum;
+        for (int64_t r = begin; r < end; r++) {
+            multiplier[r] = -multiplier[r];
+        }
     }
     constraint_spread(constraint, multiplier, acceleration);
 }
 
-/* L^-T move, into scratch; or the move itself. */
-static const double *on_inverse(const struct preconditioner *p, const double *move, double *scratch)
+/* y = D x */
+static void multiply_by_mass(const struct preconditioner *p, const double *x, double *y)
 {
-    if (p->factor.rows.row_count == 0) {
-        return move;
+    for (int64_t n = 0; n < p->node_count; n++) {
+        for (int64_t i = n * p->dim; i < (n + 1) * p->dim; i++) {
+            y[i] = p->mass[n] * x[i];
+        }
     }
-    memcpy(scratch, move, (size_t)(p->node_count * p->dim) * sizeof *move);
-    inverse_factor_solve_transposed(&p->factor, p->dim, scratch);
-    return scratch;
 }
 
-/* x . D y */
-static double weighted_product(const struct preconditioner *p, const double *x, const double *y)
+void preconditioner_unsmooth(const struct preconditioner *p, const double *move, double *force)
+{
+    const struct inverse_factor *inverse = &p->factor;
+    if (inverse->rows.row_count == 0) {
+        multiply_by_mass(p, move, force);
+        return;
+    }
+    memcpy(force, move, (size_t)(p->node_count * p->dim) * sizeof *move);
+    inverse_factor_solve_transposed(inverse, p->dim, force);
+    multiply_by_mass(p, force, force);
+    inverse_factor_solve(inverse, p->dim, force);
+}
+
+double preconditioner_square_diagonal(struct preconditioner *p, const double *x)
 {
     int dim = p->dim;
     double sum = 0.0;
+    if (p->factor.rows.row_count > 0) {
+        memcpy(p->vector, x, (size_t)(p->node_count * dim) * sizeof *x);
+        inverse_factor_solve_transposed(&p->factor, dim, p->vector);
+        x = p->vector;
+    }
     for (int64_t n = 0; n < p->node_count; n++) {
-        sum += p->mass[n] * vector_dot(dim, x + n * dim, y + n * dim);
+        sum += p->mass[n] * vector_dot(dim, x + n * dim, x + n * dim);
     }
     return sum;
 }
 
-/* amount[size] = Z^T B^-1 move = (L^-T Z)^T D L^-T move, of moved = L^-T move. */
-static void restrict_move(const struct preconditioner *p, const double *moved, double *amount)
+double preconditioner_square(struct preconditioner *p, const double *x)
 {
-    int dim = p->dim;
-    int64_t nodes = p->node_count;
-    if (p->factor.rows.row_count == 0) {
-        coarse_space_restrict(&p->coarse, p->mass, moved, amount);
-        return;
+    double sum = 0.0, *amount = p->amount, *solved = p->amount + p->size;
+    if (p->size == 0) {
+        return preconditioner_square_diagonal(p, x);
     }
-    const struct ranks *ranks = p->factor.ranks;
-    const int64_t *first = p->field_first + ranks_rank(ranks);
-#pragma omp parallel for schedule(static)                                                                    \
-    num_threads(chunks_of((first[1] - first[0]) * nodes, ENTRIES_FOR_THREAD).threads)
-    for (int64_t k = first[0]; k < first[1]; k++) {
-        const double *field = p->inverse_fields + k * nodes;
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int64_t n = 0; n < nodes; n++) {
-            double weight = p->mass[n] * field[n];
-            for (int a = 0; a < dim; a++) {
-                sum[a] += weight * moved[n * dim + a];
-            }
-        }
-        memcpy(amount + k * dim, sum, (size_t)dim * sizeof *sum);
+    preconditioner_unsmooth(p, x, p->vector);
+    for (int64_t i = 0; i < p->node_count * p->dim; i++) {
+        sum += x[i] * p->vector[i];
     }
-    ranks_gather(ranks, amount, (size_t)dim * sizeof *amount, p->field_first);
+    coarse_space_restrict(&p->coarse, p->vector, amount);
+    memcpy(solved, amount, (size_t)p->size * sizeof *amount);
+    solve(p, p->capacitance_factor, solved);
+    for (int64_t k = 0; k < p->size; k++) {
+        sum -= amount[k] * solved[k];
+    }
+    return sum;
 }
 
-/* Both moves in terms of L. */
-static void transform_both(struct preconditioner *p, const double **x, const double **y)
+void preconditioner_multiply(struct preconditioner *p, const double *x, double *force)
 {
-    double *scratch = p->on_inverse;
-    bool same = *x == *y;
-    *x = on_inverse(p, *x, scratch);
-    *y = same ? *x : on_inverse(p, *y, scratch + p->node_count * p->dim);
-}
-
-double preconditioner_product_diagonal(struct preconditioner *p, const double *x, const double *y)
-{
-    transform_both(p, &x, &y);
-    return weighted_product(p, x, y);
-}
-
-double preconditioner_product(struct preconditioner *p, const double *x, const double *y)
-{
-    double *amount = p->amount, *solved = p->amount + p->size;
-    transform_both(p, &x, &y);
-    double sum = weighted_product(p, x, y);
+    double *amount = p->amount;
+    memcpy(p->vector, x, (size_t)(p->node_count * p->dim) * sizeof *x);
     if (p->size > 0) {
-        restrict_move(p, x, amount);
-        multiply(p->size, p->capacitance_inverse, amount, solved);
-        if (y != x) {
-            restrict_move(p, y, amount);
-        }
+        preconditioner_unsmooth(p, x, force);
+        coarse_space_restrict(&p->coarse, force, amount);
+        solve(p, p->capacitance_factor, amount);
         for (int64_t k = 0; k < p->size; k++) {
-            sum -= amount[k] * solved[k];
+            amount[k] = -amount[k];
         }
+        coarse_space_prolongate(&p->coarse, amount, p->vector);
     }
-    return sum;
+    preconditioner_unsmooth(p, p->vector, force);
 }
 
 void preconditioner_momentum(struct preconditioner *p, const double *velocity, double *amount,
                              double *momentum)
 {
-    const double *x = velocity, *y = velocity;
-    transform_both(p, &x, &y);
-    restrict_move(p, x, momentum);
+    preconditioner_unsmooth(p, velocity, p->vector);
+    coarse_space_restrict(&p->coarse, p->vector, momentum);
     if (p->constraint.rows != NULL) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
         release_rows(p, p->constraint.multiplier, momentum);
     }
-    multiply(p->size, p->capacitance_inverse, momentum, amount);
+    memcpy(amount, momentum, (size_t)p->size * sizeof *momentum);
+    solve(p, p->capacitance_factor, amount);
     multiply(p->size, p->free_weight, amount, p->amount);
     for (int64_t k = 0; k < p->size; k++) {
         momentum[k] -= p->amount[k];

@@ -36,10 +36,8 @@ struct preconditioner {
     double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
     struct inverse_factor factor;       /* node_count 0: none */
     struct constraint_rows factor_rows; /* G L^T */
-    double *inverse_fields;             /* coarse.count rows of node_count: L^-T of the coarse fields */
-    int64_t *field_first;               /* of several processes: the fields that each multiplies with, */
-    int64_t *column_first;              /* and the columns of the matrices that it computes */
-    double *on_inverse;                 /* 2 * node_count * dim: scratch */
+    int64_t *column_first;              /* of several processes: the columns of matrices that each computes */
+    double *vector;                     /* node_count * dim: scratch */
     struct constraint constraint;       /* with D */
     struct coarse_space coarse;         /* count 0: none, M = D */
     int64_t size;                       /* fields.count * dim: rows and columns of the matrices */
@@ -56,15 +54,17 @@ struct preconditioner {
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
     double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
-    double *weight;      /* Z^T D Z */
-    double *free_weight; /* Z^T D P Z */
-    double *held; /* rows of the conditions * size: (G D^-1 G^T)^-1 G Z, what they put against each field */
-    double *contacts;            /* stiffness along the coarse fields of the contact nodes that A counts in */
-    bool *pushed;                /* contact_node_count: those that A counts in anew; scratch */
-    double *impact;              /* size * size + 2 * size: scratch */
-    double *inverse;             /* A^-1 */
-    double *capacitance_inverse; /* (A + Z^T D P Z)^-1, of the capacitance matrix of the Woodbury formula */
-    double *amount;              /* 2 * size: scratch */
+    double *weight;      /* Z^T B^-1 Z */
+    double *free_weight; /* Z^T B^-1 P Z */
+    double
+        *held; /* size columns of the conditions' rows: (G B G^T)^-1 G Z, what they put against each field */
+    double *contacts;           /* stiffness along the coarse fields of the contact nodes that A counts in */
+    bool *pushed;               /* contact_node_count: those that A counts in anew; scratch */
+    double *impact;             /* size * size + 2 * size: scratch */
+    double *stiffness_factor;   /* Cholesky factor of A, */
+    double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
+    bool uses_coarse;           /* they exist; else M = B^-1 */
+    double *amount;             /* 2 * size: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -109,12 +109,14 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
 /* result = B force */
 void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
 
-/* x . B^-1 y */
-double preconditioner_product_diagonal(struct preconditioner *preconditioner, const double *x,
-                                       const double *y);
+/* x . B^-1 x */
+double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
 
-/* x . M y for x and y that satisfy the homogeneous conditions. */
-double preconditioner_product(struct preconditioner *preconditioner, const double *x, const double *y);
+/* x . M x for a move x that satisfies the homogeneous conditions. */
+double preconditioner_square(struct preconditioner *preconditioner, const double *x);
+
+/* force = M move, but for forces of the conditions, for a move that satisfies the homogeneous conditions. */
+void preconditioner_multiply(struct preconditioner *preconditioner, const double *move, double *force);
 
 /* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
  * preconditioner_restore.

@@ -20,6 +20,7 @@
 #include <math.h>
 #include <string.h>
 
+enum { MOST_ENTRIES = 1 << 23 }; /* of the chunks' matrices */
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
 
 struct assembly {
@@ -314,7 +315,7 @@ static enum status find_bent(struct assembly *s, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&s->bent, count * dim * size, error));
     for (int64_t k = 0; k < size && count > 0; k++) {
         for (int64_t r = 0; r < rows; r++) {
-            amount[r] = -p->held[r * size + k];
+            amount[r] = -p->held[k * rows + r];
         }
         spread(p, rows, amount, field);
         for (int64_t i = 0; i < nodes * dim; i++) {
@@ -353,11 +354,14 @@ static enum status sum_chunks(struct assembly *s, double *matrix, struct error *
     const struct solid_system *system = s->system;
     const struct ranks *ranks = system->body.share.ranks;
     int64_t cells = s->p->size * s->p->size;
-    struct chunks nodes = chunks_of(s->p->node_count, NODES_FOR_THREAD), penalties = nodes;
+    struct chunks nodes = chunks_of(s->p->node_count, NODES_FOR_THREAD), penalties;
     struct block_row rows[CHUNKS_MOST] = {{0}};
     SCRATCH int64_t *first = NULL;
     SCRATCH double *part = NULL;
     enum status status;
+    int64_t most = MOST_ENTRIES / cells > 8 ? MOST_ENTRIES / cells : 8;
+    nodes.count = nodes.count < most ? nodes.count : most;
+    penalties = nodes;
     penalties.items = system->penalties.count;
     TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
     TRY(NEW_ARRAY(&part, nodes.count * cells, error));

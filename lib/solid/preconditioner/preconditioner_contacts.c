@@ -218,7 +218,7 @@ static void keep_momentum(struct preconditioner *p, const struct solid_system *s
     if (preconditioner_factorise(p, matrix) == 0.0) {
         return;
     }
-    dense_solve(p->size, matrix, change);
+    dense_solve_large(p->size, matrix, change);
     for (int64_t k = 0; k < p->size; k++) {
         change[k] -= amount[k];
     }
@@ -235,9 +235,9 @@ bool preconditioner_follow(struct preconditioner *p, const struct solid_system *
     if (!follow_nodes(p, system, leave, &pushes) || p->size == 0) {
         return false;
     }
-    if (pushes && velocity != NULL && p->inverse[0] > 0.0) { /* else there is no coarse space */
+    if (pushes && velocity != NULL && p->uses_coarse) {
         keep_momentum(p, system, velocity, field);
     }
-    preconditioner_invert(p, system);
+    preconditioner_factorise_both(p, system);
     return true;
 }

@@ -1,69 +1,75 @@
 /* The diagonal mass, and the matrices of the mass and of the conditions on the coarse fields. */
 #include "solid/preconditioner/preconditioner_private.h"
 
+#include "base/chunks.h"
 #include "base/memory.h"
-#include "base/processor.h"
+#include "base/sparse.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+enum { NODES_FOR_THREAD = 1000 };      /* see chunks_of */
 static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
 
-/* sum of weight x y: in a fixed order, several at a time. */
-ALL_SETS static double weighted_sum(int64_t count, const double *weight, const double *x, const double *y)
+/* rows[count * dim]: for each field k what L^-1 D L^-T makes of field `first` + a along it, in direction a.
+ * The fields stand for the directions of moves, field[node_count * dim] and force, as many. */
+static void weigh_fields(const struct preconditioner *p, int64_t first, double *field, double *force,
+                         double *rows)
 {
-    enum { CHAINS = 8 };
-    double chain[CHAINS] = {0.0}, sum = 0.0;
-    int64_t n = 0;
-    for (; n + CHAINS <= count; n += CHAINS) {
-        for (int c = 0; c < CHAINS; c++) {
-            chain[c] += weight[n + c] * x[n + c] * y[n + c];
-        }
+    int64_t dim = p->dim, count = p->coarse.count;
+    memset(field, 0, (size_t)(p->node_count * dim) * sizeof *field);
+    memset(rows, 0, (size_t)(count * dim) * sizeof *rows);
+    for (int64_t a = 0; a < dim && first + a < count; a++) {
+        rows[(first + a) * dim + a] = 1.0;
     }
-    for (; n < count; n++) {
-        sum += weight[n] * x[n] * y[n];
-    }
-    for (int c = 0; c < CHAINS; c++) {
-        sum += chain[c];
-    }
-    return sum;
+    coarse_space_prolongate(&p->coarse, rows, field);
+    preconditioner_unsmooth(p, field, force);
+    coarse_space_restrict(&p->coarse, force, rows);
 }
 
-/* weight = (L^-T Z)^T D L^-T Z, over so many nodes at a time that their fields stay in the cache. */
-static void weigh_inverse_fields(struct preconditioner *p)
+/* weight = Z^T B^-1 Z, `dim` fields at a time, each process and each thread some of these. */
+static enum status weigh_inverse_fields(struct preconditioner *p, struct error *error)
 {
-    enum { NODES_AT_ONCE = 1024 };
-    int64_t dim = p->dim, size = p->size, nodes = p->node_count;
-    for (int64_t begin = 0; begin < nodes; begin += NODES_AT_ONCE) {
-        int64_t count = nodes - begin < NODES_AT_ONCE ? nodes - begin : NODES_AT_ONCE;
-        for (int64_t i = 0; i < p->coarse.count; i++) {
-            for (int64_t k = 0; k <= i; k++) {
-                p->weight[i * dim * size + k * dim] +=
-                    weighted_sum(count, p->mass + begin, p->inverse_fields + i * nodes + begin,
-                                 p->inverse_fields + k * nodes + begin);
-            }
+    const struct ranks *ranks = p->factor.ranks;
+    int64_t dim = p->dim, count = p->coarse.count, values = p->node_count * dim;
+    int64_t times = (count + dim - 1) / dim;
+    SCRATCH int64_t *firsts = NULL;
+    SCRATCH double *rows = NULL, *vectors = NULL;
+    RETURN_IF_ERROR(ranks_share(ranks, times, NULL, &firsts, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows, times * count * dim, error));
+    const int64_t *first = firsts + ranks_rank(ranks);
+    struct chunks chunks = chunks_for_threads(first[1] - first[0], values, NODES_FOR_THREAD);
+    RETURN_IF_ERROR(NEW_ARRAY(&vectors, 2 * chunks.count * values, error));
+#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
+    for (int64_t c = 0; c < chunks.count; c++) {
+        double *own = vectors + 2 * c * values;
+        for (int64_t t = first[0] + chunks_begin(&chunks, c); t < first[0] + chunks_begin(&chunks, c + 1);
+             t++) {
+            weigh_fields(p, t * dim, own, own + values, rows + t * count * dim);
         }
     }
-    for (int64_t i = 0; i < p->coarse.count; i++) {
+    ranks_gather(ranks, rows, (size_t)(count * dim) * sizeof *rows, firsts);
+    for (int64_t i = 0; i < count; i++) {
         for (int64_t k = 0; k <= i; k++) {
+            double weight = rows[(i / dim * count + k) * dim + i % dim];
             for (int64_t a = 0; a < dim; a++) {
-                p->weight[(i * dim + a) * size + k * dim + a] =
-                    p->weight[(k * dim + a) * size + i * dim + a] = p->weight[i * dim * size + k * dim];
+                p->weight[(i * dim + a) * p->size + k * dim + a] = weight;
+                p->weight[(k * dim + a) * p->size + i * dim + a] = weight;
             }
         }
     }
+    return STATUS_OK;
 }
 
 /* weight = Z^T B^-1 Z: directions do not couple. */
-static void weigh_coarse_space(struct preconditioner *p)
+static enum status weigh_coarse_space(struct preconditioner *p, struct error *error)
 {
     int64_t dim = p->dim, size = p->size;
     double *weight = p->weight, value[COARSE_MOST_AT_NODE];
     int field[COARSE_MOST_AT_NODE];
     memset(weight, 0, (size_t)(size * size) * sizeof *weight);
     if (p->factor.rows.row_count > 0) {
-        weigh_inverse_fields(p);
-        return;
+        return weigh_inverse_fields(p, error);
     }
     for (int64_t n = 0; n < p->node_count; n++) {
         int count = coarse_space_at_node(&p->coarse, n, field, value);
@@ -80,6 +86,7 @@ static void weigh_coarse_space(struct preconditioner *p)
             }
         }
     }
+    return STATUS_OK;
 }
 
 void preconditioner_add_fields(const struct preconditioner *p, const struct average *average, double *field)
@@ -94,6 +101,34 @@ void preconditioner_add_fields(const struct preconditioner *p, const struct aver
     }
 }
 
+/* The coarse fields' means in the rows of the conditions, but for the rows' directions, as a sparse matrix.
+ */
+static enum status take_conditions(const struct preconditioner *p, struct sparse *conditions,
+                                   struct error *error)
+{
+    const struct constraint_rows *rows = p->constraint.rows;
+    int64_t count = p->coarse.count, most = 0;
+    double *field = p->amount;
+    for (int64_t r = 0; r < rows->count; r++) {
+        int64_t entries = COARSE_MOST_AT_NODE * constraint_rows_average(rows, r).length;
+        most += entries < count ? entries : count;
+    }
+    RETURN_IF_ERROR(sparse_new(rows->count, count, most, conditions, error));
+    for (int64_t r = 0, at = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        memset(field, 0, (size_t)count * sizeof *field);
+        preconditioner_add_fields(p, &average, field);
+        for (int64_t k = 0; k < count; k++) {
+            if (field[k] != 0.0) {
+                conditions->idx[at] = (int32_t)k;
+                conditions->value[at++] = field[k];
+            }
+        }
+        conditions->ptr[r + 1] = at;
+    }
+    return STATUS_OK;
+}
+
 /* free_weight = Z^T B^-1 P Z = Z^T B^-1 Z - (G Z)^T (G B G^T)^-1 G Z: without what the conditions forbid.
  * Each process computes some columns. */
 static enum status weigh_conditions(struct preconditioner *p, struct error *error)
@@ -101,40 +136,30 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
     const struct ranks *ranks = p->factor.ranks;
     const struct constraint_rows *rows = p->constraint.rows;
     const int64_t *first = p->column_first;
-    int64_t size = p->size;
-    double *field = p->amount;
-    SCRATCH double *conditions = NULL, *solved = NULL; /* solved: by columns */
+    int64_t size = p->size, dim = p->dim;
+    FREED_BY(sparse_free) struct sparse conditions = {0};
+    RETURN_IF_ERROR(take_conditions(p, &conditions, error));
     memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
-    RETURN_IF_ERROR(NEW_ARRAY(&conditions, rows->count * size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&solved, rows->count * size, error));
+    memset(p->held, 0, (size_t)(size * rows->count) * sizeof *p->held);
     for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        memset(field, 0, (size_t)p->coarse.count * sizeof *field);
-        preconditioner_add_fields(p, &average, field);
-        for (int64_t i = 0; i < size; i++) {
-            conditions[r * size + i] = field[i / p->dim] * rows->direction[r * p->dim + i % p->dim];
+        for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
+            p->held[(conditions.idx[i / dim] * dim + i % dim) * rows->count + r] =
+                conditions.value[i / dim] * rows->direction[r * dim + i % dim];
         }
     }
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         double *weight = p->free_weight + k * size; /* or row: symmetric */
-        double *column = solved + k * rows->count;
-        for (int64_t r = 0; r < rows->count; r++) {
-            column[r] = conditions[r * size + k];
-        }
+        double *column = p->held + k * rows->count;
         envelope_solve(&p->constraint.factor, column);
         for (int64_t r = 0; r < rows->count; r++) {
-            for (int64_t i = 0; i < size && column[r] != 0.0; i++) {
-                weight[i] -= column[r] * conditions[r * size + i];
+            for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
+                weight[conditions.idx[i / dim] * dim + i % dim] -=
+                    column[r] * (conditions.value[i / dim] * rows->direction[r * dim + i % dim]);
             }
         }
     }
     ranks_gather(ranks, p->free_weight, (size_t)size * sizeof(double), first);
-    ranks_gather(ranks, solved, (size_t)rows->count * sizeof(double), first);
-    for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t k = 0; k < size; k++) {
-            p->held[r * size + k] = solved[k * rows->count + r];
-        }
-    }
+    ranks_gather(ranks, p->held, (size_t)rows->count * sizeof(double), first);
     return STATUS_OK;
 }
 
@@ -156,9 +181,9 @@ enum status preconditioner_restore(struct preconditioner *p, const struct solid_
     RETURN_IF_ERROR(system_constrain(system, p->mass, within ? &p->factor : NULL,
                                      within ? &p->factor_rows : NULL, &p->constraint, error));
     if (p->size > 0) {
-        weigh_coarse_space(p);
+        RETURN_IF_ERROR(weigh_coarse_space(p, error));
         RETURN_IF_ERROR(weigh_conditions(p, error));
-        preconditioner_invert(p, system);
+        preconditioner_factorise_both(p, system);
     }
     return STATUS_OK;
 }

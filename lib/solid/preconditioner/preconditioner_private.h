@@ -8,6 +8,9 @@
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount);
 
+/* force = B^-1 move = L^-1 D L^-T move; not the same array. */
+void preconditioner_unsmooth(const struct preconditioner *preconditioner, const double *move, double *force);
+
 /* field[coarse.count] += the mean of each coarse field: Z^T phi, for one component of the displacement. */
 void preconditioner_add_fields(const struct preconditioner *preconditioner, const struct average *average,
                                double *field);
@@ -35,8 +38,8 @@ void preconditioner_add_contacts(const struct preconditioner *preconditioner,
  * it has, so that it is positive definite; 0: none makes it so. */
 double preconditioner_factorise(const struct preconditioner *preconditioner, double *matrix);
 
-/* The inverses, from what body, contacts and mass are. */
-void preconditioner_invert(struct preconditioner *preconditioner, const struct solid_system *system);
+/* The Cholesky factors, from what body, contacts and mass are. */
+void preconditioner_factorise_both(struct preconditioner *preconditioner, const struct solid_system *system);
 
 /* matrix[size * size] += stiffness row^T row */
 void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix);

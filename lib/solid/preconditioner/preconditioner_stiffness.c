@@ -1,4 +1,4 @@
-/* The stiffness of the coarse space: that of the body, by differences; and the inverses. */
+/* The stiffness of the coarse space: that of the body, by differences; and the factors. */
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/dense.h"
@@ -45,23 +45,17 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
     return 0.0;
 }
 
-void preconditioner_invert(struct preconditioner *p, const struct solid_system *system)
+void preconditioner_factorise_both(struct preconditioner *p, const struct solid_system *system)
 {
     int64_t cells = p->size * p->size;
-    double *capacitance = p->capacitance_inverse;
+    double *capacitance = p->capacitance_factor;
     memset(p->contacts, 0, (size_t)cells * sizeof *p->contacts);
     preconditioner_add_contacts(p, system, NULL, p->contacts);
-    double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->inverse) : 0.0;
+    double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->stiffness_factor) : 0.0;
     for (int64_t i = 0; i < cells; i++) {
         capacitance[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i] + p->free_weight[i];
     }
-    if (keep == 0.0 || !dense_factorise(p->size, capacitance)) { /* then no coarse space */
-        memset(p->inverse, 0, (size_t)cells * sizeof *p->inverse);
-        memset(capacitance, 0, (size_t)cells * sizeof *capacitance);
-        return;
-    }
-    dense_invert(p->size, p->inverse);
-    dense_invert(p->size, capacitance);
+    p->uses_coarse = keep > 0.0 && dense_factorise(p->size, capacitance);
 }
 
 static void make_symmetric(int64_t n, double *matrix)
@@ -116,6 +110,6 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
     }
     make_symmetric(p->size, p->body);
     p->measured_mass = preconditioner_sum_of_mass(p);
-    preconditioner_invert(p, system);
+    preconditioner_factorise_both(p, system);
     return STATUS_OK;
 }

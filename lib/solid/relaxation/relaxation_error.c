@@ -57,7 +57,7 @@ void relaxation_estimate(struct relaxation *r)
         along += du[i] * (r->last_residual[i] - r->residual[i]);
     }
     memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
-    double bottom = preconditioner_product(&r->preconditioner, du, du);
+    double bottom = preconditioner_square(&r->preconditioner, du);
     double quotient = bottom > 0.0 ? along / bottom : 0.0;
     bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
     if (quotient > 0.0 && r->checks > 0 && !augmented) {
@@ -70,13 +70,12 @@ void relaxation_estimate(struct relaxation *r)
     r->checks++;
     double least2 = least_of_window(r);
     r->largest_displacement =
-        fmax(r->largest_displacement,
-             sqrt(preconditioner_product_diagonal(&r->preconditioner, r->before, r->before)));
+        fmax(r->largest_displacement, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
-    double on_the_whole = ratio(
-        sqrt(preconditioner_product_diagonal(&r->preconditioner, r->acceleration, r->acceleration)) / least2,
-        r->largest_displacement);
+    double on_the_whole =
+        ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least2,
+              r->largest_displacement);
     double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
     /* Moves below the round-off of positions are none. */
     bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;

@@ -30,7 +30,7 @@ struct relaxation {
     const double *residual_at; /* where the residual is known, at a check: u or before */
     double *factor_change;     /* of the load curves in this step */
     double *mode;
-    double *scratch;                /* 4 * size */
+    double *scratch;                /* 5 * size */
     double *last_u, *last_residual; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */

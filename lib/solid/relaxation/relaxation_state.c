@@ -14,7 +14,7 @@ enum status relaxation_allocate(struct relaxation *r, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&r->before, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->factor_change, r->system->curve_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->mode, r->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&r->scratch, 4 * r->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&r->scratch, 5 * r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->last_u, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->last_residual, r->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&r->acceleration, r->size, error));
