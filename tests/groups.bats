@@ -162,7 +162,7 @@ END
     groups -f held=low:z,12% -f 'more=low:z,30% without held' bare.mts 2> said > g.mts
     [ ! -s said ]
     shapefn bare.mts 2> /dev/null > table.mts
-    groups -n tip=high:z,10% table.mts 2> said | mts list | grep -q '^face.phi'
+    groups -n tip=high:z,10% table.mts 2> said | mts list | grep -q '^edge.phi'
     [ ! -s said ]
     groups -f tip=high:z,10% table.mts 2> said > stale.mts
     [ "$(cat said)" = "groups: facets have changed: the sections of support and shapefn are left out" ]

@@ -207,17 +207,17 @@ one_line() {
     refused_part "part.0.mts and part.2.mts were made by different versions of shapefn: make them again"
     cp square.mts part.2.mts
     refused_part "part.2.mts: no section part.node: not a part of a body"
-    mts text whole.mts | awk '/^# / { on = $2 == "face.phi" } !/^#/ && NF && on { $1 = $1 * 1.01 } { print }' > part.2.mts
-    refused_part "not the shape functions at this row: run shapefn again"
-    entries=$(mts print face.ptr whole.mts | sed -n 21p)
+    mts text whole.mts | awk '/^# / { on = $2 == "edge.phi" } !/^#/ && NF && on { $1 = $1 * 1.01 } { print }' > part.2.mts
+    refused_part "not the shape functions at this edge: run shapefn again"
+    entries=$(mts print edge.ptr whole.mts | sed -n 21p)
     mts text whole.mts | awk -v n="$entries" '
-        /^# / { on = $2; if (on ~ /^face\.(idx|phi)$/) { sub(" " $4 " ", " " ($4 - n) " "); left = n } print; next }
-        NF && on == "face.ptr" { print ($1 > n ? $1 - n : 0); next }
-        NF && on ~ /^face\.(idx|phi)$/ && left-- > 0 { next }
+        /^# / { on = $2; if (on ~ /^edge\.(idx|phi)$/) { sub(" " $4 " ", " " ($4 - n) " "); left = n } print; next }
+        NF && on == "edge.ptr" { print ($1 > n ? $1 - n : 0); next }
+        NF && on ~ /^edge\.(idx|phi)$/ && left-- > 0 { next }
         { print }' > part.2.mts
-    refused_part "not the shape functions at this row: run shapefn again"
-    mts text whole.mts | awk '/^# / { on = $2 == "face.idx" } !/^#/ && NF && on && n++ == 50 { $1 = 900000 } { print }' > part.2.mts
-    refused_part "part.2.mts: face.idx: row 50: no node 900000"
+    refused_part "not the shape functions at this edge: run shapefn again"
+    mts text whole.mts | awk '/^# / { on = $2 == "edge.idx" } !/^#/ && NF && on && n++ == 50 { $1 = 900000 } { print }' > part.2.mts
+    refused_part "part.2.mts: edge.idx: row 50: no node 900000"
     one_line 2 "5 processes for 4 parts: take fewer (mpirun -n), or cut more parts" processes 5 block.scene part.%d.mts
     one_line 2 "part.%d.%d: has to have one %d" processes 2 block.scene part.%d.%d
     one_line 2 "none.0.mts: No such file" processes 2 block.scene none.%d.mts

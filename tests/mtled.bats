@@ -395,12 +395,12 @@ END
         head -c $((size * part / 100)) table.mts > part.mts
         refused 2 "part.mts" mtled block.scene part.mts
     done
-    for section in face.phi boundary.phi; do
+    for section in edge.phi boundary.phi; do
         mts drop $section table.mts > none.mts
         refused 2 "no section $section: run shapefn" mtled block.scene none.mts
     done
     refused 2 "" mtled block.scene /dev/null
-    for section in cells.region points.weight points.cell faces.cell facets.set face.phi face.idx boundary.phi boundary.ptr node.phi node.ptr; do
+    for section in cells.region points.weight points.cell faces.cell facets.set edge.phi edge.idx boundary.phi boundary.ptr node.phi node.ptr; do
         shortened $section table.mts > short.mts
         refused 2 "fit" mtled block.scene short.mts
     done
@@ -454,7 +454,7 @@ END
     # A stream may be replaced by what a filter makes of it.
     cp square.mts table.mts
     shapefn -o table.mts table.mts 2> note
-    cmp <(mts print face.phi table.mts) <(mts print face.phi t.mts)
+    cmp <(mts print edge.phi table.mts) <(mts print edge.phi t.mts)
     # A device is not replaced.
     mtled -q -o /dev/null s.scene t.mts
 }

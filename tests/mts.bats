@@ -213,25 +213,25 @@ violates() {
     shortened boundary.ptr whole > damaged
     run -1 mts check damaged
     [[ $output == *"boundary.ptr: 16 rows, but the faces ask for 17"* ]]
-    shortened face.ptr whole > damaged
+    shortened edge.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"face.ptr: 16 rows, but the faces ask for 17"* ]]
+    [[ $output == *"edge.ptr: 16 rows, but the faces ask for 17"* ]]
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | mts text > box
     mts check box
     shapefn <(ipoints box) 2> note | mts text > whole
     mts check whole
-    awk '$2 == "faces.row" { print; getline; print 0, 1, 0; next } { print }' whole > damaged
+    awk '$2 == "faces.edge" { print; getline; print 0, 1, 0; next } { print }' whole > damaged
     run -1 mts check damaged
-    [[ $output == *"faces.row: row 0: not rows of this face"* ]]
+    [[ $output == *"faces.edge: row 0: not the edges of this face"* ]]
     shortened facepoints.x box > damaged
     run -1 mts check damaged
     [[ $output == *"facepoints.x: "*" rows, but the faces ask for "* ]]
-    shortened face.ptr whole > damaged
+    shortened edge.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"face.ptr: "*" rows, but the faces ask for "* ]]
-    shortened faces.row whole > damaged
+    [[ $output == *"edge.ptr: "*" rows, but the faces ask for "* ]]
+    shortened faces.edge whole > damaged
     run -1 mts check damaged
-    [[ $output == *"faces.row: "*" rows, but faces has "* ]]
+    [[ $output == *"faces.edge: "*" rows, but faces has "* ]]
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]

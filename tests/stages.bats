@@ -159,13 +159,13 @@ setup() {
     ipoints square.mts | mts drop faces.cell | support > lists.mts
     run -2 --separate-stderr shapefn lists.mts
     [ "$stderr" = "shapefn: no section faces.cell: run ipoints" ]
-    # in 3D faces share points: of a stream from before they did
+    # in 3D faces share edges: of a stream without them
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints > box.mts
     support box.mts > lists.mts
     for stream in 'support box.mts' 'shapefn lists.mts'; do
-        mts drop faces.row "${stream#* }" > old.mts
+        mts drop faces.edge "${stream#* }" > old.mts
         run -2 --separate-stderr "${stream% *}" old.mts
-        [ "$stderr" = "${stream% *}: no section faces.row: run ipoints" ]
+        [ "$stderr" = "${stream% *}: no section faces.edge: run ipoints" ]
     done
 }
 
@@ -217,12 +217,17 @@ edit() {
         hostile 2 shapefn bad.txt "faces.cell: row 1"
     done
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | support -t > box.txt
-    mts print faces.row box.txt | awk '$1 == $3 { own++ } { if ($1 != $3 && !first) first = NR } END { print own, first - 1 }' > shared
-    read -r own first < shared
     while read -r row text; do
-        edit faces.row "$row" "$text" box.txt > bad.txt
-        hostile 2 shapefn bad.txt "faces.row: row $row: not rows of this face: run ipoints again"
+        edit faces.edge "$row" "$text" box.txt > bad.txt
+        hostile 2 shapefn bad.txt "faces.edge: row "
+        [[ "$stderr" == *": not the edges of this face: run ipoints again" ]]
     done << END
+0 1 1 1
+0 0 2 1
+4 1 0 2
+5 -1 0 1
+7 2147483647 0 1
+END
 0 1 1 1
 4 4 3 4
 5 $own $((own + 1)) $((own + 2))

@@ -8,7 +8,7 @@ static const char usage[] =
     "Reads a stream with nodes.x (m) and cells (see nodes) and adds integration points: points.x (m),\n"
     "points.weight (m2 in 2D, m3 in 3D) and points.cell; and the faces of the cells with quadrature\n"
     "points on them, facepoints.x (m): all faces for smoothed cells, else those of the boundary. In\n"
-    "3D faces of smoothed cells away from the boundary share the points at the middles of their edges.\n"
+    "3D smoothed cells have the midpoints of their edges, and points on faces of the boundary.\n"
     "\n"
     "Adaptive integration (-a) halves the edges of each cell, or of parts of it, until the integral\n"
     "of the products of the shape functions' gradients over the cell (a matrix, in the Frobenius norm)\n"

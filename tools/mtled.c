@@ -188,7 +188,7 @@ static void prepare(struct run *run)
     struct model *model = run->model;
     run_put_supports(run);
     run_checkpoint_begin(run);
-    TOOL_TRY(run->tool, model_build(run->stream, run->parts->face_reader, run->scene, model, &error));
+    TOOL_TRY(run->tool, model_build(run->stream, run->parts->edge_reader, run->scene, model, &error));
     if (model->note.text[0] != '\0') {
         tool_note(run->tool, "%s", model->note.text);
     }

@@ -4,7 +4,7 @@ static const char usage[] =
     "usage: shapefn [-b BASIS] [-w WEIGHT] [--mu MU[,MU...]] [--mu-unit UNIT] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with points and neighbour lists (see support) and adds what mtled computes with.\n"
-    "Smoothed cells have averages of the shape functions over their faces, face.phi: their gradients\n"
+    "Smoothed cells have the shape functions on their edges, edge.phi: their gradients\n"
     "follow from these by the divergence theorem. Other integration points (ipoints -g, -a, --lattice)\n"
     "have values and gradients, shape.phi and shape.dphi (1/m). Both have the values node.phi at the\n"
     "nodes and boundary.phi at the quadrature points of faces on the boundary. The points on faces and\n"

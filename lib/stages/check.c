@@ -1,6 +1,6 @@
 #include "stages/check.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/memory.h"
 #include "io/stream/sections.h"
 #include "stages/views.h"
@@ -170,9 +170,9 @@ static enum status check_faces(const struct stream *stream, const struct cells *
     const struct {
         const char *name;
         int64_t rows;
-    } expected[] = {{"facepoints.x", face_row_point(&faces, faces.row_count)},
-                    {"face.ptr", faces.row_count + 1},
-                    {"boundary.ptr", faces.boundary_count * OWN_POINTS(faces.dim) + 1}};
+    } expected[] = {{"facepoints.x", face_point_count(&faces)},
+                    {"edge.ptr", face_row_count(&faces) + 1},
+                    {"boundary.ptr", face_boundary_points(&faces) + 1}};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         const struct section *section = stream_find(stream, expected[i].name);
         if (section != NULL && section->rows != expected[i].rows) {

@@ -1,6 +1,6 @@
 #include "stages/stages.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "approx/cells/quadrature.h"
 #include "base/box.h"
 #include "base/memory.h"
@@ -140,16 +140,16 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     SCRATCH double *x = NULL;
     char attributes[64];
     RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
-    int64_t count = faces.count, points = face_row_point(&faces, faces.row_count);
+    int64_t count = faces.count, points = face_point_count(&faces);
     RETURN_IF_ERROR(NEW_ARRAY(&x, points * dim, error));
-    face_rows_points(&faces, cells->x, x);
+    face_points(&faces, cells->x, x);
     RETURN_IF_ERROR(
         stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
     RETURN_IF_ERROR(
         stream_put(stream, "faces.cell", TYPE_I4, count, 2, "", array_take(&faces.cell), true, error));
-    if (faces.row != NULL) {
-        RETURN_IF_ERROR(stream_put(stream, "faces.row", TYPE_I4, count, FACE_ROWS(dim), "",
-                                   array_take(&faces.row), true, error));
+    if (faces.edge != NULL) {
+        RETURN_IF_ERROR(stream_put(stream, "faces.edge", TYPE_I4, count, FACE_EDGES(dim), "",
+                                   array_take(&faces.edge), true, error));
     }
     return stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
                       array_take(&x), true, error);

@@ -1,6 +1,6 @@
 #include "stages/stages.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/memory.h"
 #include "io/stream/sections.h"
 
@@ -78,44 +78,45 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
     return STATUS_OK;
 }
 
-/* Put a table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
-static enum status put_table(struct stream *stream, const char *prefix, int64_t rows, int64_t **ptr,
-                             int32_t **idx, double **phi, struct error *error)
+/* A table of `rows` rows as sections PREFIX.ptr, .idx and .phi; the stream takes the arrays. */
+static enum status put_table(struct stream *stream, const char *prefix, int64_t rows,
+                             struct shape_rows *table, struct error *error)
 {
-    int64_t pairs = (*ptr)[rows];
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", ptr, error));
-    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", idx, error));
-    return stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", phi, error);
+    int64_t pairs = table->ptr[rows];
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, rows + 1, 1, "", &table->ptr, error));
+    RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &table->idx, error));
+    return stream_put_member(stream, prefix, "phi", TYPE_F8, pairs, 1, "", &table->phi, error);
 }
 
-/* Put the values at points on the boundary, and the averages over faces of smoothed cells. The points of
- * faces and their lists are then removed. */
+/* The values at the points of boundary faces, and for smoothed cells the rows of the edges. What lies at
+ * the points of faces has served. */
 static enum status put_faces(struct stream *stream, const struct mls *mls, bool smoothed, struct error *error)
 {
     struct cells cells;
     struct faces faces;
     struct tabulated of;
-    FREED_BY(face_averages_free) struct face_averages averages = {0};
-    SCRATCH int64_t *ptr = NULL;
-    SCRATCH int32_t *idx = NULL;
+    FREED_BY(shape_rows_free) struct shape_rows boundary = {0}, edges = {0};
+    SCRATCH double *phi = NULL;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
     RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
-    if (of.lists.count != face_row_point(&faces, faces.row_count)) {
-        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
+    if (of.lists.count != face_point_count(&faces)) {
+        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
-    RETURN_IF_ERROR(
-        shape_average_faces(mls, of.nodes, of.radius, &of.lists, of.x, of.section, &faces, &averages, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&phi, of.lists.ptr[of.lists.count], error));
+    RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, of.section, phi, NULL, error));
     if (smoothed) {
-        RETURN_IF_ERROR(
-            put_table(stream, "face", faces.row_count, &averages.ptr, &averages.idx, &averages.phi, error));
+        RETURN_IF_ERROR(shape_on_edges(&of.lists, phi, &faces, &edges, error));
+        RETURN_IF_ERROR(put_table(stream, "edge", face_row_count(&faces), &edges, error));
     }
-    int64_t rows = face_row_point(&faces, faces.boundary_count), pairs = of.lists.ptr[rows];
-    RETURN_IF_ERROR(NEW_ARRAY(&ptr, rows + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&idx, pairs, error));
-    memcpy(ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *ptr);
-    memcpy(idx, of.lists.idx, (size_t)pairs * sizeof *idx);
-    RETURN_IF_ERROR(put_table(stream, "boundary", rows, &ptr, &idx, &averages.boundary_phi, error));
+    int64_t rows = face_boundary_points(&faces), pairs = of.lists.ptr[rows];
+    RETURN_IF_ERROR(NEW_ARRAY(&boundary.ptr, rows + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&boundary.idx, pairs, error));
+    memcpy(boundary.ptr, of.lists.ptr, (size_t)(rows + 1) * sizeof *boundary.ptr);
+    memcpy(boundary.idx, of.lists.idx, (size_t)pairs * sizeof *boundary.idx);
+    RETURN_IF_ERROR(RESIZE_ARRAY(&phi, pairs, error));
+    boundary.phi = array_take(&phi);
+    RETURN_IF_ERROR(put_table(stream, "boundary", rows, &boundary, error));
     for (int64_t s = stream->section_count - 1; s >= 0; s--) {
         if (strncmp(stream->sections[s].name, "facepoint", strlen("facepoint")) == 0) {
             stream_remove(stream, stream->sections[s].name);

@@ -55,13 +55,12 @@ MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char 
 MUST_CHECK enum status stage_own_part(const struct stream *stream, int64_t node_count,
                                       struct support_options *options, struct error *error);
 
-/* Add the sections of support: support.radius, support.side if options->side is given, and the lists nbr,
- * facepoint and node. faces.row and facepoints.x are made again if there are sides or the stream had some, as
- * faces at interfaces have their own points. */
+/* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
+ * facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
 
-/* Add the sections of shapefn: face.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
+/* Add the sections of shapefn: edge.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);
 
 /* The settings recorded with the radii of supports. */

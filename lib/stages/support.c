@@ -1,6 +1,6 @@
 #include "stages/stages.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "approx/support/support_space.h"
 #include "base/memory.h"
 #include "io/stream/sections.h"
@@ -115,37 +115,15 @@ static enum status places_of_face_points(const struct stream *stream, const stru
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
-    if (face_row_point(&faces, faces.row_count) != points) {
-        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces.row: run ipoints again");
+    if (face_point_count(&faces) != points) {
+        return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
-    RETURN_IF_ERROR(face_rows_cells(cells->node_count, &faces, ptr, cell, error));
-    *places = (struct visibility_places){
-        .ptr = *ptr, .cell = *cell, .points_per_row = OWN_POINTS(cells->dim), .long_rows = faces.own_count};
+    RETURN_IF_ERROR(face_points_cells(&faces, ptr, cell, error));
+    *places = (struct visibility_places){.ptr = *ptr,
+                                         .cell = *cell,
+                                         .points_per_row = FACE_POINTS(cells->dim),
+                                         .long_rows = cells->dim == 2 ? faces.count : faces.boundary_count};
     return STATUS_OK;
-}
-
-/* Make the rows of faces and their points again, for these sides. */
-static enum status renew_rows(struct stream *stream, const struct cells *cells, const int32_t *side,
-                              struct error *error)
-{
-    struct faces faces;
-    SCRATCH int32_t *row = NULL;
-    SCRATCH double *x = NULL;
-    char attributes[64];
-    int dim = cells->dim;
-    RETURN_IF_ERROR(stream_faces(stream, cells, &faces, error));
-    if (!faces_may_share(&faces)) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(face_rows_number(cells->node_count, side, &faces, error));
-    row = faces.row;
-    int64_t points = face_row_point(&faces, faces.row_count);
-    RETURN_IF_ERROR(NEW_ARRAY(&x, points * dim, error));
-    face_rows_points(&faces, cells->x, x);
-    RETURN_IF_ERROR(
-        stream_put(stream, "faces.row", TYPE_I4, faces.count, dim, "", array_take(&row), true, error));
-    return stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
-                      array_take(&x), true, error);
 }
 
 enum status stage_support(struct stream *stream, const struct support_options *options,
@@ -159,7 +137,6 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     SCRATCH int64_t *face_ptr = NULL;
     SCRATCH int32_t *face_cell = NULL;
     *report = (struct support_report){0};
-    bool had_sides = stream_find(stream, "support.side") != NULL;
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
@@ -184,10 +161,6 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     if (stream_find(stream, "faces") != NULL || smoothed) {
         RETURN_IF_ERROR(
             stream_need(stream, "facepoints.x", TYPE_F8, cells.dim, "ipoints", &facepoints, error));
-        if (had_sides || actual.side != NULL) {
-            RETURN_IF_ERROR(renew_rows(stream, &cells, actual.side, error));
-            facepoints = stream_find(stream, "facepoints.x");
-        }
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
         RETURN_IF_ERROR(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell,
                                               &listed.places, error));

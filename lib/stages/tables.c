@@ -2,7 +2,8 @@
 
 #include "stages/stages.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
+#include "base/memory.h"
 
 /* Read the integration points. */
 static enum status read_points(const struct stream *stream, struct assembly *input, struct error *error)
@@ -50,11 +51,11 @@ static enum status read_table(const struct stream *stream, const char *prefix, c
 /* Read the tables of points or faces, of the boundary, and of the nodes. */
 static enum status read_tables(const struct stream *stream, struct assembly *input, struct error *error)
 {
-    int dim = input->cells.dim, per_face = OWN_POINTS(dim);
+    int dim = input->cells.dim;
     int64_t nodes = input->cells.node_count, points = input->point_count;
     RETURN_IF_ERROR(stream_faces(stream, &input->cells, &input->faces, error));
     if (input->smoothed) {
-        RETURN_IF_ERROR(read_table(stream, "face", "face.phi", 1, input->faces.row_count, nodes,
+        RETURN_IF_ERROR(read_table(stream, "edge", "edge.phi", 1, face_row_count(&input->faces), nodes,
                                    &input->lists, &input->phi, error));
     } else {
         RETURN_IF_ERROR(
@@ -62,7 +63,7 @@ static enum status read_tables(const struct stream *stream, struct assembly *inp
         RETURN_IF_ERROR(
             read_table(stream, "nbr", "shape.dphi", dim, points, nodes, &input->lists, &input->dphi, error));
     }
-    RETURN_IF_ERROR(read_table(stream, "boundary", "boundary.phi", 1, input->faces.boundary_count * per_face,
+    RETURN_IF_ERROR(read_table(stream, "boundary", "boundary.phi", 1, face_boundary_points(&input->faces),
                                nodes, &input->boundary_lists, &input->boundary_phi, error));
     return read_table(stream, "node", "node.phi", 1, nodes, nodes, &input->node_lists, &input->node_phi,
                       error);

@@ -1,6 +1,6 @@
 #include "stages/views.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -122,43 +122,30 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
     return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
 }
 
-/* Check the rows of faces: rows of single faces come first, and boundary faces have such rows; then the rows
- * of edges, in the order of their first use. */
-static enum status view_rows(const struct stream *stream, struct faces *faces, struct error *error)
+/* The edges of faces, in 3D of smoothed cells only and in the order of their first use. */
+static enum status view_edges(const struct stream *stream, struct faces *faces, struct error *error)
 {
-    const struct section *row;
-    int64_t bad = -1;
-    faces->own_count = faces->row_count = faces->count;
-    if (!faces_may_share(faces)) {
+    const struct section *edge, *points = stream_find(stream, "points.x");
+    faces->edge_count = faces->dim == 2 ? faces->count : 0;
+    if (faces->dim == 2 || points == NULL || !points_are_smoothed(points)) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "faces.row", TYPE_I4, FACE_ROWS(faces->dim), "ipoints", &row, error));
-    if (row->rows != faces->count) {
-        return fail(error, STATUS_INPUT, "faces.row: does not fit faces: run ipoints again");
+    RETURN_IF_ERROR(stream_need(stream, "faces.edge", TYPE_I4, 3, "ipoints", &edge, error));
+    if (edge->rows != faces->count) {
+        return fail(error, STATUS_INPUT, "faces.edge: does not fit faces: run ipoints again");
     }
-    faces->row = row->data;
-    faces->own_count = 0;
-    for (int64_t f = 0; f < faces->count && bad < 0; f++) {
-        const int32_t *of = faces->row + f * 3;
-        if (face_has_own_row(faces, f)) {
-            bad = of[0] == faces->own_count && of[1] == of[0] ? -1 : f;
-            faces->own_count++;
-        } else if (f < faces->boundary_count) {
-            bad = f;
+    faces->edge = edge->data;
+    for (int64_t i = 0; i < faces->count * 3; i++) {
+        if (faces->edge[i] < 0 || faces->edge[i] > faces->edge_count) {
+            return fail(error, STATUS_INPUT,
+                        "faces.edge: row %lld: not the edges of this face: run ipoints again",
+                        (long long)(i / 3));
         }
+        faces->edge_count += faces->edge[i] == faces->edge_count;
     }
-    faces->row_count = faces->own_count;
-    for (int64_t i = 0; i < faces->count * 3 && bad < 0; i++) {
-        if (!face_has_own_row(faces, i / 3)) {
-            bad = faces->row[i] >= faces->own_count && faces->row[i] <= faces->row_count ? -1 : i / 3;
-            faces->row_count += faces->row[i] == faces->row_count;
-        }
-    }
-    if (bad >= 0) {
-        return fail(error, STATUS_INPUT, "faces.row: row %lld: not rows of this face: run ipoints again",
-                    (long long)bad);
-    }
-    return STATUS_OK;
+    SCRATCH int32_t *ends = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    return face_edges_ends(faces, ends, error);
 }
 
 enum status stream_faces(const struct stream *stream, const struct cells *cells, struct faces *faces,
@@ -185,7 +172,7 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                         (long long)f);
         }
     }
-    return view_rows(stream, faces, error);
+    return view_edges(stream, faces, error);
 }
 
 bool points_are_smoothed(const struct section *points)

@@ -63,7 +63,7 @@ static void bench_cells(struct problem *problem, double seconds)
     struct error error;
     bench_check(problem_support(problem, &error), &error);
     for (int threads = 1; threads <= most_threads(); threads++) {
-        bench(problem, "shapefn-averages", problem_averages, 1, threads, seconds);
+        bench(problem, "shapefn-edges", problem_values, 1, threads, seconds);
     }
 }
 

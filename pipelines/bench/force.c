@@ -38,18 +38,20 @@ struct variant {
     bool averaged, smoothed;
 };
 
-static struct smoothed_cells_input smoothed_cells_input(const struct problem *problem)
+/* What a body of smoothed cells is made of; its edge_ptr is to be freed. */
+static enum status smoothed_cells_input(const struct problem *problem, struct smoothed_cells_input *input,
+                                        int64_t **edge_ptr, struct error *error)
 {
     const struct cells *cells = &problem->cells;
-    return (struct smoothed_cells_input){.x = cells->x,
-                                         .cell_node = cells->node,
-                                         .faces = &problem->faces,
-                                         .face_ptr = problem->averages.ptr,
-                                         .face_idx = problem->averages.idx,
-                                         .face_phi = problem->averages.phi,
-                                         .node_ptr = problem->node_lists.ptr,
-                                         .node_idx = problem->node_lists.idx,
-                                         .node_phi = problem->node_phi};
+    *input = (struct smoothed_cells_input){.x = cells->x,
+                                           .cell_node = cells->node,
+                                           .faces = &problem->faces,
+                                           .node_ptr = problem->node_lists.ptr,
+                                           .node_idx = problem->node_lists.idx,
+                                           .node_phi = problem->node_phi};
+    RETURN_IF_ERROR(problem_edges(problem, edge_ptr, &input->edge_idx, &input->edge_phi, error));
+    input->edge_ptr = *edge_ptr;
+    return STATUS_OK;
 }
 
 /* Each cell's volume belongs to its point, at its centroid; points at the nodes share the body's. */
@@ -62,9 +64,13 @@ static enum status build_body(const struct problem *problem, const struct varian
     int64_t count = variant->smoothed ? cells->count : problem->point_count;
     double *weight = NULL, *barycentric = NULL, *x = NULL;
     int32_t *none = NULL;
-    struct smoothed_cells_input smoothed = smoothed_cells_input(problem);
+    int64_t *edge_ptr = NULL;
+    struct smoothed_cells_input smoothed = {0};
     struct material material = {.model = MATERIAL_NEO_HOOKEAN, .density = 1000.0};
     material_set_moduli(&material, 3000.0, 0.49);
+    if (variant->smoothed) {
+        TRY(smoothed_cells_input(problem, &smoothed, &edge_ptr, error));
+    }
     TRY(NEW_ARRAY(&weight, count, error));
     TRY(NEW_ARRAY(&none, count, error));
     TRY(NEW_ARRAY(&barycentric, count * corners, error));
@@ -95,6 +101,7 @@ static enum status build_body(const struct problem *problem, const struct varian
                                .barycentric = barycentric};
     TRY(body_build(&input, body, error));
 done:
+    free(edge_ptr);
     free(weight);
     free(none);
     free(barycentric);
@@ -183,7 +190,7 @@ static void bench_cells(struct problem *problem, double seconds)
 {
     struct error error;
     bench_check(problem_support(problem, &error), &error);
-    bench_check(problem_averages(problem, &error), &error);
+    bench_check(problem_values(problem, &error), &error);
     bench_check(problem_nodes(problem, &error), &error);
     bench_all(problem, true, seconds);
 }

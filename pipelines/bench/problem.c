@@ -1,7 +1,7 @@
 #include "problem.h"
 
 #include "bench.h"
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/memory.h"
 
 #include <malloc.h>
@@ -78,13 +78,18 @@ enum status problem_values(void *context, struct error *error)
     return run_shape(context, false, error);
 }
 
-enum status problem_averages(void *context, struct error *error)
+enum status problem_edges(const struct problem *problem, int64_t **edge_ptr, const int32_t **edge_idx,
+                          const double **edge_phi, struct error *error)
 {
-    struct problem *problem = context;
-    struct neighbours lists = support_view(&problem->lists);
-    face_averages_free(&problem->averages);
-    return shape_average_faces(&problem->options.mls, problem->cloud.x, problem->radius, &lists,
-                               problem->points, "facepoints.x", &problem->faces, &problem->averages, error);
+    const struct faces *faces = &problem->faces;
+    const int64_t *from = problem->lists.ptr + face_boundary_points(faces);
+    RETURN_IF_ERROR(NEW_ARRAY(edge_ptr, faces->edge_count + 1, error));
+    for (int64_t e = 0; e <= faces->edge_count; e++) {
+        (*edge_ptr)[e] = from[e] - from[0];
+    }
+    *edge_idx = problem->lists.idx + from[0];
+    *edge_phi = problem->phi + from[0];
+    return STATUS_OK;
 }
 
 /* A cube (square) of 0.1 m with that many nodes along each axis. The support radius is 2.12 times the
@@ -119,10 +124,10 @@ static enum status make_points(struct problem *problem, enum bench_points at, st
     }
     problem->point_count = at == BENCH_CELLS   ? cells->count
                            : at == BENCH_NODES ? cells->node_count
-                                               : face_row_point(&problem->faces, problem->faces.row_count);
+                                               : face_point_count(&problem->faces);
     TRY(NEW_ARRAY(&problem->points, problem->point_count * dim, error));
     if (at == BENCH_FACES) {
-        face_rows_points(&problem->faces, cells->x, problem->points);
+        face_points(&problem->faces, cells->x, problem->points);
     } else if (at == BENCH_NODES) {
         memcpy(problem->points, cells->x, (size_t)(problem->point_count * dim) * sizeof *problem->points);
     }
@@ -139,7 +144,6 @@ static void problem_free(struct problem *problem)
     faces_free(&problem->faces);
     support_free(&problem->lists);
     support_free(&problem->node_lists);
-    face_averages_free(&problem->averages);
     free(problem->radius);
     free(problem->points);
     free(problem->phi);

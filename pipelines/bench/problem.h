@@ -11,7 +11,6 @@ struct problem {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    struct face_averages averages;
     double *radius, *points, *phi, *dphi;
     int64_t point_count;
     struct support_lists lists;      /* of the points, */
@@ -27,14 +26,17 @@ double problem_heap_bytes(void);
 enum bench_points { BENCH_CELLS, BENCH_FACES, BENCH_NODES };
 
 /* The stages; the context is the struct problem. Lists as the tool support makes them, tables of values with
- * gradients or without, allocated with the first run, and averages over the faces. */
+ * gradients or without, allocated with the first run. */
 MUST_CHECK enum status problem_support(void *context, struct error *error);
 MUST_CHECK enum status problem_gradients(void *context, struct error *error);
 MUST_CHECK enum status problem_values(void *context, struct error *error);
-MUST_CHECK enum status problem_averages(void *context, struct error *error);
 
 /* The lists and values of the field at the nodes. */
 MUST_CHECK enum status problem_nodes(struct problem *problem, struct error *error);
+
+/* The rows of the edges, of points on the faces: edge_ptr[edge_count + 1], to be freed; the first is 0. */
+MUST_CHECK enum status problem_edges(const struct problem *problem, int64_t **edge_ptr,
+                                     const int32_t **edge_idx, const double **edge_phi, struct error *error);
 
 /* Makes the bodies that kernels are timed on, one after the other: with a point in each cell, in 2D and 3D;
  * with points on the faces of smoothed cells (about twelve times the nodes), in 2D and 3D; and cubes of 1e3

@@ -59,7 +59,7 @@ consistency() {
     local dim=$2 section
     # shellcheck disable=SC2086
     cloud -d "$dim" -k jittered -n $((dim == 2 ? 13 : 7)) --jitter 0.15 --seed 5 --box "$3" | ipoints $4 | shapefn -o "$work/table.mts" 2> /dev/null
-    for section in nodes.x points.x points.weight faces faces.cell faces.row nbr.ptr nbr.idx shape.phi shape.dphi face.ptr face.idx face.phi; do
+    for section in nodes.x points.x points.weight faces faces.cell faces.edge nbr.ptr nbr.idx shape.phi shape.dphi edge.ptr edge.idx edge.phi; do
         mts print $section "$work/table.mts" > "$work/$section" 2> /dev/null || : > "$work/$section"
     done
     row 1 "consistency, $1" "$(awk -v dim="$dim" -v work="$work" -v cells=$((dim == 2 ? 12 : 6)) '
@@ -79,8 +79,11 @@ consistency() {
                 }
             }
         }
-        # The same of a cell from the averages over its faces, the means of rows: what face f adds to a cell on one side of it.
-        function from_face(f, q, side,    r, k, a, b, sum, first, normal, u, v) {
+        # The same of a cell from the averages over its faces, the means of rows, in 3D on the boundary one of its own: what face f adds
+        # to a cell on one side of it.
+        function from_face(f, q, side,    r, k, a, b, sum, first, normal, u, v, rows) {
+            rows = dim == 2 || cell[f, 2] < 0 ? 1 : 3
+            if (rows == 1) of_face[f, 1] = dim == 2 ? f : edges + f
             for (r = 1; r <= rows; r++) for (k = ptr[of_face[f, r], 1]; k < ptr[of_face[f, r] + 1, 1]; k++) {
                 sum += phi[k, 1] / rows
                 for (a = 1; a <= dim; a++) first[a] += phi[k, 1] * x[idx[k, 1], a] / rows
@@ -103,14 +106,14 @@ consistency() {
         BEGIN {
             n = load("nodes.x", x, dim)
             points = load("points.x", at, dim)
-            if (load("face.ptr", ptr, 1) > 0) {
+            if (load("edge.ptr", ptr, 1) > 0) {
                 load("points.weight", volume, 1)
-                load("face.idx", idx, 1)
-                load("face.phi", phi, 1)
+                load("edge.idx", idx, 1)
+                load("edge.phi", phi, 1)
                 faces = load("faces", face, dim)
                 load("faces.cell", cell, 2)
-                rows = load("faces.row", of_face, 3) ? 3 : 1
-                for (f = 0; f < faces && rows == 1; f++) of_face[f, 1] = f
+                load("faces.edge", of_face, 3)
+                for (f = 0; f < faces && dim == 3; f++) for (r = 1; r <= 3; r++) if (of_face[f, r] >= edges) edges = of_face[f, r] + 1
                 for (f = 0; f < faces; f++) {
                     from_face(f, cell[f, 1], 1)
                     if (cell[f, 2] >= 0) from_face(f, cell[f, 2], -1)

@@ -3,6 +3,7 @@
 #include "body_setup.h"
 
 #include "base/vector.h"
+#include "solid/body/stress.h"
 
 /* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
 TEST_IN_EACH_DIM(accumulation)
@@ -18,8 +19,8 @@ TEST_IN_EACH_DIM(accumulation)
         double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
         bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
         for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            for (int g = 0; g < OWN_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
-                int64_t point = f * OWN_POINTS(dim) + g;
+            for (int g = 0; g < FACE_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
+                int64_t point = f * FACE_POINTS(dim) + g;
                 for (int64_t i = sample.assembly.boundary_lists.ptr[point];
                      i < sample.assembly.boundary_lists.ptr[point + 1]; i++) {
                     outer[sample.assembly.boundary_lists.idx[i]] =
@@ -55,7 +56,7 @@ static void value_at_node(const struct sample *sample, int64_t node, const doubl
 
 static void mean_of_face(const struct sample *sample, int64_t face, const double *u, double *mean)
 {
-    int dim = sample->dim, points = OWN_POINTS(dim);
+    int dim = sample->dim, points = FACE_POINTS(dim);
     const struct quadrature_rule rule = quadrature_face_rule(dim);
     memset(mean, 0, 3 * sizeof *mean);
     for (int64_t p = face * points; p < (face + 1) * points; p++) {
@@ -164,14 +165,7 @@ TEST(faces)
             double energy, stabilised = 0.0;
             (void)body_energy(&by_faces, u);
             for (int64_t q = 0; q < by_faces.point_count; q++) {
-                double squares = 0.0;
-                for (int k = 0; k < sample->dim * sample->dim; k++) {
-                    int64_t at = k * by_faces.point_count + q;
-                    double difference = by_faces.cells.interpolant[at] - by_faces.F[at];
-                    squares += difference * difference;
-                }
-                double shear = by_faces.materials[by_faces.material[q]].shear_modulus;
-                stabilised += 0.5 * by_faces.weight[q] * SMOOTHING_STIFFNESS(sample->dim) * shear * squares;
+                stabilised += stress_variance_energy(&by_faces, q);
             }
             assert_true(stabilised > 0.0);
             for (int64_t k = 0; k < count; k++) {

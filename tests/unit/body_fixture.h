@@ -91,10 +91,10 @@ static inline struct smoothed_cells_input sample_smoothed(const struct sample *s
     return (struct smoothed_cells_input){.x = sample->cloud.x,
                                          .cell_node = assembly->cells.node,
                                          .faces = &assembly->faces,
-                                         .face_ptr = assembly->lists.ptr,
-                                         .face_idx = assembly->lists.idx,
-                                         .face_phi = assembly->phi,
-                                         .face_reader = assembly->face_reader,
+                                         .edge_ptr = assembly->lists.ptr,
+                                         .edge_idx = assembly->lists.idx,
+                                         .edge_phi = assembly->phi,
+                                         .edge_reader = assembly->edge_reader,
                                          .node_ptr = assembly->node_lists.ptr,
                                          .node_idx = assembly->node_lists.idx,
                                          .node_phi = assembly->node_phi};
@@ -127,7 +127,7 @@ static inline struct face_table sample_face_table(const struct sample *sample)
                                .node_count = sample->cloud.node_count,
                                .x = sample->cloud.x,
                                .faces = &sample->assembly.faces,
-                               .per_face = OWN_POINTS(sample->dim),
+                               .per_face = FACE_POINTS(sample->dim),
                                .lists = &sample->assembly.boundary_lists,
                                .phi = sample->assembly.boundary_phi};
 }

@@ -4,6 +4,7 @@
 
 #include "unit.h"
 
+#include "approx/cells/face_edges.h"
 #include "approx/shape/shape.h"
 
 struct cell_table {
@@ -36,11 +37,13 @@ static inline struct cell_table cell_table_make(const struct cells *cells, const
             int64_t s = side[c * (dim + 1) + k];
             double area[3] = {0.0, 0.0, 0.0}, sign = s % 2 == 0 ? 1.0 : -1.0, volume = cell_volume(cells, c);
             face_area_vector(dim, cells->x, faces->node + s / 2 * dim, area);
-            for (int r = 0; r < FACE_ROWS(dim); r++) {
-                int64_t row = face_row(faces, s / 2, r);
+            bool own = dim == 3 && s / 2 < faces->boundary_count;
+            int rows = own ? 1 : FACE_EDGES(dim);
+            for (int r = 0; r < rows; r++) {
+                int64_t row = own ? faces->edge_count + s / 2 : face_edge(faces, s / 2, r);
                 for (int64_t i = averages->ptr[row]; i < averages->ptr[row + 1]; i++) {
                     double *of_node = sum + 4 * (int64_t)averages->idx[i];
-                    double share = phi[i] / FACE_ROWS(dim);
+                    double share = phi[i] / rows;
                     seen[averages->idx[i]] = 1;
                     low = averages->idx[i] < low ? averages->idx[i] : low;
                     high = averages->idx[i] > high ? averages->idx[i] : high;

@@ -1,6 +1,7 @@
 /* Fault 25: whichever allocation fails, lib/approx reports it with STATUS_SYSTEM and leaves nothing
  * allocated. See failing_allocator.h. */
 #include "approx/adaptive/adaptive.h"
+#include "approx/cells/face_edges.h"
 #include "approx/points/cloud.h"
 #include "approx/field/field_compare.h"
 #include "approx/error/field_error.h"
@@ -14,7 +15,7 @@
 
 #ifdef FAILING_ALLOCATOR
 
-/* From a cloud to its averages over faces. */
+/* From a cloud to the values at the points of its faces. */
 static enum status try_table(struct error *error)
 {
     struct cloud_options wanted = {
@@ -24,7 +25,6 @@ static enum status try_table(struct error *error)
     FREED_BY(faces_free) struct faces faces = {0};
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(support_free) struct support_lists lists = {0};
-    FREED_BY(face_averages_free) struct face_averages table = {0};
     double spacing[25], radius[25], points[400];
     SCRATCH double *phi = NULL;
     RETURN_IF_ERROR(cloud_make(&wanted, &cloud, error));
@@ -32,14 +32,13 @@ static enum status try_table(struct error *error)
     RETURN_IF_ERROR(cells_node_spacing(&cells, spacing, error));
     RETURN_IF_ERROR(support_radii(&options, cells.node_count, spacing, radius, error));
     RETURN_IF_ERROR(faces_build(&cells, false, &faces, error));
-    face_rows_points(&faces, cloud.x, points);
+    face_points(&faces, cloud.x, points);
     RETURN_IF_ERROR(point_grid_build(&grid, 2, cells.node_count, cloud.x, radius, error));
-    RETURN_IF_ERROR(
-        support_build(&options, &grid, NULL, NULL, 2 * faces.count, points, "points", &lists, error));
+    RETURN_IF_ERROR(support_build(&options, &grid, NULL, NULL, face_point_count(&faces), points, "points",
+                                  &lists, error));
     RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[lists.count], error));
     struct neighbours view = support_view(&lists);
-    RETURN_IF_ERROR(shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error));
-    return shape_average_faces(&options.mls, cloud.x, radius, &view, points, "points", &faces, &table, error);
+    return shape_table(&options.mls, cloud.x, radius, &view, points, "points", phi, NULL, error);
 }
 
 /* Around the corner of an L: the lists at its nodes, and their values. */

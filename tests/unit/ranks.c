@@ -185,11 +185,11 @@ static int64_t room(const struct sample *sample)
     return 8 * sample->cloud.node_count * sample->dim + 20 * sample->assembly.point_count + 8;
 }
 
-/* Of the rows that faces are averaged over every so manieth, as if the others were another process's; the
+/* Of the rows of edges every so manieth, as if the others were another process's; the
  * caller frees lists and phi. */
 static void keep_some(const struct ranks *ranks, const struct assembly *all, struct assembly *some)
 {
-    int64_t rows = all->faces.row_count, *ptr, pairs = all->lists.ptr[rows];
+    int64_t rows = face_row_count(&all->faces), *ptr, pairs = all->lists.ptr[rows];
     int32_t *idx, *reader;
     double *phi;
     ARRAY(ptr, rows + 1);
@@ -209,7 +209,7 @@ static void keep_some(const struct ranks *ranks, const struct assembly *all, str
     some->lists.ptr = ptr;
     some->lists.idx = idx;
     some->phi = phi;
-    some->face_reader = reader;
+    some->edge_reader = reader;
 }
 
 static void *evaluate_member(void *context)
@@ -228,7 +228,7 @@ static void *evaluate_member(void *context)
         free((void *)(uintptr_t)sample.assembly.lists.ptr);
         free((void *)(uintptr_t)sample.assembly.lists.idx);
         free((void *)(uintptr_t)sample.assembly.phi);
-        free((void *)(uintptr_t)sample.assembly.face_reader);
+        free((void *)(uintptr_t)sample.assembly.edge_reader);
     }
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));

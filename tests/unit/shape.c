@@ -2,8 +2,9 @@
 #include "box_fixture.h"
 #include "cell_table.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "approx/cells/quadrature.h"
+#include "base/vector.h"
 
 /* Integral of prod lambda_k^p_k over a simplex of volume 1: d! prod p_k! / (d + sum p_k)!. */
 static double exact_monomial(int vertices, const int *power)
@@ -168,37 +169,33 @@ struct smoothed {
     struct cloud cloud;
     struct cells cells;
     struct faces faces;
-    int per_face; /* points of each face on the boundary */
-    double *points;
+    double *points; /* of the faces */
     struct table table;
     struct neighbours lists;
-    struct face_averages averages;
+    struct shape_rows edges;
     struct cell_table smooth;
 };
 
 static void smoothed_build(struct smoothed *s, int dim, int64_t per_axis, enum basis basis, double offset)
 {
     struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     s->cloud = box_cloud(dim, per_axis, dim == 2 ? 0.3 : 0.1, offset);
     s->cells = cells_of(&s->cloud);
-    s->per_face = rule.points;
     GOOD(faces_build(&s->cells, false, &s->faces, &error));
-    int64_t count = face_row_point(&s->faces, s->faces.row_count);
+    int64_t count = face_point_count(&s->faces);
     s->points = malloc((size_t)(count * dim) * sizeof(double));
     assert_non_null(s->points);
-    face_rows_points(&s->faces, s->cells.x, s->points);
+    face_points(&s->faces, s->cells.x, s->points);
     GOOD(tabulate(&options, s->cells.node_count, s->cells.x, count, s->points, &s->table, &error));
     s->lists = support_view(&s->table.lists);
-    GOOD(shape_average_faces(&options.mls, s->cells.x, s->table.radius, &s->lists, s->points, "points.x",
-                             &s->faces, &s->averages, &error));
-    struct neighbours averages = {.count = s->averages.count, .ptr = s->averages.ptr, .idx = s->averages.idx};
-    s->smooth = cell_table_make(&s->cells, &s->faces, &averages, s->averages.phi);
+    GOOD(shape_on_edges(&s->lists, s->table.phi, &s->faces, &s->edges, &error));
+    struct neighbours edges = {.count = face_row_count(&s->faces), .ptr = s->edges.ptr, .idx = s->edges.idx};
+    s->smooth = cell_table_make(&s->cells, &s->faces, &edges, s->edges.phi);
 }
 
 static void smoothed_free(struct smoothed *s)
 {
-    face_averages_free(&s->averages);
+    shape_rows_free(&s->edges);
     cell_table_free(&s->smooth);
     table_free(&s->table);
     faces_free(&s->faces);
@@ -240,8 +237,8 @@ TEST_IN_EACH_DIM(smoothing_is_consistent)
 TEST_IN_EACH_DIM(smoothing_telescopes)
 {
     FREED_BY(smoothed_free) struct smoothed s = {0};
+    const struct quadrature_rule rule = quadrature_face_rule(dim);
     smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
-    struct quadrature_rule rule = quadrature_face_rule(dim);
     double *sum = zeros(s.cells.node_count * dim, sizeof *sum);
     for (int64_t c = 0; c < s.cells.count; c++) {
         double volume = cell_volume(&s.cells, c);
@@ -251,16 +248,12 @@ TEST_IN_EACH_DIM(smoothing_telescopes)
             }
         }
     }
-    for (int64_t f = 0; f < s.faces.count; f++) {
+    for (int64_t p = 0; p < face_boundary_points(&s.faces); p++) {
         double area[3];
-        face_area_vector(dim, s.cells.x, s.faces.node + f * dim, area);
-        for (int64_t p = f * s.per_face; s.faces.cell[2 * f + 1] < 0 && p < (f + 1) * s.per_face; p++) {
-            for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-                for (int a = 0; a < dim; a++) {
-                    sum[(int64_t)s.lists.idx[i] * dim + a] -=
-                        rule.weight[p % s.per_face] * s.table.phi[i] * area[a];
-                }
-            }
+        face_area_vector(dim, s.cells.x, s.faces.node + p / FACE_POINTS(dim) * dim, area);
+        for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
+            add_scaled(dim, -rule.weight[p % FACE_POINTS(dim)] * s.table.phi[i], area,
+                       sum + (int64_t)s.lists.idx[i] * dim);
         }
     }
     for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
@@ -279,50 +272,37 @@ TEST(smoothing_threads)
         FREED_BY(smoothed_free) struct smoothed s = {0};
         omp_set_num_threads(numbers[i]);
         smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
-        size_t pairs = (size_t)s.averages.ptr[s.faces.row_count];
-        assert_int_equal(pairs, first.averages.ptr[s.faces.row_count]);
-        assert_memory_equal(s.averages.idx, first.averages.idx, pairs * sizeof(int32_t));
-        assert_memory_equal(s.averages.phi, first.averages.phi, pairs * sizeof(double));
+        int64_t rows = face_row_count(&s.faces);
+        size_t pairs = (size_t)s.edges.ptr[rows];
+        assert_int_equal(pairs, first.edges.ptr[rows]);
+        assert_memory_equal(s.edges.idx, first.edges.idx, pairs * sizeof(int32_t));
+        assert_memory_equal(s.edges.phi, first.edges.phi, pairs * sizeof(double));
     }
     omp_set_num_threads(before);
 }
 
-/* Each row is the mean of the values at its points, and those at points on the boundary, whose faces come
- * first, are kept. */
-TEST_IN_EACH_DIM(averages_of_values)
+/* Each row is the mean of the values at its points. */
+TEST_IN_EACH_DIM(rows_of_edges)
 {
     FREED_BY(smoothed_free) struct smoothed s = {0};
     smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
     double *row = zeros(s.cells.node_count, sizeof *row);
-    int64_t outer = 0;
-    struct support_options options = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC);
-    GOOD(shape_table(&options.mls, s.cells.x, s.table.radius, &s.lists, s.points, "points.x", s.table.phi,
-                     NULL, &error));
-    for (int64_t f = 0; f < s.faces.count; f++) {
-        outer += s.faces.cell[2 * f + 1] < 0;
-        assert_true(s.faces.cell[2 * f + 1] >= 0 || outer == f + 1);
-    }
-    for (int64_t r = 0; r < s.faces.row_count; r++) {
-        int64_t first = face_row_point(&s.faces, r), end = face_row_point(&s.faces, r + 1);
-        for (int64_t p = first; p < end; p++) {
-            for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-                row[s.lists.idx[i]] += s.table.phi[i] / (double)(end - first);
-            }
+    for (int64_t r = 0; r < face_row_count(&s.faces); r++) {
+        int count;
+        int64_t first = face_row_points(&s.faces, r, &count);
+        int64_t begin = s.lists.ptr[first], end = s.lists.ptr[first + count];
+        for (int64_t i = begin; i < end; i++) {
+            row[s.lists.idx[i]] += s.table.phi[i] / count;
         }
-        for (int64_t i = s.averages.ptr[r]; i < s.averages.ptr[r + 1]; i++) {
-            assert_true(i == s.averages.ptr[r] || s.averages.idx[i] > s.averages.idx[i - 1]);
-            AT_MOST(fabs(s.averages.phi[i] - row[s.averages.idx[i]]), 1e-15);
-            row[s.averages.idx[i]] = 0.0;
+        for (int64_t i = s.edges.ptr[r]; i < s.edges.ptr[r + 1]; i++) {
+            assert_true(i == s.edges.ptr[r] || s.edges.idx[i] > s.edges.idx[i - 1]);
+            AT_MOST(fabs(s.edges.phi[i] - row[s.edges.idx[i]]), 1e-15);
+            row[s.edges.idx[i]] = 0.0;
         }
-        for (int64_t p = first; p < end; p++) {
-            for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-                assert_true(row[s.lists.idx[i]] == 0.0); /* nobody is left out */
-            }
+        for (int64_t i = begin; i < end; i++) {
+            assert_true(row[s.lists.idx[i]] == 0.0); /* nobody is left out */
         }
     }
-    assert_int_equal(outer, s.faces.boundary_count);
-    assert_memory_equal(s.averages.boundary_phi, s.table.phi,
-                        (size_t)s.lists.ptr[outer * s.per_face] * sizeof(double));
 }
 
 /* Spacing of nodes from their cells: edges of a unit square cut in two. */

@@ -1,6 +1,6 @@
 #include "approx/cells/cells.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -224,7 +224,10 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
-    return face_rows_number(cells->node_count, NULL, faces, error);
+    if (boundary_only && dim == 3) {
+        return STATUS_OK;
+    }
+    return face_edges_number(cells->node_count, faces, error);
 }
 
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,
@@ -265,7 +268,7 @@ enum status cells_across(const struct cells *cells, int32_t *across, struct erro
 
 void faces_free(struct faces *faces)
 {
-    FREE_ALL(faces->node, faces->cell, faces->row);
+    FREE_ALL(faces->node, faces->cell, faces->edge);
     *faces = (struct faces){0};
 }
 

@@ -22,11 +22,10 @@ struct faces {
     int64_t count;
     int64_t boundary_count; /* those on the boundary come first */
     int32_t *node;          /* count * dim, oriented outward from the first cell */
-    int32_t *cell; /* count * 2: the first cell (the lower index), and the one beyond the face or -1 */
-    int64_t row_count, own_count; /* rows of the face averages (face_rows.h); the first own_count of them
-                                     belong to one face each */
-    int32_t *row; /* count * FACE_ROWS: the face's own row, repeated; or the rows of its edges, each from a
-                 node to the next one. NULL: face f has row f */
+    int32_t *cell;      /* count * 2: the first cell (the lower index), and the one beyond the face or -1 */
+    int64_t edge_count; /* face_edges.h; 3D: 0 where they are not numbered */
+    int32_t *edge;      /* 3D: count * 3: the edges of each face, from each node to the next one; NULL in 2D,
+                           where face f is edge f */
 };
 
 /* Check indices and that every volume is positive; the message names the first bad cell. */
@@ -54,8 +53,9 @@ void cell_face(const struct cells *cells, int64_t cell, int vertex, int32_t *fac
 /* Outward normal times length or area of a face of node indices face[dim]. */
 void face_area_vector(int dim, const double *x, const int32_t *face, double *vector);
 
-/* All faces of the cells, each once; or only those on the boundary. Boundary faces come first; otherwise
- * faces are in the order of their first cell. STATUS_INPUT if a face belongs to more than two cells. */
+/* All faces of the cells, each once, those on the boundary before those between two cells, and else in the
+ * order of their first cell, with their edges; or only those on the boundary, in 3D without edges.
+ * STATUS_INPUT when a face belongs to more than two cells. */
 MUST_CHECK enum status faces_build(const struct cells *cells, bool boundary_only, struct faces *faces,
                                    struct error *error);
 void faces_free(struct faces *faces);

@@ -62,12 +62,11 @@ static enum status row_finish(struct dense_row *row, double whole, int64_t part,
     return STATUS_OK;
 }
 
-/* The weight of quadrature point g in the value at corner `vertex` of the linear function through the points
- * of a facet. A facet has one point for each corner, in the same order. */
-static double extrapolated(const struct quadrature_rule *rule, int dim, int g, int vertex)
+/* The weight of a quadrature point in the value at a vertex of the linear function through the points of a
+ * facet; the point has the barycentric coordinate `near` of the vertex. */
+static double extrapolated(int dim, double near)
 {
-    double own = rule->barycentric[0], other = (1.0 - own) / (dim - 1);
-    return ((g == vertex ? 1.0 : 0.0) - other) / (own - other);
+    return (dim + 1) * near - 1.0;
 }
 
 /* Add one corner's facet to the part: its shape functions, area, normal, and samples. */
@@ -87,11 +86,14 @@ static enum status add_corner(const struct face_table *table, const struct facet
     boundary_unit_normal(table, set->facet + corner->facet * dim, normal, &size);
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
-        double weight = rule.weight[g] * size * rule.barycentric[g * dim + vertex];
-        double in_row = at_corner ? size / dim * extrapolated(&rule, dim, g, vertex) : weight;
+        double near = rule.barycentric[g * dim + vertex], weight = rule.weight[g] * size * near;
+        double in_row = at_corner ? size / dim * extrapolated(dim, near) : weight;
         int64_t point = face_of[corner->facet] * table->per_face + g;
         for (int64_t i = table->lists->ptr[point]; row != NULL && i < table->lists->ptr[point + 1]; i++) {
             RETURN_IF_ERROR(row_add(row, table->lists->idx[i], in_row * table->phi[i], error));
+        }
+        if (!(weight > 0.0)) {
+            continue;
         }
         averages->area[part] += weight;
         int64_t sample = averages->sample_ptr[part + 1]++;

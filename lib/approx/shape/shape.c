@@ -1,6 +1,6 @@
 #include "approx/shape/shape.h"
 
-#include "approx/cells/quadrature.h"
+#include "approx/cells/face_edges.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -132,111 +132,63 @@ enum status shape_table(const struct mls *mls, const double *nodes, const double
     return failure.status;
 }
 
-/* The points of a row of averages: the first one in the lists, and the weights of their values. */
-struct row_points {
-    int64_t first;
-    int count;
-    double weight[OWN_POINTS(3)];
-};
-
-static struct row_points points_of_row(const struct faces *faces, int64_t r)
+void shape_rows_free(struct shape_rows *rows)
 {
-    const struct quadrature_rule rule = quadrature_face_rule(faces->dim);
-    struct row_points row = {.first = face_row_point(faces, r), .count = 1, .weight = {1.0}};
-    if (r < faces->own_count) {
-        row.count = rule.points;
-        memcpy(row.weight, rule.weight, (size_t)rule.points * sizeof *rule.weight);
-    }
-    return row;
+    FREE_ALL(rows->ptr, rows->idx, rows->phi);
+    *rows = (struct shape_rows){0};
 }
 
-/* Merge the ascending lists of the points of row r into idx, and the weighted values phi of their pairs into
- * mean; if idx is NULL, only count. Returns the length. */
-static int64_t merge_row(const struct neighbours *lists, const struct faces *faces, int64_t r,
-                         const double *phi, int32_t *idx, double *mean)
+/* Merge the lists of `count` points from `first` on, ascending, into idx, and the means of their values into
+ * mean; or, where idx is NULL, count only. Returns the length. */
+static int64_t merge_points(const struct neighbours *points, const double *phi, int64_t first, int count,
+                            int32_t *idx, double *mean)
 {
-    const struct row_points row = points_of_row(faces, r);
-    int64_t first = lists->ptr[row.first], at[OWN_POINTS(3)], count = 0;
-    const int64_t *end = lists->ptr + row.first + 1;
-    for (int g = 0; g < row.count; g++) {
-        at[g] = lists->ptr[row.first + g];
-    }
-    for (;; count++) {
+    const int64_t *ptr = points->ptr + first;
+    int64_t at[FACE_POINTS(3)], length = 0;
+    memcpy(at, ptr, (size_t)count * sizeof *at);
+    for (;; length++) {
         int32_t node = INT32_MAX;
         double sum = 0.0;
-        for (int g = 0; g < row.count; g++) {
-            node = at[g] < end[g] && lists->idx[at[g]] < node ? lists->idx[at[g]] : node;
+        for (int g = 0; g < count; g++) {
+            node = at[g] < ptr[g + 1] && points->idx[at[g]] < node ? points->idx[at[g]] : node;
         }
         if (node == INT32_MAX) {
-            return count;
+            return length;
         }
-        for (int g = 0; g < row.count; g++) {
-            if (at[g] < end[g] && lists->idx[at[g]] == node) {
-                sum += idx != NULL ? row.weight[g] * phi[at[g] - first] : 0.0;
+        for (int g = 0; g < count; g++) {
+            if (at[g] < ptr[g + 1] && points->idx[at[g]] == node) {
+                sum += phi[at[g]] / count;
                 at[g]++;
             }
         }
         if (idx != NULL) {
-            idx[count] = node;
-            mean[count] = sum;
+            idx[length] = node;
+            mean[length] = sum;
         }
     }
 }
 
-/* Evaluate rows [first, last) into a scratch array, average them, and copy the values of boundary faces. */
-static enum status average_rows(const struct tabulation *table, const struct faces *faces, int64_t first,
-                                int64_t last, struct face_averages *averages, struct error *error)
+enum status shape_on_edges(const struct neighbours *points, const double *phi, const struct faces *faces,
+                           struct shape_rows *rows, struct error *error)
 {
-    const int64_t *ptr = table->lists->ptr;
-    int64_t point = face_row_point(faces, first), pair = ptr[point];
-    SCRATCH double *phi = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, ptr[face_row_point(faces, last)] - pair, error));
-    RETURN_IF_ERROR(tabulate(table, point, face_row_point(faces, last), phi, NULL, error));
-    for (int64_t r = first; r < last; r++) {
-        int64_t at = averages->ptr[r];
-        (void)merge_row(table->lists, faces, r, phi + (ptr[face_row_point(faces, r)] - pair),
-                        averages->idx + at, averages->phi + at);
+    int64_t row_count = face_row_count(faces);
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->ptr, row_count + 1, error));
+#pragma omp parallel for schedule(static)
+    for (int64_t r = 0; r < row_count; r++) {
+        int count;
+        int64_t first = face_row_points(faces, r, &count);
+        rows->ptr[r + 1] = merge_points(points, phi, first, count, NULL, NULL);
     }
-    int64_t end = last < faces->boundary_count ? last : faces->boundary_count;
-    if (first < end) {
-        memcpy(averages->boundary_phi + pair, phi,
-               (size_t)(ptr[face_row_point(faces, end)] - pair) * sizeof *phi);
+    for (int64_t r = 0; r < row_count; r++) {
+        rows->ptr[r + 1] += rows->ptr[r];
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->idx, rows->ptr[row_count], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows->phi, rows->ptr[row_count], error));
+#pragma omp parallel for schedule(static)
+    for (int64_t r = 0; r < row_count; r++) {
+        int count;
+        int64_t first = face_row_points(faces, r, &count);
+        (void)merge_points(points, phi, first, count, rows->idx + rows->ptr[r], rows->phi + rows->ptr[r]);
     }
     return STATUS_OK;
-}
-
-enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
-                                const struct neighbours *neighbours, const double *x, const char *what,
-                                const struct faces *faces, struct face_averages *averages,
-                                struct error *error)
-{
-    const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
-    const int64_t chunk = chunk_points / OWN_POINTS(faces->dim), count = faces->row_count;
-    struct failure failure = {0, STATUS_OK};
-    *averages = (struct face_averages){.count = count};
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->ptr, count + 1, error));
-#pragma omp parallel for schedule(static)
-    for (int64_t r = 0; r < count; r++) {
-        averages->ptr[r + 1] = merge_row(neighbours, faces, r, NULL, NULL, NULL);
-    }
-    for (int64_t r = 0; r < count; r++) {
-        averages->ptr[r + 1] += averages->ptr[r];
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->idx, averages->ptr[count], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->phi, averages->ptr[count], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->boundary_phi,
-                              neighbours->ptr[face_row_point(faces, faces->boundary_count)], error));
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int64_t first = 0; first < count; first += chunk) {
-        struct error own;
-        int64_t last = first + chunk < count ? first + chunk : count;
-        note_failure(&failure, first, average_rows(&table, faces, first, last, averages, &own), &own, error);
-    }
-    return failure.status;
-}
-
-void face_averages_free(struct face_averages *averages)
-{
-    FREE_ALL(averages->ptr, averages->idx, averages->phi, averages->boundary_phi);
-    *averages = (struct face_averages){0};
 }

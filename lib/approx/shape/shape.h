@@ -1,9 +1,9 @@
 /* Tables of shape functions: values and gradients at points (equations (3) and (4) of lib/README.md), and
- * averages over faces of cells (equation (6) of lib/README.md). */
+ * their rows on edges (equation (6) of lib/README.md). */
 #pragma once
 
-#include "approx/cells/face_rows.h"
 #include "approx/mls/mls.h"
+#include "approx/cells/cells.h"
 #include "approx/support/support.h"
 
 /* The neighbours that points see around corners (see visibility.h). */
@@ -32,21 +32,16 @@ MUST_CHECK enum status shape_table(const struct mls *mls, const double *nodes, c
                                    const struct neighbours *neighbours, const double *x, const char *what,
                                    double *phi, double *dphi, struct error *error);
 
-/* The rows of averages of the shape functions over faces (face_rows.h), as CSR. */
-struct face_averages {
-    int64_t count;        /* of rows */
-    int64_t *ptr;         /* count + 1 */
-    int32_t *idx;         /* union of the lists of the row's points, ascending */
-    double *phi;          /* means over these points */
-    double *boundary_phi; /* values at the points of faces on the boundary, following their lists */
+/* Rows of a table, with lists of their own. */
+struct shape_rows {
+    int64_t *ptr; /* rows + 1 */
+    int32_t *idx; /* ascending in each row */
+    double *phi;
 };
+void shape_rows_free(struct shape_rows *rows);
 
-/* The rows of the averages of the shape functions over faces, from their points x (face_rows_points). By the
- * divergence theorem, the mean gradient over a cell is the sum over its faces of the average times the area
- * vector, divided by the volume (Chen et al. 2001, here on background cells). Errors and threads as
- * shape_table. */
-MUST_CHECK enum status shape_average_faces(const struct mls *mls, const double *nodes, const double *radius,
-                                           const struct neighbours *neighbours, const double *x,
-                                           const char *what, const struct faces *faces,
-                                           struct face_averages *averages, struct error *error);
-void face_averages_free(struct face_averages *averages);
+/* The rows of edges and, in 3D, of boundary faces (face_edges.h): means of the values phi at their points, on
+ * the lists of these. */
+MUST_CHECK enum status shape_on_edges(const struct neighbours *points, const double *phi,
+                                      const struct faces *faces, struct shape_rows *rows,
+                                      struct error *error);

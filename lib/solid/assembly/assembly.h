@@ -58,10 +58,10 @@ struct assembly {
     struct neighbours lists, boundary_lists, node_lists;
     const double *phi, *dphi; /* dphi NULL: averages over faces */
     const double *boundary_phi, *node_phi;
-    const int32_t *face_reader; /* smoothed cells: the process that has read each row of `lists`, which is
-                               empty in the others; NULL: all processes have all rows */
-    /* Called, unless NULL, when `lists`, phi and dphi are no longer needed: they take most of the memory. Not
-     * called in a process that has all rows while others compute, too. */
+    const int32_t *edge_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
+                                   empty in others; NULL: all have all */
+    /* Called, unless NULL, when `lists`, phi and dphi, which take most of the memory, are no longer needed.
+     */
     void (*copied)(void *context);
     void *context;
 
@@ -114,7 +114,8 @@ MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct 
                                            struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
-/* Add the weight of the body if face_reader is given: it needs rows that only the built body has fetched. */
+/* Add the weight of the body where edge_reader is given. It needs rows that only the built body has fetched.
+ */
 MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
                                                  struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,

@@ -1,6 +1,6 @@
 #include "solid/assembly/assembly.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -15,22 +15,23 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return STATUS_OK;
 }
 
-/* The mass of each row of the table of points or faces. A cell divides its mass equally among its faces, a
- * face among its rows. */
+/* The mass of each row of the table over points or faces. The mean of the quadratic
+ * interpolant over a cell is that of its values on the edges in 2D; in 3D, where values at the vertices have
+ * negative weights, that of its means over the faces is taken, which is the same for linear fields. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
     const struct material_list *materials = &input->materials;
-    int rows = FACE_ROWS(input->cells.dim);
+    int edges = FACE_EDGES(input->cells.dim);
     RETURN_IF_ERROR(NEW_ARRAY(mass, input->lists.count, error));
     for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
         (*mass)[i] = input->weight[i] * materials->items[materials->of_cell[input->point_cell[i]]].density;
     }
     for (int64_t i = 0; i < 2 * input->faces.count && input->smoothed; i++) {
         int32_t q = input->faces.cell[i];
-        for (int k = 0; k < rows && q >= 0; k++) {
-            (*mass)[face_row(&input->faces, i / 2, k)] += input->weight[q] *
-                                                          materials->items[materials->of_cell[q]].density /
-                                                          ((input->cells.dim + 1) * rows);
+        for (int k = 0; k < edges && q >= 0; k++) {
+            (*mass)[face_edge(&input->faces, i / 2, k)] += input->weight[q] *
+                                                           materials->items[materials->of_cell[q]].density /
+                                                           ((input->cells.dim + 1) * edges);
         }
     }
     return STATUS_OK;
@@ -39,7 +40,7 @@ static enum status share_mass(const struct assembly *input, double **mass, struc
 /* Whether each process has only some of the rows over which the weight is summed. */
 static bool weighs_later(const struct assembly *input)
 {
-    return input->face_reader != NULL && !input->in_time;
+    return input->edge_reader != NULL && !input->in_time;
 }
 
 static enum status add_gravity(const struct assembly *input, struct solid_system *system, struct error *error)

@@ -166,22 +166,21 @@ static int worthwhile_threads(const struct body *body)
     return (int)(by_work < available ? by_work : available);
 }
 
-/* Pairs of face or node and neighbour; where each process has but some rows over the faces, of all of them.
- */
+/* Pairs of edge or node and neighbour; where each process has but some rows of the edges, of all of them. */
 static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
 {
     const struct smoothed_cells_input *cells = input->smoothed;
-    int64_t of_faces = cells->face_ptr[cells->faces->row_count];
+    int64_t of_edges = cells->edge_ptr[cells->faces->edge_count];
     SCRATCH int64_t *each = NULL;
     body->pair_count = cells->node_ptr[body->node_count];
-    if (cells->face_reader != NULL) {
-        RETURN_IF_ERROR(ranks_list(input->ranks, of_faces, &each, error));
-        of_faces = 0;
+    if (cells->edge_reader != NULL) {
+        RETURN_IF_ERROR(ranks_list(input->ranks, of_edges, &each, error));
+        of_edges = 0;
         for (int r = 0; r < input->ranks->count; r++) {
-            of_faces += each[r];
+            of_edges += each[r];
         }
     }
-    body->pair_count += of_faces;
+    body->pair_count += of_edges;
     return STATUS_OK;
 }
 

@@ -47,8 +47,9 @@ struct body_input {
 
 struct block {
     int64_t first_point, point_count; /* in the body's order */
-    bool neo_hookean;                 /* all its points; else the general law */
-    double least_jacobian;            /* at the last evaluation, and where, in the body's order */
+    int64_t boundary_face; /* the first boundary face of these cells, or of later ones (field_averages.h) */
+    bool neo_hookean;      /* all its points; else the general law */
+    double least_jacobian; /* at the last evaluation, and where, in the body's order */
     int64_t worst_point;
     double energy; /* at the last call of body_energy, J (2D: J/m) */
 };

@@ -44,10 +44,17 @@ void body_free_bounds(struct body *body)
 }
 
 /* Along the gradient g of a shape function the energy of a point has the second derivative g A g, and that of
- * the stabilisation of its smoothing, bounded by twice its stiffness. */
+ * the variance's, bounded by twice that of the value at one vertex. */
 struct bound {
     double A[9], smoothing;
 };
+
+/* The energy within a cell by mu / 2 |grad N_k|^2, per volume, where the field is one at vertex k and zero at
+ * other vertices and on the edges. */
+static double vertex_variance(int dim)
+{
+    return dim == 2 ? 1.0 : 0.6;
+}
 
 static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
@@ -77,7 +84,7 @@ static struct bound bound_at(const struct body *body, int64_t q, const double *F
             along * (C[a] * C[b] + C[3 + a] * C[3 + b] + C[6 + a] * C[6 + b]) - (a == b ? shear / 3.0 : 0.0);
     }
     if (body->smoothed) {
-        bound.smoothing = 2.0 * body->weight[q] * SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
+        bound.smoothing = 2.0 * body->weight[q] * vertex_variance(body->dim) * material->shear_modulus;
     }
     return bound;
 }

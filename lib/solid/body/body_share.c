@@ -136,10 +136,9 @@ static int64_t row_count(const struct body *body)
     return body->smoothed ? body->cells.averages.row_count : body->point_count * body->dim;
 }
 
-/* Corners, those of the faces and then those of the nodes, are by points. */
-static int64_t point_of_corner(const struct body *body, int64_t corner)
+static int64_t point_of_use(const struct body *body, int64_t use)
 {
-    return corner % body->cells.averages.corner_count / (body->dim + 1);
+    return field_averages_cell(&body->cells.averages, body->dim, use);
 }
 
 int body_share_owner(const void *body, int64_t node)
@@ -160,11 +159,15 @@ enum status body_share_values(const struct body *body, bool **wanted, struct err
         }
         return STATUS_OK;
     }
-    for (int half = 0; half < 2; half++) {
-        int64_t per_point = (dim + 1) * (half == 0 ? FACE_ROWS(dim) : 1);
-        const int32_t *at = averages->of_corner + half * averages->corner_count * FACE_ROWS(dim);
-        for (int64_t i = share->begin_point * per_point; i < share->end_point * per_point; i++) {
-            (*wanted)[at[i] / VECTOR_STRIDE(dim)] = true;
+    int64_t edges = CELL_EDGES(dim), first[] = {0, field_averages_vertices(averages, dim), 0};
+    int64_t begin[] = {share->begin_point * edges, share->begin_point * (dim + 1), 0};
+    int64_t end[] = {share->end_point * edges, share->end_point * (dim + 1), 0};
+    first[2] = field_averages_faces(averages, dim);
+    begin[2] = field_averages_face(averages, share->begin_point);
+    end[2] = field_averages_face(averages, share->end_point);
+    for (int kind = 0; kind < 3; kind++) {
+        for (int64_t i = first[kind] + begin[kind]; i < first[kind] + end[kind]; i++) {
+            (*wanted)[averages->of_use[i] / VECTOR_STRIDE(dim)] = true;
         }
     }
     return STATUS_OK;
@@ -176,7 +179,7 @@ static int64_t point_of_row(const struct body *body, int64_t row)
     return row / body->dim;
 }
 
-/* Who has the forces on a row. One without corners has none. */
+/* Who has the forces on a row. One without uses has none. */
 static int owner_of_row(const void *context, int64_t row)
 {
     const struct body *body = context;
@@ -184,10 +187,8 @@ static int owner_of_row(const void *context, int64_t row)
     if (!body->smoothed) {
         return owner_of_point(body, point_of_row(body, row));
     }
-    int64_t at = averages->corner_ptr[row];
-    return at < averages->corner_ptr[row + 1]
-               ? owner_of_point(body, point_of_corner(body, averages->corner[at]))
-               : 0;
+    int64_t at = averages->use_ptr[row];
+    return at < averages->use_ptr[row + 1] ? owner_of_point(body, point_of_use(body, averages->use[at])) : 0;
 }
 
 static int64_t point_itself(const struct body *body, int64_t point)
@@ -223,7 +224,7 @@ static enum status order_blocks(struct body *body, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&is_sent, body->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
     mark_sent(body, &share->strains, point_itself, is_sent);
-    mark_sent(body, &share->corners, point_of_corner, is_sent);
+    mark_sent(body, &share->uses, point_of_use, is_sent);
     if (!body->smoothed) {
         mark_sent(body, &share->rows, point_of_row, is_sent);
     }
@@ -255,28 +256,28 @@ static enum status order_sums(struct body *body, struct error *error)
     return row_ranges_of(0, rows, is_inner, &share->inner_sums, error);
 }
 
-static int owner_of_corner(const void *body, int64_t corner)
+static int owner_of_use(const void *body, int64_t use)
 {
-    return owner_of_point(body, point_of_corner(body, corner));
+    return owner_of_point(body, point_of_use(body, use));
 }
 
-/* The corners that the rows that are summed here take. */
-static enum status share_corners(struct body *body, struct error *error)
+/* The uses of the rows that are summed here. */
+static enum status share_uses(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
     int64_t rows = row_count(body);
-    SCRATCH bool *sums = NULL, *corners = NULL;
+    SCRATCH bool *sums = NULL, *uses = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&sums, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&corners, 2 * averages->corner_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&uses, averages->use_count, error));
     for (int64_t r = 0; r < rows; r++) {
         sums[r] = owner_of_row(body, r) == share->ranks->rank;
-        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && sums[r]; i++) {
-            corners[averages->corner[i]] = true;
+        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && sums[r]; i++) {
+            uses[averages->use[i]] = true;
         }
     }
-    return halo_build(share->ranks, 2 * averages->corner_count, corners, VECTOR_STRIDE(body->dim),
-                      owner_of_corner, body, &share->corners, error);
+    return halo_build(share->ranks, averages->use_count, uses, VECTOR_STRIDE(body->dim), owner_of_use, body,
+                      &share->uses, error);
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)
@@ -287,7 +288,7 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
         return row_ranges_of(0, row_count(body), NULL, &share->inner_sums, error);
     }
     if (body->smoothed) {
-        RETURN_IF_ERROR(share_corners(body, error));
+        RETURN_IF_ERROR(share_uses(body, error));
     }
     RETURN_IF_ERROR(halo_build(share->ranks, row_count(body), wanted, VECTOR_STRIDE(body->dim), owner_of_row,
                                body, &share->rows, error));
@@ -322,6 +323,6 @@ void body_share_free(struct body_share *share)
     free(share->block);
     halo_free(&share->strains);
     halo_free(&share->pressures);
-    halo_free(&share->corners);
+    halo_free(&share->uses);
     halo_free(&share->rows);
 }

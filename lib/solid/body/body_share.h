@@ -29,7 +29,7 @@ struct body_share {
     struct row_ranges inner_sums; /* and for this process alone */
     struct halo strains;          /* of points: for nodal volumes */
     struct halo pressures;        /* of nodal volumes: those beside own ones, and at own points */
-    struct halo corners;          /* of smoothed cells: forces on rows that are summed here */
+    struct halo uses;             /* of smoothed cells: forces on rows that are summed here */
     struct halo rows;             /* forces on rows, for own nodes */
 };
 
@@ -45,7 +45,7 @@ MUST_CHECK enum status body_share_pressures(struct body *body, struct error *err
 /* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
 int body_share_owner(const void *body, int64_t node);
 
-/* wanted[rows of the operator]: those that own points or cells need. Needs of_corner of smoothed cells. */
+/* wanted[rows of the operator]: those that own points or cells need. Needs of_use of smoothed cells. */
 MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted, struct error *error);
 
 /* The halos of rows, when operator and transpose are there; wanted[rows]: those that own nodes are in. */

@@ -10,14 +10,15 @@ enum status cell_functions_make(const struct body *body, struct cell_functions *
 {
     const struct sparse *matrix = &body->rows.matrix;
     int64_t most = 0;
+    int32_t row[SMOOTHED_MOST_ROWS];
+    double gradient[SMOOTHED_MOST_ROWS * 3];
     *functions = (struct cell_functions){0};
     for (int64_t q = 0; q < body->point_count; q++) {
         int64_t sum = body->smoothed ? 0 : matrix->ptr[q * body->dim + 1] - matrix->ptr[q * body->dim];
-        int64_t corners = body->dim + 1, end = smoothed_cells_group_end(body, q);
-        for (int64_t c = q * corners; c < end * corners && body->smoothed; c++) {
-            for (int i = 0; i < FACE_ROWS(body->dim); i++) {
-                int32_t row = smoothed_cells_row(body, c / corners, (int)(c % corners), i);
-                sum += matrix->ptr[row + 1] - matrix->ptr[row];
+        for (int64_t c = q; c < smoothed_cells_group_end(body, q) && body->smoothed; c++) {
+            int count = smoothed_cells_rows(body, c, row, gradient);
+            for (int r = 0; r < count; r++) {
+                sum += matrix->ptr[row[r] + 1] - matrix->ptr[row[r]];
             }
         }
         most = sum > most ? sum : most;
@@ -33,34 +34,8 @@ void cell_functions_free(struct cell_functions *functions)
     *functions = (struct cell_functions){0};
 }
 
-/* The rows of the averages over the faces of cell q, each once, and the derivative of its gradient by the
- * value of each: gradient[12 * dim]. Returns their number. */
-static int list_rows(const struct body *body, int64_t q, int32_t row[12], double *gradient)
-{
-    int dim = body->dim, rows = FACE_ROWS(dim), count = 0;
-    double grad_N[12];
-    smoothed_cells_linear_gradients(body, q, grad_N);
-    for (int k = 0; k <= dim; k++) {
-        for (int i = 0; i < rows; i++) {
-            int32_t of_face = smoothed_cells_row(body, q, k, i);
-            int at = 0;
-            while (at < count && row[at] != of_face) {
-                at++;
-            }
-            if (at == count) {
-                row[count++] = of_face;
-                memset(gradient + at * dim, 0, (size_t)dim * sizeof *gradient);
-            }
-            for (int a = 0; a < dim; a++) {
-                gradient[at * dim + a] -= (double)dim / rows * grad_N[k * dim + a];
-            }
-        }
-    }
-    return count;
-}
-
-/* Add to the gradient of a node's shape function. The nodes are a sparse set of two arrays that need no
- * clearing (Briggs and Torczon 1993). */
+/* Add to the gradient of the shape function of a node. A set by two arrays that need no clearing: Briggs and
+ * Torczon 1993. */
 static inline void add_function(int32_t node, int dim, double factor, const double *gradient,
                                 struct cell_functions *functions)
 {
@@ -79,15 +54,12 @@ void cell_functions_list(const struct body *body, int64_t q, struct cell_functio
     int dim = body->dim;
     functions->count = 0;
     for (int64_t c = smoothed_cells_group(body, q); c < smoothed_cells_group_end(body, q); c++) {
-        int32_t row[12];
-        double gradient[12 * 3], share = smoothed_cells_share(body, c);
-        int count = list_rows(body, c, row, gradient);
-        for (int k = 0; k < count * dim; k++) {
-            gradient[k] *= share;
-        }
+        int32_t row[SMOOTHED_MOST_ROWS];
+        double gradient[SMOOTHED_MOST_ROWS * 3], share = smoothed_cells_share(body, c);
+        int count = smoothed_cells_rows(body, c, row, gradient);
         for (int r = 0; r < count; r++) {
             for (int64_t i = matrix->ptr[row[r]]; i < matrix->ptr[row[r] + 1]; i++) {
-                add_function(matrix->idx[i], dim, matrix->value[i], gradient + r * dim, functions);
+                add_function(matrix->idx[i], dim, share * matrix->value[i], gradient + r * dim, functions);
             }
         }
     }

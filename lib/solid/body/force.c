@@ -19,7 +19,7 @@ static void note_volumes(const struct body *body, struct block *block)
     }
 }
 
-/* Stresses of a block of cells, and their forces on the face averages and node values. */
+/* Stresses of a block of cells, and their forces on the values at edges and vertices. */
 static void stress_cell_block(struct body *body, int64_t b)
 {
     block_rows P, T;
@@ -77,11 +77,11 @@ static void apply_transposed(const struct body *body, const double *x, double *y
     }
 }
 
-static void sum_corners(struct body *body, const struct row_ranges *rows)
+static void sum_uses(struct body *body, const struct row_ranges *rows)
 {
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < rows->count; i++) {
-        force_sum_corners(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
+        force_sum_uses(body->dim, &body->cells.averages, rows->items[i].begin, rows->items[i].end);
     }
 }
 
@@ -171,10 +171,10 @@ static void evaluate(struct body *body, const double *u, double *force)
     {
         set_state(body, u);
         if (body->smoothed) {
-            for_all_blocks(body, stress_cell_block, &share->corners, stride, averages->corner_force);
-            sum_corners(body, &share->sums);
+            for_all_blocks(body, stress_cell_block, &share->uses, stride, averages->use_force);
+            sum_uses(body, &share->sums);
             body_share_begin(share, &share->rows, stride, averages->force);
-            sum_corners(body, &share->inner_sums);
+            sum_uses(body, &share->inner_sums);
             body_share_finish(share, &share->rows, stride, averages->force);
             apply_transposed(body, averages->force, body->force);
         } else {
@@ -244,11 +244,8 @@ static void add_energy(const struct body *body, int64_t q, const double F[9], do
 {
     const struct material *material = &body->materials[body->material[q]];
     double sum = material_isochoric_energy(material, F);
-    if (body->smoothed) {
-        sum += stress_smoothing_energy(body, q, F);
-    }
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
-    *(double *)energy += body->weight[q] * sum;
+    *(double *)energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
 }
 
 double body_energy(struct body *body, const double *u)

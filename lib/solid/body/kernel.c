@@ -24,12 +24,12 @@ ALL_SETS void force_apply_transposed(int dim, const struct row_operator *rows, i
     }
 }
 
-ALL_SETS void force_sum_corners(int dim, struct field_averages *averages, int64_t begin, int64_t end)
+ALL_SETS void force_sum_uses(int dim, struct field_averages *averages, int64_t begin, int64_t end)
 {
     if (dim == 2) {
-        sum_corners_2(averages, begin, end);
+        sum_uses_2(averages, begin, end);
     } else {
-        sum_corners_3(averages, begin, end);
+        sum_uses_3(averages, begin, end);
     }
 }
 

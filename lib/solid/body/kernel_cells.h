@@ -1,88 +1,154 @@
-/* Kernels over smoothed cells (equations (7) to (12) of lib/README.md): gradients from face averages and node
- * values, the neo-Hookean law, and the forces on these averages and values; private to lib/solid. */
+/* Kernels over smoothed cells (equations (7) to (12) of lib/README.md): gradients from values on edges and at
+ * vertices, the neo-Hookean law, and the forces on these values; private to lib/solid. */
 #pragma once
 
 #include "solid/body/kernel_points.h"
 #include "solid/body/merged_cells.h"
 
-/* Values at the corners of a block's cells, of faces or of nodes: component a of corner k in row k dim + a,
- * one column for each cell. read_corners sums over the rows of each corner, which begin in of_corner at
- * `first`. */
-typedef double block_corners[12][BLOCK_MOST_POINTS];
+/* Values in a block's cells: component a of edge or vertex k in row k dim + a, one column for each cell. */
+typedef double block_vertices[12][BLOCK_MOST_POINTS];
+typedef double block_edges[18][BLOCK_MOST_POINTS];
 
-KERNEL_INLINE void read_corners(const struct field_averages *averages, int64_t first, int rows,
-                                const struct block *block, int dim, block_corners corners)
+/* Read or write `each` uses of each cell, the first of the body's is `first`. */
+KERNEL_INLINE void read_uses(const struct field_averages *averages, int64_t first, int each,
+                             const struct block *block, int dim, double (*values)[BLOCK_MOST_POINTS])
 {
-    const int32_t *of_corner = averages->of_corner + first + block->first_point * (dim + 1) * rows;
+    const int32_t *of_use = averages->of_use + first + block->first_point * each;
     for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k <= dim; k++, of_corner += rows) {
+        for (int k = 0; k < each; k++, of_use++) {
             for (int a = 0; a < dim; a++) {
-                double sum = 0.0;
-                for (int j = 0; j < rows; j++) {
-                    sum += averages->value[of_corner[j] + a];
-                }
-                corners[k * dim + a][i] = sum;
+                values[k * dim + a][i] = averages->value[*of_use + a];
             }
         }
     }
 }
 
-KERNEL_INLINE void write_corners(struct field_averages *averages, int64_t first, const struct block *block,
-                                 int dim, const block_corners corners)
+KERNEL_INLINE void write_uses(struct field_averages *averages, int64_t first, int each,
+                              const struct block *block, int dim, const double (*forces)[BLOCK_MOST_POINTS])
 {
-    int64_t corner = first + block->first_point * (dim + 1);
+    double *use_force = averages->use_force + (first + block->first_point * each) * VECTOR_STRIDE(dim);
     for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k <= dim; k++, corner++) {
+        for (int k = 0; k < each; k++, use_force += VECTOR_STRIDE(dim)) {
             for (int a = 0; a < dim; a++) {
-                averages->corner_force[corner * VECTOR_STRIDE(dim) + a] = corners[k * dim + a][i];
+                use_force[a] = forces[k * dim + a][i];
             }
         }
     }
 }
 
-/* Gradients of the linear shape functions N_1 .. N_dim in the cells from q on. */
-KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int dim, lanes grad_N[9])
+KERNEL_INLINE void read_cells(const struct body *body, const struct block *block, int dim, block_edges edges,
+                              block_vertices vertices)
 {
-    load_matrix(body->cells.linear_gradient + q, body->point_count, dim, grad_N);
+    const struct field_averages *averages = &body->cells.averages;
+    read_uses(averages, 0, CELL_EDGES(dim), block, dim, edges);
+    read_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim, vertices);
 }
 
-/* gradient = sum_k v_k (x) grad N_k for corner values v of the cells i .. of a block. */
-KERNEL_INLINE void corner_gradient(const block_corners v, int64_t i, int dim, const lanes grad_N[9],
-                                   lanes gradient[9])
+/* Gradients of the linear shape functions N_0 .. N_dim in the cells from q on, each in a row of 3. */
+KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int dim, lanes grad_N[12])
 {
-    for (int a = 0; a < dim; a++) {
-        lanes origin;
-        LOAD(origin, v[a] + i);
+    lanes rest[9];
+    load_matrix(body->cells.linear_gradient + q, body->point_count, dim, rest);
+    for (int b = 0; b < dim; b++) {
+        grad_N[b] = (lanes){0.0};
+        for (int k = 1; k <= dim; k++) {
+            grad_N[3 * k + b] = rest[(k - 1) * dim + b];
+            grad_N[b] -= rest[(k - 1) * dim + b];
+        }
+    }
+}
+
+/* Of component a: sum_k v_k grad N_k and c sum_e m_e (grad N_i + grad N_j). */
+KERNEL_INLINE void cell_gradients(const block_edges edges, const block_vertices vertices, int64_t i, int dim,
+                                  int a, const lanes grad_N[12], lanes interpolant[3], lanes mean[3])
+{
+    lanes origin;
+    LOAD(origin, vertices[a] + i);
+    for (int b = 0; b < dim; b++) {
+        interpolant[b] = mean[b] = (lanes){0.0};
+    }
+    for (int k = 1; k <= dim; k++) {
+        lanes value;
+        LOAD(value, vertices[k * dim + a] + i);
+        value -= origin;
         for (int b = 0; b < dim; b++) {
-            gradient[a * dim + b] = (lanes){0.0};
+            interpolant[b] += value * grad_N[3 * k + b];
         }
-        for (int k = 1; k <= dim; k++) {
-            lanes value;
-            LOAD(value, v[k * dim + a] + i);
-            value -= origin;
-            for (int b = 0; b < dim; b++) {
-                gradient[a * dim + b] += value * grad_N[(k - 1) * dim + b];
-            }
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        lanes value;
+        LOAD(value, edges[e * dim + a] + i);
+        value -= origin;
+        for (int b = 0; b < dim; b++) {
+            mean[b] += value * (grad_N[3 * cell_edge_ends[e][0] + b] + grad_N[3 * cell_edge_ends[e][1] + b]);
         }
+    }
+    for (int b = 0; b < dim; b++) {
+        mean[b] *= EDGE_GRADIENT(dim);
     }
 }
 
-/* The transpose: v_k = scale P grad N_k. */
-KERNEL_INLINE void corner_forces(const lanes P[9], int64_t i, int dim, const lanes grad_N[9], double scale,
-                                 block_corners v)
+/* The transpose, for the stresses P of the mean and T of the interpolant. */
+KERNEL_INLINE void cell_forces(const lanes P[3], const lanes T[3], int dim, const lanes grad_N[12],
+                               lanes on_edge[6], lanes on_vertex[4])
 {
-    for (int a = 0; a < dim; a++) {
-        lanes all = {0.0};
-        for (int k = 1; k <= dim; k++) {
-            lanes sum = P[a * dim] * grad_N[(k - 1) * dim];
-            for (int b = 1; b < dim; b++) {
-                sum += P[a * dim + b] * grad_N[(k - 1) * dim + b];
-            }
-            sum *= scale;
-            all -= sum;
-            STORE(v[k * dim + a] + i, sum);
+    lanes mean[4];
+    for (int k = 0; k <= dim; k++) {
+        on_vertex[k] = T[0] * grad_N[3 * k];
+        mean[k] = P[0] * grad_N[3 * k];
+        for (int b = 1; b < dim; b++) {
+            on_vertex[k] += T[b] * grad_N[3 * k + b];
+            mean[k] += P[b] * grad_N[3 * k + b];
         }
-        STORE(v[a] + i, all);
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        on_edge[e] = EDGE_GRADIENT(dim) * (mean[cell_edge_ends[e][0]] + mean[cell_edge_ends[e][1]]);
+    }
+}
+
+/* Add the forces of component a of the energy within cells, modulus / 2 sum_k |R_k - R|^2, in 2D with R in
+ * place of R_k - R. */
+KERNEL_INLINE void add_variance_forces(const block_edges edges, const block_vertices vertices, int64_t i,
+                                       int dim, int a, const lanes grad_N[12], const lanes *modulus,
+                                       lanes on_edge[6], lanes on_vertex[4])
+{
+    lanes value[4], offset[6], R[12];
+    for (int k = 0; k <= dim; k++) {
+        LOAD(value[k], vertices[k * dim + a] + i);
+        for (int b = 0; b < dim; b++) {
+            R[3 * k + b] = (lanes){0.0};
+        }
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        LOAD(offset[e], edges[e * dim + a] + i);
+        offset[e] = EDGE_OFFSET(dim) * (offset[e] - 0.5 * (value[k] + value[l]));
+        for (int b = 0; b < dim; b++) {
+            R[3 * k + b] += offset[e] * grad_N[3 * l + b];
+            R[3 * l + b] += offset[e] * grad_N[3 * k + b];
+        }
+    }
+    for (int b = 0; b < dim; b++) {
+        lanes mean = R[b];
+        for (int k = 1; k <= dim; k++) {
+            mean += R[3 * k + b];
+        }
+        mean *= 1.0 / (dim + 1);
+        for (int k = 0; k <= dim; k++) {
+            R[3 * k + b] = *modulus * (dim == 2 ? mean : R[3 * k + b] - mean);
+        }
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        lanes force = R[3 * k] * grad_N[3 * l] + R[3 * l] * grad_N[3 * k];
+        for (int b = 1; b < dim; b++) {
+            force += R[3 * k + b] * grad_N[3 * l + b] + R[3 * l + b] * grad_N[3 * k + b];
+        }
+        force *= EDGE_OFFSET(dim);
+        on_edge[e] += force;
+        force *= 0.5;
+        on_vertex[k] -= force;
+        on_vertex[l] -= force;
     }
 }
 
@@ -96,26 +162,86 @@ KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block,
     }
 }
 
-/* F = I - dim sum_k m_k (x) grad N_k, F_h = I + sum_k v_k (x) grad N_k, J = det F_h - cof F_h : (F_h - F);
- * the least determinant is that of F. */
-KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block, int dim)
+/* In 3D the mean over a face on the boundary is that of its own row, in place of that of its midpoints: a
+ * mean that is larger by d changes F by -3 d (x) grad N_k, k the opposite vertex. change: by how much, of
+ * each cell. */
+KERNEL_INLINE void change_at_boundary(const struct body *body, const struct block *block,
+                                      const block_edges edges, block_rows change)
 {
     const struct field_averages *averages = &body->cells.averages;
-    block_corners mean, value;
-    block_rows F, interpolant;
+    int64_t last = block->first_point + block->point_count, first = block->boundary_face;
+    const int32_t *row = averages->of_use + field_averages_faces(averages, 3);
+    memset(change, 0, sizeof(block_rows));
+    for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
+        int64_t i = averages->face_cell[f] - block->first_point;
+        int k = averages->face_vertex[f];
+        const int *edge = cell_face_edges[k];
+        double grad_N[12];
+        smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
+        for (int a = 0; a < 3; a++) {
+            double of_edges =
+                edges[3 * edge[0] + a][i] + edges[3 * edge[1] + a][i] + edges[3 * edge[2] + a][i];
+            double difference = of_edges - 3.0 * averages->value[row[f] + a];
+            for (int b = 0; b < 3; b++) {
+                change[3 * a + b][i] += difference * grad_N[3 * k + b];
+            }
+        }
+    }
+}
+
+/* The transpose: the forces of P on these faces, and on the edges of the cells there. */
+KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *block, const block_rows P,
+                                      block_edges at_edges)
+{
+    struct field_averages *averages = &body->cells.averages;
+    int64_t last = block->first_point + block->point_count, first = block->boundary_face;
+    double *force = averages->use_force + field_averages_faces(averages, 3) * VECTOR_STRIDE(3);
+    for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
+        int64_t i = averages->face_cell[f] - block->first_point;
+        int k = averages->face_vertex[f];
+        double grad_N[12];
+        smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
+        for (int a = 0; a < 3; a++) {
+            double along = 0.0;
+            for (int b = 0; b < 3; b++) {
+                along += P[3 * a + b][i] * grad_N[3 * k + b];
+            }
+            force[f * VECTOR_STRIDE(3) + a] = -3.0 * along;
+            for (int e = 0; e < 3; e++) {
+                at_edges[3 * cell_face_edges[k][e] + a][i] += along;
+            }
+        }
+    }
+}
+
+/* F, F_h, and J = det F_h - cof F_h : (F_h - F); the least determinant is that of F. */
+KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block, int dim)
+{
+    block_edges edges;
+    block_vertices vertices;
+    block_rows F, interpolant, change;
     double determinant[BLOCK_MOST_POINTS], J[BLOCK_MOST_POINTS];
-    const double face_factor = (double)dim / FACE_ROWS(dim);
-    read_corners(averages, 0, FACE_ROWS(dim), block, dim, mean);
-    read_corners(averages, averages->corner_count * FACE_ROWS(dim), 1, block, dim, value);
+    read_cells(body, block, dim, edges, vertices);
+    if (dim == 3) {
+        change_at_boundary(body, block, (const double(*)[BLOCK_MOST_POINTS])edges, change);
+    }
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes grad_N[9], f[9], h[9], C[9], volume;
+        lanes grad_N[12], f[9], h[9], C[9], volume;
         load_linear_gradients(body, block->first_point + i, dim, grad_N);
-        corner_gradient((const double(*)[BLOCK_MOST_POINTS])mean, i, dim, grad_N, f);
-        corner_gradient((const double(*)[BLOCK_MOST_POINTS])value, i, dim, grad_N, h);
+        for (int a = 0; a < dim; a++) {
+            cell_gradients((const double(*)[BLOCK_MOST_POINTS])edges,
+                           (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, grad_N, h + a * dim,
+                           f + a * dim);
+        }
         for (int k = 0; k < dim * dim; k++) {
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
-            f[k] = unit - face_factor * f[k];
+            f[k] += unit;
             h[k] += unit;
+            if (dim == 3) {
+                lanes more;
+                LOAD(more, change[k] + i);
+                f[k] += more;
+            }
             STORE(F[k] + i, f[k]);
             STORE(interpolant[k] + i, h[k]);
         }
@@ -155,14 +281,14 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
     }
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + p J + k |F_h - F|^2 / 2), p held: see smoothed_cells.h. */
+/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + p J), p held: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
     double weighted_pressure[BLOCK_MOST_POINTS];
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure, stiffness;
+        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure;
         struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
@@ -171,13 +297,12 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         load_moduli(body, q, &shear, &bulk);
         LOAD(pressure, weighted_pressure + i);
         shear *= weight;
-        stiffness = SMOOTHING_STIFFNESS(dim) * shear;
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
         neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
         for (int k = 0; k < dim * dim; k++) {
             D[k] = H[k] - F[k];
-            F[k] = isochoric.along_gradient * F[k] + isochoric.along_cofactor * C[k] - stiffness * D[k];
+            F[k] = isochoric.along_gradient * F[k] + isochoric.along_cofactor * C[k];
         }
         lanes_cofactor(H, dim, C);
         for (int k = 0; k < dim * dim; k++) {
@@ -186,31 +311,48 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         }
         cofactor_along(H, D, dim, C);
         for (int k = 0; k < dim * dim; k++) {
-            lanes stress = stiffness * D[k] - pressure * C[k];
+            lanes stress = -pressure * C[k];
             STORE(T[k] + i, stress);
         }
     }
 }
 
-/* Forces of the corners on each row of the face averages, -dim / FACE_ROWS(dim) P grad N_k, and on the node
- * values, T grad N_k. */
+/* The forces of the cells on their rows: of the stresses P and T, and of the variance. */
 KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
                                       const block_rows P, const block_rows T)
 {
     struct field_averages *averages = &body->cells.averages;
-    block_corners at_faces, at_nodes;
+    block_edges edges, at_edges;
+    block_vertices vertices, at_vertices;
+    read_cells(body, block, dim, edges, vertices);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes grad_N[9], stress[9];
-        load_linear_gradients(body, block->first_point + i, dim, grad_N);
-        for (int k = 0; k < dim * dim; k++) {
-            LOAD(stress[k], P[k] + i);
+        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], modulus, shear, bulk;
+        int64_t q = block->first_point + i;
+        load_linear_gradients(body, q, dim, grad_N);
+        load_moduli(body, q, &shear, &bulk);
+        LOAD(modulus, body->cells.variance_weight + q);
+        modulus *= VARIANCE_FACTOR(dim) * shear;
+        for (int a = 0; a < dim; a++) {
+            for (int b = 0; b < dim; b++) {
+                LOAD(mean[b], P[a * dim + b] + i);
+                LOAD(interpolant[b], T[a * dim + b] + i);
+            }
+            cell_forces(mean, interpolant, dim, grad_N, on_edge, on_vertex);
+            add_variance_forces((const double(*)[BLOCK_MOST_POINTS])edges,
+                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, grad_N, &modulus,
+                                on_edge, on_vertex);
+            for (int e = 0; e < CELL_EDGES(dim); e++) {
+                STORE(at_edges[e * dim + a] + i, on_edge[e]);
+            }
+            for (int k = 0; k <= dim; k++) {
+                STORE(at_vertices[k * dim + a] + i, on_vertex[k]);
+            }
         }
-        corner_forces(stress, i, dim, grad_N, -(double)dim / FACE_ROWS(dim), at_faces);
-        for (int k = 0; k < dim * dim; k++) {
-            LOAD(stress[k], T[k] + i);
-        }
-        corner_forces(stress, i, dim, grad_N, 1.0, at_nodes);
     }
-    write_corners(averages, 0, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_faces);
-    write_corners(averages, averages->corner_count, block, dim, (const double(*)[BLOCK_MOST_POINTS])at_nodes);
+    if (dim == 3) {
+        forces_at_boundary(body, block, P, at_edges);
+    }
+    write_uses(averages, 0, CELL_EDGES(dim), block, dim, (const double(*)[BLOCK_MOST_POINTS])at_edges);
+    write_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim,
+               (const double(*)[BLOCK_MOST_POINTS])at_vertices);
 }

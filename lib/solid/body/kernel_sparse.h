@@ -5,7 +5,7 @@
 #include "solid/body/kernel_vector.h"
 
 /* y_r = sum_j A_rj x_j of vectors VECTOR_STRIDE(dim) apart, in four partial sums, as one would be bound by
- * the latency of the additions; the transpose; and the sums of the forces of corners. */
+ * the latency of the additions; the transpose; and the sums of the forces of uses. */
 #define ROW_KERNELS(dim, vector)                                                                             \
     KERNEL_INLINE void apply_rows_##dim(const struct sparse *matrix, int64_t begin, int64_t end,             \
                                         const double *x, double *restrict y)                                 \
@@ -51,12 +51,12 @@
             }                                                                                                \
         }                                                                                                    \
     }                                                                                                        \
-    KERNEL_INLINE void sum_corners_##dim(struct field_averages *averages, int64_t begin, int64_t end)        \
+    KERNEL_INLINE void sum_uses_##dim(struct field_averages *averages, int64_t begin, int64_t end)           \
     {                                                                                                        \
         for (int64_t r = begin; r < end; r++) {                                                              \
             vector sum = {0.0}, force;                                                                       \
-            for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1]; i++) {                \
-                LOAD(force, averages->corner_force + (int64_t)averages->corner[i] * VECTOR_STRIDE(dim));     \
+            for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {                      \
+                LOAD(force, averages->use_force + (int64_t)averages->use[i] * VECTOR_STRIDE(dim));           \
                 sum += force;                                                                                \
             }                                                                                                \
             STORE(averages->force + r * VECTOR_STRIDE(dim), sum);                                            \

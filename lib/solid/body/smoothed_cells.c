@@ -46,78 +46,99 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
     return STATUS_OK;
 }
 
-/* Corner of a cell that is opposite a face: the one whose vertex the face has not. */
-static int opposite_corner(int dim, const int32_t *vertex, const int32_t *face)
+/* The edge of a cell between two of its vertices; -1: they are not of the cell. */
+static int edge_between(int dim, const int32_t *vertex, int32_t a, int32_t b)
 {
-    int k = 0;
-    while (k < dim && (face[0] == vertex[k] || face[1] == vertex[k] || (dim == 3 && face[2] == vertex[k]))) {
-        k++;
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int32_t first = vertex[cell_edge_ends[e][0]], second = vertex[cell_edge_ends[e][1]];
+        if ((first == a && second == b) || (first == b && second == a)) {
+            return e;
+        }
     }
-    return k;
+    return -1;
 }
 
-/* The rows of the face opposite each corner. */
-static enum status match_corners(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
-                                 const int64_t *order, int32_t *row_of_corner, struct error *error)
+/* edge_of_cell[CELL_EDGES(dim)] of each cell in the body's order. */
+static enum status match_edges(const struct smoothed_cells_input *input, int dim, int64_t cell_count,
+                               const int64_t *order, int32_t *edge_of_cell, struct error *error)
 {
-    SCRATCH int64_t *cell_place = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&cell_place, cell_count, error));
+    const struct faces *faces = input->faces;
+    SCRATCH int64_t *place = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&place, cell_count, error));
     for (int64_t q = 0; q < cell_count; q++) {
-        cell_place[order[q]] = q;
+        place[order[q]] = q;
     }
-    int rows = FACE_ROWS(dim);
-    for (int64_t i = 0; i < cell_count * (dim + 1) * rows; i++) {
-        row_of_corner[i] = -1;
+    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
+        edge_of_cell[i] = -1;
     }
-    for (int64_t i = 0; i < input->faces->count * 2; i++) {
-        int64_t face = i / 2, cell = input->faces->cell[i];
+    for (int64_t i = 0; i < faces->count * 2 * FACE_EDGES(dim); i++) {
+        int64_t f = i / (2 * FACE_EDGES(dim)), cell = faces->cell[i / FACE_EDGES(dim)];
+        int k = (int)(i % FACE_EDGES(dim));
         if (cell >= 0 && cell < cell_count) {
-            int corner =
-                opposite_corner(dim, input->cell_node + cell * (dim + 1), input->faces->node + face * dim);
-            for (int k = 0; k < rows; k++) {
-                row_of_corner[(cell_place[cell] * (dim + 1) + corner) * rows + k] =
-                    (int32_t)face_row(input->faces, face, k);
+            const int32_t *node = faces->node + f * dim;
+            int at = edge_between(dim, input->cell_node + cell * (dim + 1), node[k], node[(k + 1) % dim]);
+            if (at >= 0) {
+                edge_of_cell[place[cell] * CELL_EDGES(dim) + at] = (int32_t)face_edge(faces, f, k);
             }
         }
     }
-    for (int64_t i = 0; i < cell_count * (dim + 1); i++) {
-        if (row_of_corner[i * rows] < 0) {
+    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
+        if (edge_of_cell[i] < 0) {
             return fail(error, STATUS_INPUT,
                         "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
-                        (long long)order[i / (dim + 1)]);
+                        (long long)order[i / CELL_EDGES(dim)]);
         }
     }
     return STATUS_OK;
 }
 
-/* x[row_count * dim]: the points of the rows. STATUS_INPUT where the mean of a face's is not its centroid. */
+/* x[face_row_count(faces) * dim]: the midpoints of the edges, and the centres of boundary faces in 3D. */
 static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
-    int dim = faces->dim, rows = FACE_ROWS(dim);
-    SCRATCH double *points = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&points, face_row_point(faces, faces->row_count) * dim, error));
-    face_rows_points(faces, nodes, points);
-    for (int64_t r = 0; r < faces->row_count; r++) {
-        int64_t first = face_row_point(faces, r), count = face_row_point(faces, r + 1) - first;
-        for (int64_t i = 0; i < count * dim; i++) {
-            x[r * dim + i % dim] += points[first * dim + i] / (double)count;
-        }
+    int dim = faces->dim;
+    SCRATCH int32_t *ends = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    RETURN_IF_ERROR(face_edges_ends(faces, ends, error));
+    for (int64_t e = 0; e < faces->edge_count; e++) {
+        vector_middle(dim, nodes, 2, ends + 2 * e, x + e * dim);
     }
-    for (int64_t f = 0; f < faces->count; f++) {
-        double off = 0.0, size = 0.0, middle[3];
-        vector_middle(dim, nodes, dim, faces->node + f * dim, middle);
-        for (int a = 0; a < dim; a++) {
-            double mean = 0.0, first = nodes[(int64_t)faces->node[f * dim] * dim + a];
-            for (int k = 0; k < rows; k++) {
-                mean += x[face_row(faces, f, k) * dim + a] / rows;
-            }
-            off = fmax(off, fabs(mean - middle[a]));
-            size = fmax(size, fabs(middle[a] - first));
+    for (int64_t r = faces->edge_count; r < face_row_count(faces); r++) {
+        vector_middle(dim, nodes, dim, faces->node + (r - faces->edge_count) * dim, x + r * dim);
+    }
+    return STATUS_OK;
+}
+
+/* The boundary faces of a body in 3D by their cells in the body's order: see field_averages.h. */
+static enum status list_faces(const struct smoothed_cells_input *input, const struct body *body,
+                              struct field_averages_input *tables, int32_t **face_row, struct error *error)
+{
+    const struct faces *faces = input->faces;
+    SCRATCH int64_t *first = NULL, *place = NULL;
+    tables->face_count = body->dim == 3 ? faces->boundary_count : 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&first, body->point_count + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&place, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_cell, tables->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_vertex, tables->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(face_row, tables->face_count, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        place[body->order[q]] = q;
+    }
+    for (int64_t f = 0; f < tables->face_count; f++) {
+        first[place[faces->cell[2 * f]] + 1]++;
+    }
+    for (int64_t q = 0; q < body->point_count; q++) {
+        first[q + 1] += first[q];
+    }
+    for (int64_t f = 0; f < tables->face_count; f++) {
+        int64_t q = place[faces->cell[2 * f]], at = first[q]++;
+        const int32_t *vertex = input->cell_node + body->order[q] * 4, *node = faces->node + f * 3;
+        int32_t k = 0;
+        while (k < 3 && (vertex[k] == node[0] || vertex[k] == node[1] || vertex[k] == node[2])) {
+            k++;
         }
-        if (!(off <= 1e-6 * size)) {
-            return fail(error, STATUS_INPUT, "faces.row: row %lld: not those of this face: run ipoints again",
-                        (long long)f);
-        }
+        tables->face_cell[at] = q;
+        tables->face_vertex[at] = k;
+        (*face_row)[at] = (int32_t)(faces->edge_count + f);
     }
     return STATUS_OK;
 }
@@ -133,8 +154,8 @@ struct given_table {
     const double *phi, *x;
 };
 
-/* Check that the rows reproduce 1 and x: they are values of the shape functions at x, or averages with the
- * centroid x. */
+/* Check that the rows reproduce 1 and x: they are values of the shape functions at x, or averages over an
+ * edge or a face with the middle x. */
 static enum status check_table(const struct given_table *table, int64_t rows, int dim, const double *nodes,
                                struct error *error)
 {
@@ -171,21 +192,26 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
 static void add_rows_of_cells(const struct body *body, const bool *touched, bool *wanted)
 {
     const struct field_averages *averages = &body->cells.averages;
-    int corners = body->dim + 1, rows = FACE_ROWS(body->dim);
+    int edges = CELL_EDGES(body->dim);
+    int64_t faces = field_averages_faces(averages, body->dim);
     for (int64_t r = 0; r < averages->row_count; r++) {
-        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1] && touched[r]; i++) {
-            int64_t q = averages->corner[i] % averages->corner_count / corners;
+        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && touched[r]; i++) {
+            int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
             int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
-            for (int64_t c = first * corners * rows; c < end * corners * rows; c++) {
-                wanted[averages->of_corner[c] / VECTOR_STRIDE(body->dim)] = true;
+            for (int64_t c = first * edges; c < end * edges; c++) {
+                wanted[averages->of_use[c] / VECTOR_STRIDE(body->dim)] = true;
+            }
+            for (int64_t f = field_averages_face(averages, first); f < field_averages_face(averages, end);
+                 f++) {
+                wanted[averages->of_use[faces + f] / VECTOR_STRIDE(body->dim)] = true;
             }
         }
     }
 }
 
-/* wanted[rows of faces]: the averages that own cells need, those with own nodes in them, and all other rows
+/* wanted[edges]: the averages that own cells need, those with own nodes in them, and all other rows
  * of the cells that these belong to. */
-static enum status list_faces(const struct smoothed_cells_input *input, const struct read_rows *rows,
+static enum status list_edges(const struct smoothed_cells_input *input, const struct read_rows *rows,
                               const struct body *body, const int64_t *order, bool *wanted,
                               struct error *error)
 {
@@ -195,38 +221,39 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
     RETURN_IF_ERROR(body_share_values(body, &in_order, error));
     RETURN_IF_ERROR(read_rows_with(rows, body_share_owner, body, wanted, error));
     for (int64_t r = 0; r < averages->row_count; r++) {
-        int64_t n = r < input->faces->row_count ? -1 : body->node_order[r - input->faces->row_count];
+        int64_t n =
+            r < face_row_count(input->faces) ? -1 : body->node_order[r - face_row_count(input->faces)];
         touched[r] = n < 0 && wanted[order[r]];
         for (int64_t i = n < 0 ? 0 : input->node_ptr[n]; n >= 0 && i < input->node_ptr[n + 1]; i++) {
             touched[r] = touched[r] || body_share_owner(body, input->node_idx[i]) == rows->ranks->rank;
         }
     }
     add_rows_of_cells(body, touched, in_order);
-    for (int64_t f = 0; f < input->faces->row_count; f++) {
-        wanted[order[f]] = wanted[order[f]] || in_order[f];
+    for (int64_t e = 0; e < face_row_count(input->faces); e++) {
+        wanted[order[e]] = wanted[order[e]] || in_order[e];
     }
     return STATUS_OK;
 }
 
-/* Fetch the rows of the face table that this process needs, where none has read all of it. */
-static enum status fetch_faces(const struct smoothed_cells_input *input, struct body *body,
-                               struct average_table *faces, struct error *error)
+/* Fetch the rows of the edge table that this process needs, where none has read all of it. */
+static enum status fetch_edges(const struct smoothed_cells_input *input, struct body *body,
+                               struct average_table *edges, struct error *error)
 {
     struct sparse *fetched = &body->cells.averages.fetched;
     const struct read_rows rows = {.ranks = body->share.ranks,
-                                   .row_count = input->faces->row_count,
+                                   .row_count = face_row_count(input->faces),
                                    .column_count = body->node_count,
-                                   .ptr = input->face_ptr,
-                                   .idx = input->face_idx,
-                                   .value = input->face_phi,
-                                   .reader = input->face_reader};
+                                   .ptr = input->edge_ptr,
+                                   .idx = input->edge_idx,
+                                   .value = input->edge_phi,
+                                   .reader = input->edge_reader};
     SCRATCH bool *wanted = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, input->faces->row_count, error));
-    RETURN_IF_ERROR(list_faces(input, &rows, body, faces->order, wanted, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, face_row_count(input->faces), error));
+    RETURN_IF_ERROR(list_edges(input, &rows, body, edges->order, wanted, error));
     RETURN_IF_ERROR(read_rows_fetch(&rows, wanted, fetched, error));
-    faces->ptr = fetched->ptr;
-    faces->idx = fetched->idx;
-    faces->phi = fetched->value;
+    edges->ptr = fetched->ptr;
+    edges->idx = fetched->idx;
+    edges->phi = fetched->value;
     if (input->copied != NULL) {
         input->copied(input->context);
     }
@@ -253,8 +280,8 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     struct field_averages *averages = &body->cells.averages;
     struct row_operator *rows = &body->rows;
     SCRATCH bool *needed = NULL, *used = NULL;
-    if (input->face_reader != NULL) {
-        RETURN_IF_ERROR(fetch_faces(input, body, &tables->tables[0], error));
+    if (input->edge_reader != NULL) {
+        RETURN_IF_ERROR(fetch_edges(input, body, &tables->tables[0], error));
     }
     RETURN_IF_ERROR(body_share_values(body, &needed, error));
     RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, needed, &share->values, error));
@@ -267,51 +294,68 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     return STATUS_OK;
 }
 
-/* Build the rows of the faces and of the nodes. The corners of a face's row are those opposite the face; the
- * corners of a node's row are the vertices of cells at the node. */
+/* Build the rows of the edges and of the nodes. */
 static enum status build_averages(const struct smoothed_cells_input *input, struct body *body,
                                   struct error *error)
 {
     struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, corners = dim + 1;
     const struct faces *faces = input->faces;
+    int64_t rows = face_row_count(faces);
     SCRATCH int64_t *order = NULL;
-    SCRATCH int32_t *node_of_corner = NULL, *row_of_corner = NULL;
+    SCRATCH int32_t *vertex_of_cell = NULL, *edge_of_cell = NULL, *face_row = NULL;
     SCRATCH double *x = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&row_of_corner, body->point_count * corners * FACE_ROWS(dim), error));
-    RETURN_IF_ERROR(match_corners(input, dim, body->point_count, body->order, row_of_corner, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&x, faces->row_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&edge_of_cell, body->point_count * CELL_EDGES(dim), error));
+    RETURN_IF_ERROR(match_edges(input, dim, body->point_count, body->order, edge_of_cell, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, rows * dim, error));
     RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
-    const struct given_table rows = {
-        "face.phi",      "row",           input->face_reader, ranks_rank(body->share.ranks),
-        input->face_ptr, input->face_idx, input->face_phi,    x};
+    const struct given_table edges = {
+        "edge.phi",      "edge",          input->edge_reader, ranks_rank(body->share.ranks),
+        input->edge_ptr, input->edge_idx, input->edge_phi,    x};
     const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
                                       input->node_idx, input->node_phi, input->x};
-    enum status checked = check_table(&rows, faces->row_count, dim, input->x, error);
-    RETURN_IF_ERROR(input->face_reader != NULL ? ranks_agree(body->share.ranks, checked, error) : checked);
+    enum status checked = check_table(&edges, rows, dim, input->x, error);
+    RETURN_IF_ERROR(input->edge_reader != NULL ? ranks_agree(body->share.ranks, checked, error) : checked);
     RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&order, faces->row_count, error));
-    RETURN_IF_ERROR(renumber_morton(dim, faces->row_count, x, NULL, order, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&node_of_corner, body->point_count * corners, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&order, rows, error));
+    RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&vertex_of_cell, body->point_count * corners, error));
     for (int64_t q = 0; q < body->point_count; q++) {
-        memcpy(node_of_corner + q * corners, input->cell_node + body->order[q] * corners,
-               (size_t)corners * sizeof *node_of_corner);
+        memcpy(vertex_of_cell + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *vertex_of_cell);
     }
-    struct field_averages_input tables = {.dim = dim,
-                                          .node_count = body->node_count,
-                                          .corner_count = body->point_count * corners,
-                                          .place = body->node_place,
-                                          .lets_go = input->copied != NULL && body->share.ranks == NULL,
-                                          .tables = {{faces->row_count, order, input->face_ptr,
-                                                      input->face_idx, input->face_phi, row_of_corner},
-                                                     {body->node_count, body->node_order, input->node_ptr,
-                                                      input->node_idx, input->node_phi, node_of_corner}}};
+    struct field_averages_input tables = {
+        .dim = dim,
+        .node_count = body->node_count,
+        .cell_count = body->point_count,
+        .place = body->node_place,
+        .lets_go = input->copied != NULL && body->share.ranks == NULL,
+        .tables = {{rows, order, input->edge_ptr, input->edge_idx, input->edge_phi, edge_of_cell},
+                   {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
+                    vertex_of_cell}}};
+    enum status listed = list_faces(input, body, &tables, &face_row, error);
+    tables.face_row = face_row;
+    averages->face_cell = tables.face_cell; /* freed with the body, whatever comes */
+    averages->face_vertex = tables.face_vertex;
+    RETURN_IF_ERROR(listed);
     RETURN_IF_ERROR(field_averages_build(&tables, averages, error));
     if (body->share.ranks == NULL) {
         RETURN_IF_ERROR(copy_all(input, &tables, body, error));
     } else {
         RETURN_IF_ERROR(copy_shares(input, &tables, body, error));
-        averages->face_order = array_take(&order);
+        averages->edge_order = array_take(&order);
+    }
+    return STATUS_OK;
+}
+
+/* The volume by which the variance of the gradient counts in each cell: its own, or in a cell that others are
+ * merged with that of the group, and in those none. */
+static enum status set_variance_weights(struct body *body, struct error *error)
+{
+    double **weight = &body->cells.variance_weight;
+    RETURN_IF_ERROR(NEW_ARRAY(weight, body->point_count + BODY_POINT_PADDING, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        (*weight)[smoothed_cells_group(body, q)] += body->weight[q];
     }
     return STATUS_OK;
 }
@@ -322,14 +366,20 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     RETURN_IF_ERROR(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
+    RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
-    return build_averages(input, body, error);
+    RETURN_IF_ERROR(build_averages(input, body, error));
+    for (int64_t b = 0; b < body->block_count; b++) {
+        body->blocks[b].boundary_face = field_averages_face(&smoothed->averages, body->blocks[b].first_point);
+    }
+    return STATUS_OK;
 }
 
 void smoothed_cells_free(struct smoothed_cells *smoothed)
 {
     field_averages_free(&smoothed->averages);
-    FREE_ALL(smoothed->interpolant, smoothed->linear_gradient, smoothed->group, smoothed->group_end);
+    FREE_ALL(smoothed->interpolant, smoothed->variance_weight, smoothed->linear_gradient, smoothed->group,
+             smoothed->group_end);
     *smoothed = (struct smoothed_cells){0};
 }
 
@@ -355,17 +405,42 @@ int64_t smoothed_cells_group_end(const struct body *body, int64_t q)
     return body->cells.group != NULL ? body->cells.group_end[q] : q + 1;
 }
 
-int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i)
+int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e)
 {
-    int64_t corner = q * (body->dim + 1) + k;
-    return body->cells.averages.of_corner[corner * FACE_ROWS(body->dim) + i] / VECTOR_STRIDE(body->dim);
+    return body->cells.averages.of_use[q * CELL_EDGES(body->dim) + e] / VECTOR_STRIDE(body->dim);
+}
+
+int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED_MOST_ROWS],
+                        double gradient[SMOOTHED_MOST_ROWS * 3])
+{
+    const struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim, count = CELL_EDGES(dim);
+    double grad_N[12];
+    smoothed_cells_linear_gradients(body, q, grad_N);
+    memset(gradient, 0, (size_t)(count * dim) * sizeof *gradient);
+    for (int e = 0; e < count; e++) {
+        row[e] = smoothed_cells_edge(body, q, e);
+        add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][0] * dim, gradient + e * dim);
+        add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][1] * dim, gradient + e * dim);
+    }
+    for (int64_t f = field_averages_face(averages, q);
+         f < averages->face_count && averages->face_cell[f] == q; f++) {
+        int k = averages->face_vertex[f];
+        for (int e = 0; e < 3; e++) {
+            add_scaled(3, 1.0, grad_N + 3 * k, gradient + 3 * cell_face_edges[k][e]);
+        }
+        memset(gradient + 3 * count, 0, 3 * sizeof *gradient);
+        add_scaled(3, -3.0, grad_N + 3 * k, gradient + 3 * count);
+        row[count++] = averages->of_use[field_averages_faces(averages, 3) + f] / VECTOR_STRIDE(3);
+    }
+    return count;
 }
 
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
 {
     const struct field_averages *averages = &body->cells.averages;
-    int64_t first = averages->corner_count * FACE_ROWS(body->dim);
-    int32_t row = averages->of_corner[first + q * (body->dim + 1) + k] / VECTOR_STRIDE(body->dim);
+    int64_t use = field_averages_vertices(averages, body->dim) + q * (body->dim + 1) + k;
+    int32_t row = averages->of_use[use] / VECTOR_STRIDE(body->dim);
     return row - (int32_t)(averages->row_count - body->node_count);
 }
 

@@ -1,18 +1,23 @@
-/* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md): the gradient
- * of a cell is the mean of the field's over the cell, by the divergence theorem the sum over its faces of the
- * field's mean on the face times the outward normal, per volume.
+/* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md).
  *
- * For a simplex the normal of the face opposite vertex k, times its area, is -dim V grad N_k, N_k the
- * linear shape function of the vertex. So F = I - dim sum_k m_k (x) grad N_k, where m_k is the field's mean
- * on the face: a sparse operator replaces a table of gradients of dim values for each pair of cell and node.
- * In 2D it has a row for each face, which two cells share. In 3D, away from the boundary, m_k is the mean of
- * the values at the middles of the face's edges (approx/cells/face_rows.h): there are 1.2 edges for each
- * cell, but two faces, and rows for points are shorter than those for faces.
+ * In each cell the field is interpolated by the quadratic polynomial that has its values v_k at the vertices
+ * and, on each edge, its mean m_e (2D) or its value m_e at the midpoint (3D). The gradient of this
+ * interpolant is linear. With the linear shape functions N_k of the vertices and the offsets
+ *
+ *   s_e = 6 (m_e - (v_i + v_j) / 2) in 2D,  4 (m_e - (v_i + v_j) / 2) in 3D,  e the edge from i to j,
+ *
+ * it is F_h + R_k at vertex k, F_h = I + sum_k v_k (x) grad N_k the gradient of the linear interpolant and
+ * R_k the sum of s_e (x) grad N_j over the edges e from k to other vertices j. Its mean over the cell is
+ *
+ *   F = I + c sum_e m_e (x) (grad N_i + grad N_j),  c = 2 in 2D, 1 in 3D.
+ *
+ * By the divergence theorem this is the gradient smoothed over the cell: it depends on the means over the
+ * faces alone. In 3D the mean over a face on the boundary is that of its own row (approx/cells/face_edges.h)
+ * in place of the mean of its midpoints, so that gradients agree with integrals over the boundary.
  *
  * F is not the gradient of a continuous piecewise linear map, so that sum V det F is not the volume within
- * the boundary: under pressure the field could buckle within the cells without a change of volume. With F_h,
- * the gradient of the linear interpolant of the field at the cell's vertices, the volume ratio of a cell is
- * therefore
+ * the boundary: under pressure the field could buckle within the cells without a change of volume. The volume
+ * ratio of a cell is therefore
  *
  *   J = det F_h - cof F_h : (F_h - F).
  *
@@ -22,21 +27,29 @@
  * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
  * exact for linear fields stays so.
  *
- * Smoothing loses the energy of what varies within a cell. The stabilisation energy
+ * The mean of the gradient alone misses the energy of what varies within the cell, and resists no pattern
+ * that has the mean zero. In 3D the variance of the interpolant's gradient has the energy
  *
- *   k |F_h - F|^2 / 2,      k = mu in two dimensions, 2 mu / 3 in three,
+ *   mu / 2 times the mean over the cell of |grad - F|^2 = mu / 40 sum_k |R_k - R|^2,  R the mean of the R_k,
  *
- * restores it (stabilised nodal integration: Puso, Chen, Zywicz and Elmer 2008). k is derived: for a
- * quadratic field on a regular simplex, mu / 2 times the variance of the gradient within the cell equals this
- * energy, in 2D for each field with trace-free second derivatives, in 3D in the mean over all such fields. It
- * is of second order in the size of the cells, at any strain, and the same in all cells. What was tried:
- * pipelines/convergence/DEFAULTS.md. */
+ * which stabilises (compare Puso, Chen, Zywicz and Elmer 2008). It has no constant: at rest it is the energy
+ * of a quadratic field in cells of any shape. In 2D the energy is
+ *
+ *   mu / 2 |F_h - F|^2 = mu / 2 |R|^2,
+ *
+ * which is that of the variance for trace-free second derivatives on regular triangles: the whole variance
+ * bends thin bodies better, but is stiffer near corners where the field is singular. Both energies are of
+ * second order in the size of the cells, at any strain. What was tried: pipelines/convergence/DEFAULTS.md. */
 #pragma once
 
 #include "solid/operators/field_averages.h"
 
-/* k by mu. */
-#define SMOOTHING_STIFFNESS(dim) ((dim) == 2 ? 1.0 : 2.0 / 3.0)
+/* s_e by m_e, and c. */
+#define EDGE_OFFSET(dim) ((dim) == 2 ? 6.0 : 4.0)
+#define EDGE_GRADIENT(dim) ((dim) == 2 ? 2.0 : 1.0)
+
+/* The energy within a cell by mu / 2 times the sum over k of |R_k - R|^2, in 2D of |R|^2, per volume. */
+#define VARIANCE_FACTOR(dim) ((dim) == 2 ? 1.0 / 3.0 : 1.0 / 20.0)
 
 struct body;
 
@@ -44,25 +57,27 @@ struct body;
 struct smoothed_cells_input {
     const double *x;           /* nodes, node_count * dim, m */
     const int32_t *cell_node;  /* cells * (dim + 1) */
-    const struct faces *faces; /* all of them */
-    const int64_t *face_ptr;   /* row_count + 1: the rows of face averages of the shape functions */
-    const int32_t *face_idx;
-    const double *face_phi;
+    const struct faces *faces; /* all of them, with their edges */
+    const int64_t *edge_ptr;   /* edge_count + 1: the shape functions on edges */
+    const int32_t *edge_idx;
+    const double *edge_phi;
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const int32_t *face_reader; /* row_count: the process that has read each row of the face averages;
-                                   the row is empty in others. NULL: every process has all */
+    const int32_t *edge_reader; /* edge_count: the process that has read each row; the row is empty in others.
+                                   NULL: every process has all */
     void (*copied)(
-        void *context); /* called when face_ptr, face_idx and face_phi are no longer needed, and their memory
+        void *context); /* called when edge_ptr, edge_idx and edge_phi are no longer needed, and their memory
                            has been released (memory_give_back); or NULL. Where each of several processes has
                            all rows, they are needed until the body is freed, and it is not called */
     void *context;
 };
 
 struct smoothed_cells {
-    struct field_averages averages; /* over the faces, and values at the nodes */
+    struct field_averages averages; /* on the edges and at the vertices */
     double *interpolant;            /* F_h at the last evaluation, as body->F */
+    double *variance_weight; /* point_count, padded as body->weight: volume by which the energy within a cell
+                                counts, m3 (2D: m2); */
     double *linear_gradient; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the
@@ -73,7 +88,7 @@ struct smoothed_cells {
 };
 
 /* Lay out the cells of a body whose sizes, orders and shares are known. STATUS_INPUT when a cell lacks a
- * face, or the values are not those at the faces and nodes. */
+ * face, or the values are not those on the edges and at the nodes. */
 MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
                                             struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);
@@ -88,9 +103,14 @@ int64_t smoothed_cells_group_end(const struct body *body, int64_t q);
 /* The volume of cell q as a share of that of its group. */
 double smoothed_cells_share(const struct body *body, int64_t q);
 
-/* Row i of the FACE_ROWS(dim) of the averages' matrix whose mean is the average over the face opposite vertex
- * k of cell q. */
-int32_t smoothed_cells_row(const struct body *body, int64_t q, int k, int i);
+/* The row of edge e of cell q in the averages' matrix. */
+int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e);
+
+/* The rows that the mean gradient of cell q depends on, those of its edges first, and how: F changes by
+ * value (x) gradient[dim] of each. Returns how many. */
+enum { SMOOTHED_MOST_ROWS = 10 };
+int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED_MOST_ROWS],
+                        double gradient[SMOOTHED_MOST_ROWS * 3]);
 
 /* Vertex k of cell q, as a number in the body's order. */
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k);

@@ -55,12 +55,41 @@ void stress_points(const struct body *body, const struct block *block, block_row
     }
 }
 
-double stress_smoothing_energy(const struct body *body, int64_t point, const double F[9])
+/* |R_k - R|^2, in 2D |R|^2, summed over the vertices and components of cell q. */
+static double squares_of_offsets(const struct body *body, int64_t q)
 {
-    double H[9];
-    stress_matrix(body->dim, body->cells.interpolant + point, body->point_count, H);
+    const struct field_averages *averages = &body->cells.averages;
+    const int32_t *edge = averages->of_use + q * CELL_EDGES(body->dim);
+    const int32_t *vertex =
+        averages->of_use + field_averages_vertices(averages, body->dim) + q * (body->dim + 1);
+    int dim = body->dim;
+    double grad_N[12], sum = 0.0;
+    smoothed_cells_linear_gradients(body, q, grad_N);
+    for (int a = 0; a < dim; a++) {
+        double R[12] = {0.0}, mean[3] = {0.0, 0.0, 0.0};
+        for (int e = 0; e < CELL_EDGES(dim); e++) {
+            int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+            double middle = 0.5 * (averages->value[vertex[k] + a] + averages->value[vertex[l] + a]);
+            double offset = EDGE_OFFSET(dim) * (averages->value[edge[e] + a] - middle);
+            add_scaled(dim, offset, grad_N + l * dim, R + k * dim);
+            add_scaled(dim, offset, grad_N + k * dim, R + l * dim);
+        }
+        for (int k = 0; k <= dim; k++) {
+            add_scaled(dim, 1.0 / (dim + 1), R + k * dim, mean);
+        }
+        for (int k = 0; k <= dim; k++) {
+            sum += dim == 2 ? vector_dot(dim, mean, mean) : vector_distance2(dim, R + k * dim, mean);
+        }
+    }
+    return sum;
+}
+
+double stress_variance_energy(const struct body *body, int64_t point)
+{
     double shear = body->materials[body->material[point]].shear_modulus;
-    return 0.5 * SMOOTHING_STIFFNESS(body->dim) * shear * vector_distance2(9, H, F);
+    double weight = body->cells.variance_weight[point];
+    return weight > 0.0 ? 0.5 * weight * VARIANCE_FACTOR(body->dim) * shear * squares_of_offsets(body, point)
+                        : 0.0;
 }
 
 /* along = the derivative of cof H : D by H. */
@@ -85,14 +114,13 @@ static void cell_stress(const struct body *body, int64_t q, double P[9], double 
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     vector_subtract(9, H, F, D);
-    double stiffness = SMOOTHING_STIFFNESS(body->dim) * material->shear_modulus;
     double pressure = point_pressure(body, q, body->J[q]);
     material_isochoric_stress(material, F, P);
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {
-        P[k] += pressure * C[k] - stiffness * D[k];
-        T[k] = stiffness * D[k] - pressure * along[k];
+        P[k] += pressure * C[k];
+        T[k] = -pressure * along[k];
     }
 }
 

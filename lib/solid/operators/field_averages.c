@@ -1,5 +1,6 @@
 #include "solid/operators/field_averages.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -68,14 +69,14 @@ enum status field_averages_copy(const struct field_averages_input *input, const 
 {
     enum status status;
     struct copy copies[2] = {{0}};
-    int64_t faces = input->tables[0].row_count, rows = faces + input->tables[1].row_count;
+    int64_t edges = input->tables[0].row_count, rows = edges + input->tables[1].row_count;
     int64_t *length = NULL, entries = 0;
     *matrix = (struct sparse){0};
     TRY(NEW_ARRAY(&length, rows, error));
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         copies[k] =
-            (struct copy){input, table, wanted, first, last, k * faces, NULL, k == 0 && input->lets_go};
+            (struct copy){input, table, wanted, first, last, k * edges, NULL, k == 0 && input->lets_go};
         TRY(NEW_ARRAY(&copies[k].place, table->row_count, error));
         for (int64_t r = 0; r < table->row_count; r++) {
             copies[k].place[table->order[r]] = r;
@@ -96,12 +97,13 @@ done:
     return status;
 }
 
-/* Set of_corner: the rows that each corner uses. */
-static enum status match_corners(const struct field_averages_input *input, struct field_averages *averages,
-                                 struct error *error)
+/* Set of_use: the rows that each cell uses, edges, then vertices, then boundary faces. */
+static enum status match_uses(const struct field_averages_input *input, struct field_averages *averages,
+                              struct error *error)
 {
     int64_t *index_of = NULL; /* the body's index of each of the caller's rows */
-    int32_t *of_corner = averages->of_corner;
+    int32_t *of_use = averages->of_use, *of_face = of_use + field_averages_faces(averages, input->dim);
+    int stride = VECTOR_STRIDE(input->dim);
     for (int k = 0; k < 2; k++) {
         const struct average_table *table = &input->tables[k];
         int64_t first = k * input->tables[0].row_count;
@@ -109,9 +111,12 @@ static enum status match_corners(const struct field_averages_input *input, struc
         for (int64_t r = 0; r < table->row_count; r++) {
             index_of[table->order[r]] = first + r;
         }
-        int64_t count = input->corner_count * (k == 0 ? FACE_ROWS(input->dim) : 1);
+        int64_t count = input->cell_count * (k == 0 ? CELL_EDGES(input->dim) : input->dim + 1);
         for (int64_t i = 0; i < count; i++) {
-            *of_corner++ = (int32_t)(index_of[table->row_of_corner[i]] * VECTOR_STRIDE(input->dim));
+            *of_use++ = (int32_t)(index_of[table->row_of_use[i]] * stride);
+        }
+        for (int64_t f = 0; k == 0 && f < input->face_count; f++) {
+            of_face[f] = (int32_t)(index_of[input->face_row[f]] * stride);
         }
         free(index_of);
         index_of = NULL;
@@ -119,49 +124,57 @@ static enum status match_corners(const struct field_averages_input *input, struc
     return STATUS_OK;
 }
 
-/* The corners of each row. */
-static enum status list_corners(int dim, struct field_averages *averages, struct error *error)
+/* The uses of each row. */
+static enum status list_uses(int dim, struct field_averages *averages, struct error *error)
 {
-    int64_t rows = averages->row_count, of_faces = averages->corner_count * FACE_ROWS(dim);
-    int64_t uses = of_faces + averages->corner_count;
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner_ptr, rows + 2, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->corner, uses, error));
-    for (int64_t i = 0; i < uses; i++) {
-        averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 2]++;
+    int64_t rows = averages->row_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->use_ptr, rows + 2, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->use, averages->use_count, error));
+    for (int64_t i = 0; i < averages->use_count; i++) {
+        averages->use_ptr[averages->of_use[i] / VECTOR_STRIDE(dim) + 2]++;
     }
     for (int64_t r = 0; r < rows; r++) {
-        averages->corner_ptr[r + 2] += averages->corner_ptr[r + 1];
+        averages->use_ptr[r + 2] += averages->use_ptr[r + 1];
     }
-    for (int64_t i = 0; i < uses; i++) {
-        averages->corner[averages->corner_ptr[averages->of_corner[i] / VECTOR_STRIDE(dim) + 1]++] =
-            (int32_t)(i < of_faces ? i / FACE_ROWS(dim) : i - of_faces + averages->corner_count);
+    for (int64_t i = 0; i < averages->use_count; i++) {
+        averages->use[averages->use_ptr[averages->of_use[i] / VECTOR_STRIDE(dim) + 1]++] = (int32_t)i;
     }
     return STATUS_OK;
+}
+
+int64_t field_averages_face(const struct field_averages *averages, int64_t q)
+{
+    return first_from(averages->face_cell, 0, averages->face_count, q);
 }
 
 enum status field_averages_build(const struct field_averages_input *input, struct field_averages *averages,
                                  struct error *error)
 {
-    const struct average_table *faces = &input->tables[0], *nodes = &input->tables[1];
-    int64_t rows = faces->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
-    int64_t uses = input->corner_count * (FACE_ROWS(input->dim) + 1);
-    *averages = (struct field_averages){.corner_count = input->corner_count, .row_count = rows};
+    const struct average_table *edges = &input->tables[0], *nodes = &input->tables[1];
+    int64_t rows = edges->row_count + nodes->row_count, stride = VECTOR_STRIDE(input->dim);
+    int64_t uses = input->cell_count * (CELL_EDGES(input->dim) + input->dim + 1) + input->face_count;
+    *averages = (struct field_averages){.cell_count = input->cell_count,
+                                        .use_count = uses,
+                                        .row_count = rows,
+                                        .face_count = input->face_count,
+                                        .face_cell = input->face_cell,
+                                        .face_vertex = input->face_vertex};
     if (rows > INT32_MAX / stride || uses > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "%lld faces and nodes: too many", (long long)rows);
+        return fail(error, STATUS_INPUT, "%lld edges and nodes: too many", (long long)rows);
     }
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_corner, uses, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->corner_force, 2 * input->corner_count * stride, error));
-    RETURN_IF_ERROR(match_corners(input, averages, error));
-    return list_corners(input->dim, averages, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->use_force, uses * stride, error));
+    RETURN_IF_ERROR(match_uses(input, averages, error));
+    return list_uses(input->dim, averages, error);
 }
 
 enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
                                        struct error *error)
 {
     struct sparse *fetched = &averages->fetched;
-    struct average_table *faces = &averages->given[0];
+    struct average_table *edges = &averages->given[0];
     const int64_t *ptr = matrix->ptr;
     int64_t at = 0, begin = 0;
     SCRATCH bool *kept = NULL;
@@ -170,7 +183,7 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
     }
     RETURN_IF_ERROR(NEW_ARRAY(&kept, fetched->row_count, error));
     for (int64_t r = 0; r < fetched->row_count; r++) {
-        kept[faces->order[r]] = ptr[r] == ptr[r + 1];
+        kept[edges->order[r]] = ptr[r] == ptr[r + 1];
     }
     for (int64_t f = 0; f < fetched->row_count; f++) {
         int64_t end = fetched->ptr[f + 1], length = kept[f] ? end - begin : 0;
@@ -181,15 +194,15 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->idx, at + 1, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->value, at + 1, error));
-    faces->idx = fetched->idx;
-    faces->phi = fetched->value;
+    edges->idx = fetched->idx;
+    edges->phi = fetched->value;
     return STATUS_OK;
 }
 
 void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->fetched);
-    FREE_ALL(averages->value, averages->force, averages->of_corner, averages->corner_force,
-             averages->corner_ptr, averages->corner, averages->face_order);
+    FREE_ALL(averages->value, averages->force, averages->of_use, averages->use_force, averages->use_ptr,
+             averages->use, averages->face_cell, averages->face_vertex, averages->edge_order);
     *averages = (struct field_averages){0};
 }

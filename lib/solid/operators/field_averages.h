@@ -1,12 +1,12 @@
-/* Face averages and node values of the displacement field, for smoothed cells. Corner k of a cell uses the
- * average over the face opposite vertex k (equation (6) of lib/README.md: the mean of FACE_ROWS(dim) rows of
- * the operator) and the value at vertex k.
+/* Values of the displacement field from which smoothed cells are computed: the rows of edges and, in 3D, of
+ * boundary faces (approx/cells/face_edges.h), then the values at the vertices.
  *
- * An evaluation computes the averages (apply), evaluates the cells, sums the forces of the corners on each
- * average, and adds these to the nodes (transposed apply), equation (12) of lib/README.md. */
+ * An evaluation computes the values (apply), evaluates the cells, sums the forces of the cells on each value,
+ * and adds these to the nodes (transposed apply), equation (12) of lib/README.md. A use is that of a row by a
+ * cell. */
 #pragma once
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/sparse.h"
 
 #include <stdbool.h>
@@ -14,44 +14,73 @@
 /* Stride of displacements and forces in the force loop, in doubles: 2, or 3 padded to 4. */
 #define VECTOR_STRIDE(dim) ((dim) == 2 ? 2 : 4)
 
-/* One of the caller's tables: averages over the faces, or values at the nodes. */
+/* One of the caller's tables: on the edges, or at the nodes. */
 struct average_table {
     int64_t row_count;
     const int64_t *order; /* row_count: the rows in an order that keeps near ones near */
     const int64_t *ptr;   /* row_count + 1 */
     const int32_t *idx;
     const double *phi;
-    const int32_t *row_of_corner; /* one for each corner; in the table of faces FACE_ROWS(dim) */
+    const int32_t *row_of_use; /* of each cell: its edges, or its vertices */
 };
 
-/* The rows of B are those of the faces, followed by one for each node. The body stores B (body.h). With
- * several processes, the rows that others compute are empty. */
+/* The rows of B, those of edges and boundary faces, then one for each node, are the body's (body.h). With
+ * several processes those computed by others are empty. */
 struct field_averages {
     int64_t row_count;
-    double *value;        /* of each row at the last evaluation, m, with stride VECTOR_STRIDE(dim) */
-    double *force;        /* on each row, with that stride, N (2D: N/m) */
-    int64_t corner_count; /* cells * (dim + 1); once for faces, once for nodes */
-    int32_t *of_corner;   /* offsets in value[] of the rows that each corner uses: FACE_ROWS(dim)
-                             for each corner of faces, then one for each of nodes */
-    double *corner_force; /* 2 corner_count, with that stride: force of each corner on each of its rows */
-    int64_t *corner_ptr;  /* row_count + 1: the corners that use each row, */
-    int32_t *corner;      /* as many as of_corner has, ascending in each row */
-    /* With several processes: */
-    struct average_table given[2]; /* the caller's tables: faces, nodes */
-    int64_t *face_order;           /* order of the rows of faces */
-    struct sparse fetched;         /* if no process has read all rows of faces: those that this one needs */
+    double *value; /* of each row at the last evaluation, m, with stride VECTOR_STRIDE(dim) */
+    double *force; /* on each row, with that stride, N (2D: N/m) */
+    int64_t cell_count;
+    int64_t use_count; /* the CELL_EDGES(dim) edges of each cell, then the dim + 1 vertices of each cell, then
+                          boundary faces */
+    int32_t *of_use;   /* use_count: offsets in value[] of the rows; */
+    double *use_force; /* with that stride: the force of each use on its row */
+    int64_t *use_ptr;  /* row_count + 1: the uses of each row, */
+    int32_t *use;      /* use_count, ascending in each row */
+    int64_t face_count;            /* 3D: boundary faces, by their cells: */
+    int64_t *face_cell;            /* the cell of each, ascending, */
+    int32_t *face_vertex;          /* and which of its vertices is opposite */
+    struct average_table given[2]; /* with several processes: the caller's tables, edges and nodes, */
+    int64_t *edge_order;           /* and the order of their rows; */
+    struct sparse fetched;         /* where none has read all rows of edges: those that this process needs */
 };
+
+/* The first use of the vertices. */
+static inline int64_t field_averages_vertices(const struct field_averages *averages, int dim)
+{
+    return averages->cell_count * CELL_EDGES(dim);
+}
+
+/* The first use of the boundary faces. */
+static inline int64_t field_averages_faces(const struct field_averages *averages, int dim)
+{
+    return averages->cell_count * (CELL_EDGES(dim) + dim + 1);
+}
+
+/* The cell of a use. */
+static inline int64_t field_averages_cell(const struct field_averages *averages, int dim, int64_t use)
+{
+    int64_t vertices = field_averages_vertices(averages, dim), faces = field_averages_faces(averages, dim);
+    return use < vertices ? use / CELL_EDGES(dim)
+           : use < faces  ? (use - vertices) / (dim + 1)
+                          : averages->face_cell[use - faces];
+}
+
+/* The first boundary face of cell q, or of a cell after it. */
+int64_t field_averages_face(const struct field_averages *averages, int64_t q);
 
 struct field_averages_input {
     int dim;
-    int64_t node_count, corner_count;
+    int64_t node_count, cell_count, face_count;
     const int32_t *place;           /* node_count: the body's index of each of the caller's nodes */
-    struct average_table tables[2]; /* faces, nodes */
-    bool lets_go; /* release the memory of idx and phi of the faces once they are copied (memory_give_back) */
+    struct average_table tables[2]; /* edges, and boundary faces; nodes */
+    int64_t *face_cell;             /* as above; the averages take these two, */
+    int32_t *face_vertex;
+    const int32_t *face_row; /* and the row of each among those of the edges */
+    bool lets_go; /* release the memory of idx and phi of the edges once they are copied (memory_give_back) */
 };
 
-/* List the rows that each corner uses, and the corners that use each row. STATUS_INPUT for more rows than
- * 32-bit offsets can address. */
+/* Set which rows each cell uses, and which cells use each row. */
 MUST_CHECK enum status field_averages_build(const struct field_averages_input *input,
                                             struct field_averages *averages, struct error *error);
 

@@ -237,8 +237,8 @@ static void make_row(const struct body *body, int32_t node, struct block_row *ro
     struct domain domain = {0};
     row->count = 0;
     row->volume = 0.0;
-    for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1]; i++) {
-        int64_t q = averages->corner[i] % averages->corner_count / (body->dim + 1);
+    for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
+        int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
         int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
         bool seen = false;
         for (int64_t other = first; other < q; other++) {
@@ -334,8 +334,8 @@ static enum status make_rows(struct assembly *s, int64_t count, struct block_row
     int dim = body->dim;
     for (int64_t r = averages->row_count - body->node_count; r < averages->row_count; r++) {
         int64_t neighbours = 0;
-        for (int64_t i = averages->corner_ptr[r]; i < averages->corner_ptr[r + 1]; i++) {
-            int64_t q = averages->corner[i] % averages->corner_count / (dim + 1);
+        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
+            int64_t q = field_averages_cell(averages, dim, averages->use[i]);
             neighbours += (smoothed_cells_group_end(body, q) - smoothed_cells_group(body, q)) * (dim + 1);
         }
         s->most = neighbours > s->most ? neighbours : s->most;

@@ -2,11 +2,13 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/body/merged_cells.h"
 #include "solid/system/system.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The number of points of a contact with a rigid surface. Contacts between facets of the body do not count:
  * it is not known where they will touch, and the time step takes account of their stiffness. */
@@ -61,9 +63,9 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
         *place = NULL;
         return (struct average){length, matrix->idx + matrix->ptr[f], matrix->value + matrix->ptr[f]};
     }
-    int64_t faces = averages->given[0].row_count;
-    const struct average_table *table = &averages->given[f < faces ? 0 : 1];
-    int64_t row = table->order[f < faces ? f : f - faces], at = table->ptr[row];
+    int64_t edges = averages->given[0].row_count;
+    const struct average_table *table = &averages->given[f < edges ? 0 : 1];
+    int64_t row = table->order[f < edges ? f : f - edges], at = table->ptr[row];
     return (struct average){table->ptr[row + 1] - at, table->idx + at, table->phi + at};
 }
 
@@ -104,7 +106,7 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
     *stiffness = (struct scalar_stiffness){.system = system, .bond_count = count_bonds(system)};
     stiffness->field_count = body->cells.averages.row_count;
     if (stiffness->field_count + stiffness->bond_count > INT32_MAX) {
-        return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 faces, nodes and conditions");
+        return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 edges, nodes and conditions");
     }
     RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
@@ -161,13 +163,6 @@ static double wave_modulus(const struct body *body, int64_t q)
     return body->weight[q] * (bulk + 4.0 / 3.0 * shear);
 }
 
-/* Volume of a cell times the modulus of the stabilisation. */
-static double stabilisation_modulus(const struct body *body, int64_t q)
-{
-    return body->weight[q] * SMOOTHING_STIFFNESS(body->dim) *
-           body->materials[body->material[q]].shear_modulus;
-}
-
 static void put(const double amount, int64_t f, int64_t i, struct scalar_row *row, int64_t *touched)
 {
     if (row->field_seen[f] != i + 1) {
@@ -178,52 +173,73 @@ static void put(const double amount, int64_t f, int64_t i, struct scalar_row *ro
     row->on_field[f] += amount;
 }
 
-/* Add the forces of a group of cells, the first of which is q, on the fields at their corners. */
-static void add_group(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
-                      int64_t *touched)
+/* The forces of the mean gradient of a group of cells, the first of which is q. */
+static void add_mean(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
+                     int64_t *touched)
 {
     const struct body *body = &stiffness->system->body;
-    int dim = body->dim;
-    int rows = FACE_ROWS(dim);
-    int64_t nodes = stiffness->field_count - body->node_count, end = smoothed_cells_group_end(body, q);
-    double smooth[3] = {0.0, 0.0, 0.0}, off[3] = {0.0, 0.0, 0.0}, k_smooth = 0.0, k_off = 0.0;
-    double gradients[MERGED_MOST_CELLS * 12];
+    int dim = body->dim, count[MERGED_MOST_CELLS];
+    int64_t end = smoothed_cells_group_end(body, q);
+    double mean[3] = {0.0, 0.0, 0.0}, modulus = 0.0, gradient[MERGED_MOST_CELLS][SMOOTHED_MOST_ROWS * 3];
+    int32_t field[MERGED_MOST_CELLS][SMOOTHED_MOST_ROWS];
     for (int64_t c = q; c < end; c++) {
-        double *grad_N = gradients + (c - q) * 12, share = smoothed_cells_share(body, c);
-        k_smooth += wave_modulus(body, c);
-        k_off += stabilisation_modulus(body, c);
-        smoothed_cells_linear_gradients(body, c, grad_N);
-        for (int k = 0; k < (dim + 1) * dim; k++) {
-            grad_N[k] *= share;
-        }
-        for (int k = 0; k <= dim; k++) {
-            double mean = 0.0, value = row->at_field[nodes + smoothed_cells_node(body, c, k)];
-            for (int r = 0; r < rows; r++) {
-                mean += row->at_field[smoothed_cells_row(body, c, k, r)] / rows;
-            }
-            for (int a = 0; a < dim; a++) {
-                smooth[a] -= dim * mean * grad_N[k * dim + a];
-                off[a] += (value + dim * mean) * grad_N[k * dim + a];
-            }
+        double share = smoothed_cells_share(body, c);
+        modulus += wave_modulus(body, c);
+        count[c - q] = smoothed_cells_rows(body, c, field[c - q], gradient[c - q]);
+        for (int r = 0; r < count[c - q]; r++) {
+            add_scaled(dim, share * row->at_field[field[c - q][r]], gradient[c - q] + r * dim, mean);
         }
     }
     for (int64_t c = q; c < end; c++) {
-        const double *grad_N = gradients + (c - q) * 12; /* times the share */
-        for (int k = 0; k <= dim; k++) {
-            double on_mean = 0.0, on_value = 0.0;
-            for (int a = 0; a < dim; a++) {
-                on_mean -= dim * (k_smooth * smooth[a] - k_off * off[a]) * grad_N[k * dim + a];
-                on_value += k_off * off[a] * grad_N[k * dim + a];
-            }
-            for (int r = 0; r < rows; r++) {
-                put(on_mean / rows, smoothed_cells_row(body, c, k, r), i, row, touched);
-            }
-            put(on_value, nodes + smoothed_cells_node(body, c, k), i, row, touched);
+        double share = smoothed_cells_share(body, c);
+        for (int r = 0; r < count[c - q]; r++) {
+            put(share * modulus * vector_dot(dim, mean, gradient[c - q] + r * dim), field[c - q][r], i, row,
+                touched);
         }
     }
 }
 
-/* Add a force on a node, in the body's order, which is listed in row->node. */
+/* The forces of the variance of the gradient in cell q. */
+static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, int64_t i,
+                         struct scalar_row *row, int64_t *touched)
+{
+    const struct body *body = &stiffness->system->body;
+    int dim = body->dim;
+    int64_t nodes = stiffness->field_count - body->node_count;
+    double modulus = VARIANCE_FACTOR(dim) * body->cells.variance_weight[q] *
+                     body->materials[body->material[q]].shear_modulus;
+    double grad_N[12], R[12] = {0.0}, mean[3] = {0.0, 0.0, 0.0};
+    smoothed_cells_linear_gradients(body, q, grad_N);
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        double middle = 0.5 * (row->at_field[nodes + smoothed_cells_node(body, q, k)] +
+                               row->at_field[nodes + smoothed_cells_node(body, q, l)]);
+        double offset = EDGE_OFFSET(dim) * (row->at_field[smoothed_cells_edge(body, q, e)] - middle);
+        add_scaled(dim, offset, grad_N + l * dim, R + k * dim);
+        add_scaled(dim, offset, grad_N + k * dim, R + l * dim);
+    }
+    for (int k = 0; k <= dim; k++) {
+        add_scaled(dim, 1.0 / (dim + 1), R + k * dim, mean);
+    }
+    for (int k = 0; k <= dim; k++) {
+        if (dim == 2) {
+            memcpy(R + k * dim, mean, sizeof(double) * 2);
+        } else {
+            vector_subtract(dim, R + k * dim, mean, R + k * dim);
+        }
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
+        double force =
+            EDGE_OFFSET(dim) * modulus *
+            (vector_dot(dim, R + k * dim, grad_N + l * dim) + vector_dot(dim, R + l * dim, grad_N + k * dim));
+        put(force, smoothed_cells_edge(body, q, e), i, row, touched);
+        put(-0.5 * force, nodes + smoothed_cells_node(body, q, k), i, row, touched);
+        put(-0.5 * force, nodes + smoothed_cells_node(body, q, l), i, row, touched);
+    }
+}
+
+/* Force on a node of the body's order, listed in row->node. */
 static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
 {
     struct scalar_sum *at = &row->sum[node];
@@ -263,18 +279,18 @@ static void spread(const struct scalar_stiffness *stiffness, int64_t touched, in
     }
 }
 
-/* Add the cells whose corners use field f. */
+/* Add the cells that use field f. */
 static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
                       int64_t *touched)
 {
     const struct body *body = &stiffness->system->body;
     const struct field_averages *averages = &body->cells.averages;
-    for (int64_t c = averages->corner_ptr[f]; c < averages->corner_ptr[f + 1]; c++) {
-        int64_t q =
-            smoothed_cells_group(body, averages->corner[c] % averages->corner_count / (body->dim + 1));
+    for (int64_t u = averages->use_ptr[f]; u < averages->use_ptr[f + 1]; u++) {
+        int64_t q = smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
         if (row->cell_seen[q] != i + 1) {
             row->cell_seen[q] = (int32_t)(i + 1);
-            add_group(stiffness, q, i, row, touched);
+            add_mean(stiffness, q, i, row, touched);
+            add_variance(stiffness, q, i, row, touched);
         }
     }
 }

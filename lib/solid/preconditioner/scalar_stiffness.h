@@ -7,8 +7,8 @@
 
 struct solid_system;
 
-/* Fields are the rows of the face averages, followed by the values at the nodes. Bonds are the averages on
- * which penalties act. */
+/* Fields: the rows of the edges, then the values at the nodes. Bonds: the averages that
+ * penalties act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;

@@ -30,13 +30,13 @@ static enum status check_moments(const struct model *model, struct error *error)
 
 static void drop_copied(void *stream)
 {
-    static const char *const names[] = {"face.ptr", "face.idx", "face.phi"};
+    static const char *const names[] = {"edge.ptr", "edge.idx", "edge.phi"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         stream_remove(stream, names[i]);
     }
 }
 
-enum status model_build(struct stream *stream, const int32_t *face_reader, const struct scene *scene,
+enum status model_build(struct stream *stream, const int32_t *edge_reader, const struct scene *scene,
                         struct model *model, struct error *error)
 {
     struct assembly *input = &model->assembly;
@@ -52,7 +52,7 @@ enum status model_build(struct stream *stream, const int32_t *face_reader, const
     RETURN_IF_ERROR(check_moments(model, error));
     RETURN_IF_ERROR(model_conditions(model, error));
     input->ranks = process_ranks();
-    input->face_reader = face_reader;
+    input->edge_reader = edge_reader;
     input->copied = drop_copied;
     input->context = stream;
     RETURN_IF_ERROR(assembly_build(input, &model->system, &model->note, error));

@@ -20,10 +20,10 @@ struct model {
                           solved */
 };
 
-/* Build the system. The stream and the scene must outlive the model, which must not be moved. STATUS_INPUT
- * for regions without a material. Tables that the body copies are removed from the stream. face_reader as in
- * struct parts_input. */
-MUST_CHECK enum status model_build(struct stream *stream, const int32_t *face_reader,
+/* Build the whole system; the stream and the scene must outlive the model, which stays where it is. Regions
+ * without a material are an error that names them. Tables that the body copies leave the stream. edge_reader
+ * as in struct parts_input. */
+MUST_CHECK enum status model_build(struct stream *stream, const int32_t *edge_reader,
                                    const struct scene *scene, struct model *model, struct error *error);
 void model_free(struct model *model);
 

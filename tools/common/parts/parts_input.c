@@ -103,17 +103,17 @@ static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, c
     return (uint32_t)crc;
 }
 
-/* For each row of face averages, the process that has read it: that of the part that owns the row. */
+/* For each row of edges, the process that has read it: that of the part that owns the row. */
 static void list_readers(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first,
                          struct parts_input *parts)
 {
     const struct ranks *ranks = process_ranks();
-    TOOL_TRY(tool, NEW_ARRAY(&parts->face_reader, rejoin->rows[ROWS_OF_FACES], &error));
+    TOOL_TRY(tool, NEW_ARRAY(&parts->edge_reader, rejoin->rows[ROWS_OF_EDGES], &error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
-        for (int64_t f = 0; f < part->count[ROWS_OF_FACES]; f++) {
-            if (part->to[ROWS_OF_FACES][f] >= 0) {
-                parts->face_reader[part->to[ROWS_OF_FACES][f]] = ranks_owner(ranks, first, part->read_as);
+        for (int64_t f = 0; f < part->count[ROWS_OF_EDGES]; f++) {
+            if (part->to[ROWS_OF_EDGES][f] >= 0) {
+                parts->edge_reader[part->to[ROWS_OF_EDGES][f]] = ranks_owner(ranks, first, part->read_as);
             }
         }
     }
@@ -159,7 +159,7 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     rejoin_streams(&rejoin);
     TOOL_TRY(tool, ranks_agree(ranks, rejoin_check_large(&rejoin, &error), &error));
     rejoin_sections(&rejoin, stream);
-    if (ranks != NULL && stream_find(stream, "face.ptr") != NULL) {
+    if (ranks != NULL && stream_find(stream, "edge.ptr") != NULL) {
         list_readers(tool, &rejoin, first, parts);
     }
     stream_inherit(stream, &rejoin.part[0].stream); /* how the first part was made */
@@ -170,6 +170,6 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
 
 void parts_free(struct parts_input *parts)
 {
-    free(parts->face_reader);
+    free(parts->edge_reader);
     *parts = (struct parts_input){0};
 }

@@ -6,14 +6,15 @@
 
 struct parts_input {
     bool given;           /* the input is in parts */
-    uint32_t identity;    /* checksum of all parts, for any distribution over processes */
-    int32_t *face_reader; /* of each row of face averages: the process that has read it; NULL: all have all */
+    uint32_t identity;    /* checksum of all parts, whoever reads them */
+    int32_t *edge_reader; /* of each row that faces are averaged over: the process that has read it; NULL:
+                             each has all */
 };
 
 /* Whether an operand names the files of parts: it contains %d in place of their numbers. */
 bool parts_are_named(const char *operand);
 
-/* Read the parts and join them, as unpart does; rows of face averages that other processes have read are
+/* Read the parts and join them, as unpart does; rows of edges that other processes have read are
  * empty. Collective; on failure all processes exit with one message. */
 void parts_read(const struct tool *tool, const char *operand, struct stream *stream,
                 struct parts_input *parts);

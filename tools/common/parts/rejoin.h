@@ -13,7 +13,7 @@ enum rows_of {
     ROWS_SETS, /* members of node sets */
     ROWS_POINTS,
     ROWS_FACES,
-    ROWS_OF_FACES, /* rows of face averages (face_rows.h) */
+    ROWS_OF_EDGES, /* and in 3D of boundary faces */
     ROWS_FACEPOINTS,
     ROWS_BOUNDARY, /* points on faces on the boundary */
     ROWS_KINDS
@@ -76,5 +76,5 @@ int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, 
 /* Exits unless every row of the whole comes from one part; `called`: the section's name. */
 void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called);
 
-/* Map the faces, the rows of face averages, and the points of these. */
+/* Map the faces, the rows of edges, and the points of faces. */
 void rejoin_map_faces(struct rejoin *rejoin);

@@ -2,7 +2,7 @@
 
 #include "stages/stages.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "base/lists.h"
 
 #include <stdlib.h>
@@ -28,64 +28,56 @@ static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *
               part->file, (long long)local);
 }
 
-/* A shared row, with its points, belongs to the part that owns the first of its faces. */
-static void map_face_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
+/* An edge, with its points, belongs to the part that owns the first of its faces. to[]: rows of edges, and in
+ * 3D of boundary faces. */
+static void map_edges(const struct rejoin *rejoin, const struct rejoin_part *part, const int32_t *first_face,
+                      int32_t *to)
 {
-    int rows = FACE_ROWS(rejoin->dim), per_face = OWN_POINTS(rejoin->dim);
-    const struct faces *whole_faces = &rejoin->faces;
+    const struct faces *faces = &part->faces;
+    int edges = FACE_EDGES(rejoin->dim);
     const int32_t *face = part->to[ROWS_FACES];
-    int64_t row_count = part->faces.row_count, point_count = face_row_point(&part->faces, row_count);
-    int32_t *to = rejoin_new_rows(rejoin, part, ROWS_OF_FACES, row_count);
-    int32_t *points = rejoin_new_rows(rejoin, part, ROWS_FACEPOINTS, point_count);
-    int32_t *boundary = rejoin_new_rows(rejoin, part, ROWS_BOUNDARY, part->faces.boundary_count * per_face);
-    for (int64_t r = 0; r < row_count; r++) {
+    for (int64_t r = 0; r < face_row_count(faces); r++) {
         to[r] = -1;
     }
-    for (int64_t i = 0; i < part->faces.count * rows; i++) {
-        int64_t whole = face[i / rows];
-        int32_t row = whole < 0 ? -1 : (int32_t)face_row(&rejoin->faces, whole, (int)(i % rows));
-        if (row >= 0 && face_has_own_row(whole_faces, whole) != face_has_own_row(&part->faces, i / rows)) {
-            tool_fail(rejoin->tool, STATUS_INPUT,
-                      "%s: faces.row: row %lld: at the edge of the halo: cut again with a wider one "
-                      "(part -w, now %g)",
-                      part->file, (long long)(i / rows), rejoin->widen);
-        }
-        if (row >= 0 && first_face[row] == whole) {
-            to[face_row(&part->faces, i / rows, (int)(i % rows))] = row;
+    for (int64_t i = 0; i < faces->count * edges && faces->edge_count > 0; i++) {
+        int64_t whole = face[i / edges];
+        int64_t edge = whole < 0 ? -1 : face_edge(&rejoin->faces, whole, (int)(i % edges));
+        if (edge >= 0 && first_face[edge] == whole) {
+            to[face_edge(faces, i / edges, (int)(i % edges))] = (int32_t)edge;
         }
     }
-    for (int64_t r = 0; r < row_count; r++) {
-        int64_t first = face_row_point(&part->faces, r);
-        for (int64_t p = first; p < face_row_point(&part->faces, r + 1); p++) {
-            points[p] = to[r] < 0 ? -1 : (int32_t)(face_row_point(whole_faces, to[r]) + p - first);
-        }
-    }
-    for (int64_t i = 0; i < part->faces.boundary_count * per_face; i++) {
-        boundary[i] = face[i / per_face] < 0 ? -1 : (int32_t)(face[i / per_face] * per_face + i % per_face);
+    for (int64_t r = faces->edge_count; r < face_row_count(faces); r++) {
+        int32_t whole = face[r - faces->edge_count];
+        to[r] = whole < 0 ? -1 : (int32_t)(rejoin->faces.edge_count + whole);
     }
 }
 
-/* The side of each cell of the whole, to be freed; NULL: supports stop at no interface. */
-static int32_t *whole_sides(const struct rejoin *rejoin)
+/* The rows of edges, and the points of faces, of a part. */
+static void map_rows(struct rejoin *rejoin, struct rejoin_part *part, const int32_t *first_face)
 {
-    int32_t *side = NULL;
-    for (int64_t k = 0; k < rejoin->part_count; k++) {
-        const struct rejoin_part *part = &rejoin->part[k];
-        const int32_t *of_part;
-        TOOL_TRY(rejoin->tool, stage_sides(&part->stream, "support", &of_part, &error));
-        if (of_part != NULL && side == NULL) {
-            TOOL_TRY(rejoin->tool, NEW_ARRAY(&side, rejoin->rows[ROWS_CELLS], &error));
-        }
-        for (int64_t c = 0; of_part != NULL && c < part->cells.count; c++) {
-            side[part->cell[c]] = of_part[c];
+    const struct faces *faces = &part->faces;
+    int per_face = FACE_POINTS(rejoin->dim);
+    const int32_t *face = part->to[ROWS_FACES];
+    int32_t *to = rejoin_new_rows(rejoin, part, ROWS_OF_EDGES, face_row_count(faces));
+    int32_t *points = rejoin_new_rows(rejoin, part, ROWS_FACEPOINTS, face_point_count(faces));
+    int32_t *boundary = rejoin_new_rows(rejoin, part, ROWS_BOUNDARY, face_boundary_points(faces));
+    map_edges(rejoin, part, first_face, to);
+    for (int64_t i = 0; i < face_boundary_points(faces); i++) {
+        boundary[i] = face[i / per_face] < 0 ? -1 : (int32_t)(face[i / per_face] * per_face + i % per_face);
+        points[i] = boundary[i];
+    }
+    for (int64_t e = 0; e < faces->edge_count; e++) {
+        int count;
+        int64_t first = face_row_points(faces, e, &count);
+        int64_t whole = to[e] < 0 ? -1 : face_row_points(&rejoin->faces, to[e], &count);
+        for (int g = 0; g < count; g++) {
+            points[first + g] = whole < 0 ? -1 : (int32_t)(whole + g);
         }
     }
-    return side;
 }
 
 void rejoin_map_faces(struct rejoin *rejoin)
 {
-    int32_t *side = whole_sides(rejoin);
     const struct tool *tool = rejoin->tool;
     const struct section *points = stream_find(&rejoin->part[0].stream, "points.x");
     bool boundary_only = points != NULL && !points_are_smoothed(points);
@@ -102,17 +94,12 @@ void rejoin_map_faces(struct rejoin *rejoin)
                                part->file));
     }
     TOOL_TRY(tool, faces_build(&whole, boundary_only, &rejoin->faces, &error));
-    if (side != NULL) {
-        free(rejoin->faces.row);
-        TOOL_TRY(tool, face_rows_number(whole.node_count, side, &rejoin->faces, &error));
-        free(side);
-    }
     const struct faces *faces = &rejoin->faces;
     TOOL_TRY(tool, lists_by_row(faces->count, 2, faces->cell, whole.count, &begin, &face, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&first_face, faces->row_count, &error));
-    int rows = FACE_ROWS(rejoin->dim);
-    for (int64_t i = faces->count * rows - 1; i >= 0; i--) {
-        first_face[face_row(faces, i / rows, (int)(i % rows))] = (int32_t)(i / rows);
+    TOOL_TRY(tool, NEW_ARRAY(&first_face, faces->edge_count, &error));
+    int edges = FACE_EDGES(rejoin->dim);
+    for (int64_t i = faces->count * edges - 1; i >= 0 && faces->edge_count > 0; i--) {
+        first_face[face_edge(faces, i / edges, (int)(i % edges))] = (int32_t)(i / edges);
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
@@ -121,13 +108,13 @@ void rejoin_map_faces(struct rejoin *rejoin)
             bool own = part->to[ROWS_CELLS][part->faces.cell[2 * f]] >= 0;
             to[f] = own ? (int32_t)find_face(rejoin, part, begin, face, f) : -1;
         }
-        map_face_rows(rejoin, part, first_face);
+        map_rows(rejoin, part, first_face);
     }
     FREE_ALL(begin, face, first_face);
     rejoin->rows[ROWS_FACES] = faces->count;
-    rejoin->rows[ROWS_OF_FACES] = faces->row_count;
-    rejoin->rows[ROWS_FACEPOINTS] = face_row_point(faces, faces->row_count);
-    rejoin->rows[ROWS_BOUNDARY] = faces->boundary_count * OWN_POINTS(rejoin->dim);
+    rejoin->rows[ROWS_OF_EDGES] = face_row_count(faces);
+    rejoin->rows[ROWS_FACEPOINTS] = face_point_count(faces);
+    rejoin->rows[ROWS_BOUNDARY] = face_boundary_points(faces);
     rejoin_check_rows(rejoin, ROWS_FACES, "faces");
-    rejoin_check_rows(rejoin, ROWS_OF_FACES, "faces.row");
+    rejoin_check_rows(rejoin, ROWS_OF_EDGES, "faces.edge");
 }

@@ -2,7 +2,7 @@
  * (io/stream/sections.h). */
 #include "parts/rejoin.h"
 
-#include "approx/cells/face_rows.h"
+#include "approx/cells/face_edges.h"
 #include "io/stream/sections.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static const char *const row_names[ROWS_KINDS] = {
     [ROWS_NODES] = "nodes.x",           [ROWS_CELLS] = "cells",
     [ROWS_FACETS] = "facets",           [ROWS_SETS] = "sets.idx",
     [ROWS_POINTS] = "points.x",         [ROWS_FACES] = "faces",
-    [ROWS_OF_FACES] = "rows of faces",  [ROWS_FACEPOINTS] = "facepoints.x",
+    [ROWS_OF_EDGES] = "edges",          [ROWS_FACEPOINTS] = "facepoints.x",
     [ROWS_BOUNDARY] = "boundary points"};
 
 static enum rows_of rows_called(const char *name)
@@ -46,7 +46,7 @@ static void lists_free(struct joined_lists *lists)
 
 bool rejoin_is_large(const char *name)
 {
-    return strncmp(name, "face.", 5) == 0;
+    return strncmp(name, "edge.", 5) == 0;
 }
 
 /* ---- rows ---- */
@@ -204,17 +204,17 @@ static void view_lists(const struct rejoin *rejoin, const char *name, struct joi
 
 enum status rejoin_check_large(const struct rejoin *rejoin, struct error *error)
 {
-    FREED_BY(lists_free) struct joined_lists lists = {.prefix = "face", .rows = ROWS_OF_FACES};
+    FREED_BY(lists_free) struct joined_lists lists = {.prefix = "edge", .rows = ROWS_OF_EDGES};
     RETURN_IF_ERROR(NEW_ARRAY(&lists.of, rejoin->part_count, error));
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
-        const struct section *values = stream_find(&part->stream, "face.phi");
-        if (stream_find(&part->stream, "face.ptr") == NULL || values == NULL) {
-            continue; /* each process checks its own parts */
+        const struct section *values = stream_find(&part->stream, "edge.phi");
+        if (stream_find(&part->stream, "edge.ptr") == NULL || values == NULL) {
+            continue; /* every process finds that out for itself */
         }
         RETURN_IF_ERROR(view_part(rejoin, k, &lists, error));
         if (!part->elsewhere && values->rows != lists.of[k].ptr[lists.of[k].count]) {
-            return fail(error, STATUS_INPUT, "%s: face.phi: does not fit face.idx", part->file);
+            return fail(error, STATUS_INPUT, "%s: edge.phi: does not fit edge.idx", part->file);
         }
     }
     return STATUS_OK;
@@ -305,7 +305,7 @@ static bool put_faces(const struct rejoin *rejoin, struct stream *stream, const 
         const int32_t *values;
     } made[] = {{"faces", rejoin->dim, faces->node},
                 {"faces.cell", 2, faces->cell},
-                {"faces.row", FACE_ROWS(rejoin->dim), faces->row}};
+                {"faces.edge", FACE_EDGES(rejoin->dim), faces->edge}};
     for (int i = 0; i < 3; i++) {
         if (strcmp(made[i].name, section->name) == 0 && made[i].values != NULL) {
             TOOL_TRY(rejoin->tool, stream_put_copy(stream, section->name, TYPE_I4, faces->count, made[i].cols,
