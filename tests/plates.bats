@@ -130,7 +130,7 @@ crushed() {
     [[ $stderr == *", cells are inverted between their nodes, by less than a tenth of their size, or flat ones across which the field bends: "* ]]
     # A lattice of cells that are eight times as wide as high, crushed.
     cloud -d 2 -k regular -n 6,40 --box 0,0.1,0,0.1 | shapefn > flat.mts 2> note
-    crushed | sed 's/-0.07/-0.06/' > flat.scene
+    crushed | sed 's/-0.07/-0.05/' > flat.scene
     refused 1 'flat.scene: the body folds from 0.' mtled flat.scene flat.mts
     [[ $stderr == *" of the load on: cell "*" is turned over: "* ]]
 }
@@ -201,13 +201,13 @@ buckled() {
 }
 
 @test "a body that buckles is told, with its place, be it before or after; one that is stable is not" {
-    # Homogeneous states are exact. The free edges become unstable between stretches of .5 and .495, with 6 nodes a side of .53 and .51.
+    # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5, with 6 nodes a side of .53 and .51.
     buckled 5 0.495 1e-5 ''
     refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
     [[ $stderr == *" at (0.1, 0.1, "*": press less, hold it there, or allow it ([output] folds = allowed)" ]]
     buckled 5 0.495 1e-8 ''
     refused 1 'buckled.scene: the body folds at the whole load: it buckles or wrinkles' mtled buckled.scene cube.mts
-    [[ $stderr == *"most of all, by 0.00"*" m, at (0.1, 0.1, "* ]]
+    [[ $stderr == *"most of all, by 0.0"*" m, at (0.1, 0.1, "* ]]
     buckled 5 0.495 1e-8 'folds = allowed'
     run --separate-stderr mtled -o u.dat buckled.scene cube.mts
     [ "$status" -eq 0 ]
@@ -219,19 +219,19 @@ buckled() {
     buckled 6 0.51 1e-5 ''
     refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
     for tolerance in 1e-5 1e-8; do
-        buckled 5 0.5 $tolerance ''
+        buckled 5 0.51 $tolerance ''
         mtled buckled.scene cube.mts > u.dat 2> said
         [ ! -s said ]
     done
 }
 
 @test "a slender body that buckles under a load that is held comes to a stable state: a note, no verdict" {
-    cloud -d 3 -k jittered -n 31,3,3 --jitter 0.15 --seed 7 --box 0,0.1,0,0.003,0,0.003 2> note | shapefn > rod.mts 2>> note
+    cloud -d 3 -k jittered -n 31,3,3 --jitter 0.02 --seed 7 --box 0,0.1,0,0.003,0,0.003 2> note | shapefn > rod.mts 2>> note
     { block quasi-static | sed 's/dim = 2/dim = 3/'
         printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.004, 0, 0\n[output]\nreactions = yes\n'; } > rod.scene
     run --separate-stderr mtled -o u.dat rod.scene rod.mts
     [ "$status" -eq 0 ]
-    [[ $stderr == "mtled: rod.scene: at the whole load, the body has buckled, most of all, by 0.00"*" m, at (0.05, "* ]]
+    [[ $stderr == "mtled: rod.scene: at the whole load, the body has buckled, most of all, by 0.0"*" m, at (0.05, "* ]]
     # The elastica between clamped ends (to fourth order in its modulus k): what the force does not compress shortens it by
     # 2 - 2 E / K = k^2 + k^4 / 8 of its length, and it bows by k / K of that.
     mts print reactions u.dat | awk 'NR == 1 { print $1 }' > force
@@ -244,7 +244,7 @@ buckled() {
     buckled 5 0.495 1e-5 '[contact all]\nfacets = *\nagainst = *'
     sed -i '/^\[output/d' buckled.scene
     refused 1 'buckled.scene: the body folds at the whole load: it buckles or wrinkles' mtled buckled.scene cube.mts
-    buckled 5 0.5 1e-5 '[contact all]\nfacets = *\nagainst = *'
+    buckled 5 0.51 1e-5 '[contact all]\nfacets = *\nagainst = *'
     sed -i '/^\[output/d' buckled.scene
     mtled buckled.scene cube.mts > u.dat 2> said
     [ ! -s said ]

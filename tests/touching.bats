@@ -289,7 +289,7 @@ END
     printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' '[material low]' 'region = low' 'E = 3000' 'nu = 0.49' \
         '[material up]' 'region = up' 'E = 30000' 'nu = 0.45' '[displacement base]' 'facets = base' 'components = 0, 0' \
         '[displacement head]' 'facets = head' 'components = 0.02, -0.008' '[contact pair]' 'facets = sole' 'against = floor' > part.scene
-    refused 1 "goes through the boundary: let all of it touch (facets = *, against = *), press less, " mtled part.scene pair.mts
+    refused 1 ": let all of it touch (facets = *, against = *), press less, " mtled part.scene pair.mts
     sed 's/= sole/= */; s/= floor/= */' part.scene > whole.scene
     mtled whole.scene pair.mts > u.dat
 }

@@ -170,7 +170,7 @@ static int worthwhile_threads(const struct body *body)
 static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
 {
     const struct smoothed_cells_input *cells = input->smoothed;
-    int64_t of_edges = cells->edge_ptr[cells->faces->edge_count];
+    int64_t of_edges = cells->edge_ptr[face_row_count(cells->faces)];
     SCRATCH int64_t *each = NULL;
     body->pair_count = cells->node_ptr[body->node_count];
     if (cells->edge_reader != NULL) {

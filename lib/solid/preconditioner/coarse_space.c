@@ -174,11 +174,19 @@ KERNEL_INLINE void monomials(const struct coarse_space *coarse, int dim, int fir
     }
 }
 
-/* sum = what v does at the nodes from `begin` to before `end`. */
+/* Centres whose amounts are summed at a time, so that partial sums of all chunks fit on small stacks of
+ * threads. */
+enum { CENTRES_AT_A_TIME = 16 };
+typedef double some_amounts[4][3][CENTRES_AT_A_TIME];
+
+/* sum = what v does at the nodes from `begin` to before `end`, along the fields of some centres from
+ * `first_centre` on. */
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
-                           const double *v, coarse_amounts sum)
+                           int first_centre, const double *v, some_amounts sum)
 {
-    for (int first = 0; first < coarse->centre_count; first += COARSE_FOUR) {
+    int rest = coarse->centre_count - first_centre;
+    int last = first_centre + (rest < CENTRES_AT_A_TIME ? rest : CENTRES_AT_A_TIME);
+    for (int first = first_centre; first < last; first += COARSE_FOUR) {
         four_centres all[4][3] = {{{0.0}}}, value[4];
         for (int64_t n = begin; n < end; n++) {
             monomials(coarse, dim, first, n, value);
@@ -189,7 +197,7 @@ KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t b
             }
         }
         for (int i = 0; i < (dim + 1) * dim; i++) {
-            memcpy(sum[i / dim][i % dim] + first, &all[i / dim][i % dim], sizeof all[0][0]);
+            memcpy(sum[i / dim][i % dim] + first - first_centre, &all[i / dim][i % dim], sizeof all[0][0]);
         }
     }
 }
@@ -225,12 +233,12 @@ KERNEL_INLINE void add(const struct coarse_space *coarse, int dim, int64_t begin
 }
 
 ALL_SETS static void collect_nodes(const struct coarse_space *coarse, int64_t begin, int64_t end,
-                                   const double *v, coarse_amounts sum)
+                                   int first_centre, const double *v, some_amounts sum)
 {
     if (coarse->dim == 2) {
-        collect(coarse, 2, begin, end, v, sum);
+        collect(coarse, 2, begin, end, first_centre, v, sum);
     } else {
-        collect(coarse, 3, begin, end, v, sum);
+        collect(coarse, 3, begin, end, first_centre, v, sum);
     }
 }
 
@@ -244,25 +252,32 @@ ALL_SETS static void add_nodes(const struct coarse_space *coarse, int64_t begin,
     }
 }
 
-void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount)
+/* The amounts of some centres from `first` on. */
+static void restrict_to(const struct coarse_space *coarse, int first, const double *v, double *amount)
 {
     struct chunks chunks = chunks_of(coarse->node_count, NODES_FOR_THREAD);
     int dim = coarse->dim;
-    coarse_amounts partial[CHUNKS_MOST];
+    some_amounts partial[CHUNKS_MOST];
 #pragma omp parallel for schedule(static) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
-        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), v, partial[c]);
+        collect_nodes(coarse, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), first, v, partial[c]);
     }
-    for (int m = 0; m <= dim; m++) {
-        for (int a = 0; a < dim; a++) {
-            for (int64_t c = 0; c < coarse->centre_count; c++) {
-                double sum = partial[0][m][a][c];
-                for (int64_t k = 1; k < chunks.count; k++) {
-                    sum += partial[k][m][a][c];
-                }
-                amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum : sum / coarse->radius;
+    for (int i = 0; i < (dim + 1) * dim; i++) {
+        int m = i / dim, a = i % dim;
+        for (int64_t c = first; c < coarse->centre_count && c < first + CENTRES_AT_A_TIME; c++) {
+            double sum = partial[0][m][a][c - first];
+            for (int64_t k = 1; k < chunks.count; k++) {
+                sum += partial[k][m][a][c - first];
             }
+            amount[(c * (dim + 1) + m) * dim + a] = m == 0 ? sum : sum / coarse->radius;
         }
+    }
+}
+
+void coarse_space_restrict(const struct coarse_space *coarse, const double *v, double *amount)
+{
+    for (int first = 0; first < coarse->centre_count; first += CENTRES_AT_A_TIME) {
+        restrict_to(coarse, first, v, amount);
     }
 }
 

@@ -194,7 +194,7 @@ static int32_t most_moved(int dim, int64_t node_count, const double *vector)
     return node;
 }
 
-/* A Lanczos iteration at a state. With each vector goes M times it, so that M^-1 alone is applied. */
+/* A Lanczos iteration at a state. With each vector goes M times it. */
 struct lanczos {
     struct solid_system *system;
     struct preconditioner *preconditioner;
@@ -269,6 +269,8 @@ static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off
     l->force_before = l->force;
     l->force = next;
     preconditioner_apply(l->preconditioner, next, l->vector);
+    /* `next` is M times that but for reactions, which would grow from step to step */
+    preconditioner_multiply(l->preconditioner, l->vector, next);
     l->norm = off_diagonal[k] = sqrt(product(size, l->vector, next));
 }
 
