@@ -228,14 +228,6 @@ edit() {
 5 -1 0 1
 7 2147483647 0 1
 END
-0 1 1 1
-4 4 3 4
-5 $own $((own + 1)) $((own + 2))
-$first $own $((own + 2)) $((own + 1))
-$first $own -1 $((own + 1))
-$first 0 $own $((own + 1))
-$first 2147483647 $own $((own + 1))
-END
     mts text box.txt | awk '/^# facepoints.x / { sub(" " $4 " ", " " $4 - 1 " "); on = 1 } /^#/ && !/facepoints.x/ { on = 0 } on && NF && !/^#/ && !cut { cut = 1; next } { print }' > bad.txt
     hostile 2 shapefn bad.txt "facepoint"
     edit facepoint.ptr 0 1 lists.txt > bad.txt
