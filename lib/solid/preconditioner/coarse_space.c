@@ -184,9 +184,8 @@ typedef double some_amounts[4][3][CENTRES_AT_A_TIME];
 KERNEL_INLINE void collect(const struct coarse_space *coarse, int dim, int64_t begin, int64_t end,
                            int first_centre, const double *v, some_amounts sum)
 {
-    int rest = coarse->centre_count - first_centre;
-    int last = first_centre + (rest < CENTRES_AT_A_TIME ? rest : CENTRES_AT_A_TIME);
-    for (int first = first_centre; first < last; first += COARSE_FOUR) {
+    for (int first = first_centre; first < coarse->centre_count && first < first_centre + CENTRES_AT_A_TIME;
+         first += COARSE_FOUR) {
         four_centres all[4][3] = {{{0.0}}}, value[4];
         for (int64_t n = begin; n < end; n++) {
             monomials(coarse, dim, first, n, value);
