@@ -176,14 +176,13 @@ KERNEL_INLINE void change_at_boundary(const struct body *body, const struct bloc
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
         const int *edge = cell_face_edges[k];
-        double grad_N[12];
-        smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
+        const double *grad_N = averages->face_gradient + 3 * f;
         for (int a = 0; a < 3; a++) {
             double of_edges =
                 edges[3 * edge[0] + a][i] + edges[3 * edge[1] + a][i] + edges[3 * edge[2] + a][i];
             double difference = of_edges - 3.0 * averages->value[row[f] + a];
             for (int b = 0; b < 3; b++) {
-                change[3 * a + b][i] += difference * grad_N[3 * k + b];
+                change[3 * a + b][i] += difference * grad_N[b];
             }
         }
     }
@@ -199,12 +198,11 @@ KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *blo
     for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
-        double grad_N[12];
-        smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
+        const double *grad_N = averages->face_gradient + 3 * f;
         for (int a = 0; a < 3; a++) {
             double along = 0.0;
             for (int b = 0; b < 3; b++) {
-                along += P[3 * a + b][i] * grad_N[3 * k + b];
+                along += P[3 * a + b][i] * grad_N[b];
             }
             force[f * VECTOR_STRIDE(3) + a] = -3.0 * along;
             for (int e = 0; e < 3; e++) {

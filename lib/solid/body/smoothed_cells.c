@@ -348,6 +348,18 @@ static enum status build_averages(const struct smoothed_cells_input *input, stru
     return STATUS_OK;
 }
 
+static enum status set_face_gradients(struct body *body, struct error *error)
+{
+    struct field_averages *averages = &body->cells.averages;
+    double grad_N[12];
+    RETURN_IF_ERROR(NEW_ARRAY(&averages->face_gradient, averages->face_count * 3, error));
+    for (int64_t f = 0; f < averages->face_count; f++) {
+        smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
+        memcpy(averages->face_gradient + 3 * f, grad_N + 3 * averages->face_vertex[f], 3 * sizeof *grad_N);
+    }
+    return STATUS_OK;
+}
+
 /* The volume by which the variance of the gradient counts in each cell: its own, or in a cell that others are
  * merged with that of the group, and in those none. */
 static enum status set_variance_weights(struct body *body, struct error *error)
@@ -369,6 +381,7 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(build_averages(input, body, error));
+    RETURN_IF_ERROR(set_face_gradients(body, error));
     for (int64_t b = 0; b < body->block_count; b++) {
         body->blocks[b].boundary_face = field_averages_face(&smoothed->averages, body->blocks[b].first_point);
     }

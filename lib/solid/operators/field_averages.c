@@ -203,6 +203,7 @@ void field_averages_free(struct field_averages *averages)
 {
     sparse_free(&averages->fetched);
     FREE_ALL(averages->value, averages->force, averages->of_use, averages->use_force, averages->use_ptr,
-             averages->use, averages->face_cell, averages->face_vertex, averages->edge_order);
+             averages->use, averages->face_cell, averages->face_vertex, averages->face_gradient,
+             averages->edge_order);
     *averages = (struct field_averages){0};
 }
