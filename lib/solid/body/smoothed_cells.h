@@ -91,6 +91,10 @@ struct smoothed_cells {
  * face, or the values are not those on the edges and at the nodes. */
 MUST_CHECK enum status smoothed_cells_build(const struct smoothed_cells_input *input, struct body *body,
                                             struct error *error);
+
+/* The part of that in smoothed_rows.c: body->cells.averages, and its rows in body->rows. */
+MUST_CHECK enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,
+                                           struct error *error);
 void smoothed_cells_free(struct smoothed_cells *smoothed);
 
 /* gradient[(dim + 1) * dim]: gradients of the linear shape functions of cell q, in the body's order, 1/m. */
@@ -105,6 +109,11 @@ double smoothed_cells_share(const struct body *body, int64_t q);
 
 /* The row of edge e of cell q in the averages' matrix. */
 int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e);
+
+/* variation[(dim + 1) * dim]: R_k - R at each vertex, in 2D R, of one component of a field with the values
+ * edge[CELL_EDGES(dim)] and vertex[dim + 1] in a cell of these gradients grad_N, 1/m times its unit. */
+void smoothed_cells_variation(int dim, const double *grad_N, const double *edge, const double *vertex,
+                              double *variation);
 
 /* The rows that the mean gradient of cell q depends on, those of its edges first, and how: F changes by
  * value (x) gradient[dim] of each. Returns how many. */

@@ -56,29 +56,24 @@ void stress_points(const struct body *body, const struct block *block, block_row
 }
 
 /* |R_k - R|^2, in 2D |R|^2, summed over the vertices and components of cell q. */
-static double squares_of_offsets(const struct body *body, int64_t q)
+static double squares_of_variation(const struct body *body, int64_t q)
 {
     const struct field_averages *averages = &body->cells.averages;
-    const int32_t *edge = averages->of_use + q * CELL_EDGES(body->dim);
-    const int32_t *vertex =
-        averages->of_use + field_averages_vertices(averages, body->dim) + q * (body->dim + 1);
-    int dim = body->dim;
-    double grad_N[12], sum = 0.0;
+    int dim = body->dim, edges = CELL_EDGES(dim);
+    const int32_t *of_edge = averages->of_use + q * edges;
+    const int32_t *of_vertex = averages->of_use + field_averages_vertices(averages, dim) + q * (dim + 1);
+    double grad_N[12], edge[6], vertex[4], variation[12], sum = 0.0;
     smoothed_cells_linear_gradients(body, q, grad_N);
     for (int a = 0; a < dim; a++) {
-        double R[12] = {0.0}, mean[3] = {0.0, 0.0, 0.0};
-        for (int e = 0; e < CELL_EDGES(dim); e++) {
-            int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
-            double middle = 0.5 * (averages->value[vertex[k] + a] + averages->value[vertex[l] + a]);
-            double offset = EDGE_OFFSET(dim) * (averages->value[edge[e] + a] - middle);
-            add_scaled(dim, offset, grad_N + l * dim, R + k * dim);
-            add_scaled(dim, offset, grad_N + k * dim, R + l * dim);
+        for (int e = 0; e < edges; e++) {
+            edge[e] = averages->value[of_edge[e] + a];
         }
         for (int k = 0; k <= dim; k++) {
-            add_scaled(dim, 1.0 / (dim + 1), R + k * dim, mean);
+            vertex[k] = averages->value[of_vertex[k] + a];
         }
+        smoothed_cells_variation(dim, grad_N, edge, vertex, variation);
         for (int k = 0; k <= dim; k++) {
-            sum += dim == 2 ? vector_dot(dim, mean, mean) : vector_distance2(dim, R + k * dim, mean);
+            sum += vector_dot(dim, variation + k * dim, variation + k * dim);
         }
     }
     return sum;
@@ -88,8 +83,9 @@ double stress_variance_energy(const struct body *body, int64_t point)
 {
     double shear = body->materials[body->material[point]].shear_modulus;
     double weight = body->cells.variance_weight[point];
-    return weight > 0.0 ? 0.5 * weight * VARIANCE_FACTOR(body->dim) * shear * squares_of_offsets(body, point)
-                        : 0.0;
+    return weight > 0.0
+               ? 0.5 * weight * VARIANCE_FACTOR(body->dim) * shear * squares_of_variation(body, point)
+               : 0.0;
 }
 
 /* along = the derivative of cof H : D by H. */

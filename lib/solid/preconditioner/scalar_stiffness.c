@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The number of points of a contact with a rigid surface. Contacts between facets of the body do not count:
  * it is not known where they will touch, and the time step takes account of their stiffness. */
@@ -208,26 +207,15 @@ static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, in
     int64_t nodes = stiffness->field_count - body->node_count;
     double modulus = VARIANCE_FACTOR(dim) * body->cells.variance_weight[q] *
                      body->materials[body->material[q]].shear_modulus;
-    double grad_N[12], R[12] = {0.0}, mean[3] = {0.0, 0.0, 0.0};
+    double grad_N[12], edge[6], vertex[4], R[12];
     smoothed_cells_linear_gradients(body, q, grad_N);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
-        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
-        double middle = 0.5 * (row->at_field[nodes + smoothed_cells_node(body, q, k)] +
-                               row->at_field[nodes + smoothed_cells_node(body, q, l)]);
-        double offset = EDGE_OFFSET(dim) * (row->at_field[smoothed_cells_edge(body, q, e)] - middle);
-        add_scaled(dim, offset, grad_N + l * dim, R + k * dim);
-        add_scaled(dim, offset, grad_N + k * dim, R + l * dim);
+        edge[e] = row->at_field[smoothed_cells_edge(body, q, e)];
     }
     for (int k = 0; k <= dim; k++) {
-        add_scaled(dim, 1.0 / (dim + 1), R + k * dim, mean);
+        vertex[k] = row->at_field[nodes + smoothed_cells_node(body, q, k)];
     }
-    for (int k = 0; k <= dim; k++) {
-        if (dim == 2) {
-            memcpy(R + k * dim, mean, sizeof(double) * 2);
-        } else {
-            vector_subtract(dim, R + k * dim, mean, R + k * dim);
-        }
-    }
+    smoothed_cells_variation(dim, grad_N, edge, vertex, R);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
         double force =

@@ -1,0 +1,313 @@
+/* The rows from which smoothed cells are computed: which edges, vertices and boundary faces each cell uses,
+ * checks of the given tables, and the rows that this process needs. See smoothed_cells.h. */
+#include "approx/cells/renumber.h"
+#include "base/chunks.h"
+#include "base/lists.h"
+#include "base/memory.h"
+#include "base/read_rows.h"
+#include "base/vector.h"
+#include "solid/body/body.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROWS_FOR_THREAD = 4000 }; /* see chunks_of */
+
+/* The edge of a cell between two of its vertices; -1: they are not of the cell. */
+static int edge_between(int dim, const int32_t *vertex, int32_t a, int32_t b)
+{
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        int32_t first = vertex[cell_edge_ends[e][0]], second = vertex[cell_edge_ends[e][1]];
+        if ((first == a && second == b) || (first == b && second == a)) {
+            return e;
+        }
+    }
+    return -1;
+}
+
+/* edge_of_cell[CELL_EDGES(dim)] of each cell in the body's order, in which place[] is that of each cell. */
+static enum status match_edges(const struct smoothed_cells_input *input, const struct body *body,
+                               const int32_t *place, int32_t *edge_of_cell, struct error *error)
+{
+    const struct faces *faces = input->faces;
+    int dim = body->dim;
+    int64_t cell_count = body->point_count;
+    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
+        edge_of_cell[i] = -1;
+    }
+    for (int64_t i = 0; i < faces->count * 2 * FACE_EDGES(dim); i++) {
+        int64_t f = i / (2 * FACE_EDGES(dim)), cell = faces->cell[i / FACE_EDGES(dim)];
+        int k = (int)(i % FACE_EDGES(dim));
+        if (cell >= 0 && cell < cell_count) {
+            const int32_t *node = faces->node + f * dim;
+            int at = edge_between(dim, input->cell_node + cell * (dim + 1), node[k], node[(k + 1) % dim]);
+            if (at >= 0) {
+                edge_of_cell[place[cell] * CELL_EDGES(dim) + at] = (int32_t)face_edge(faces, f, k);
+            }
+        }
+    }
+    for (int64_t i = 0; i < cell_count * CELL_EDGES(dim); i++) {
+        if (edge_of_cell[i] < 0) {
+            return fail(error, STATUS_INPUT,
+                        "faces.cell: cell %lld lacks a face: run ipoints for smoothed cells",
+                        (long long)body->order[i / CELL_EDGES(dim)]);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* x[face_row_count(faces) * dim]: the midpoints of the edges, and the centres of boundary faces in 3D. */
+static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
+{
+    int dim = faces->dim;
+    SCRATCH int32_t *ends = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    RETURN_IF_ERROR(face_edges_ends(faces, ends, error));
+    for (int64_t e = 0; e < faces->edge_count; e++) {
+        vector_middle(dim, nodes, 2, ends + 2 * e, x + e * dim);
+    }
+    for (int64_t r = faces->edge_count; r < face_row_count(faces); r++) {
+        vector_middle(dim, nodes, dim, faces->node + (r - faces->edge_count) * dim, x + r * dim);
+    }
+    return STATUS_OK;
+}
+
+/* The boundary faces of a body in 3D by their cells in the body's order: see field_averages.h. */
+static enum status list_faces(const struct smoothed_cells_input *input, const struct body *body,
+                              const int32_t *place, struct field_averages_input *tables, int32_t **face_row,
+                              struct error *error)
+{
+    const struct faces *faces = input->faces;
+    SCRATCH int32_t *cell = NULL, *face = NULL;
+    SCRATCH int64_t *ptr = NULL;
+    tables->face_count = body->dim == 3 ? faces->boundary_count : 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&cell, tables->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_cell, tables->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&tables->face_vertex, tables->face_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(face_row, tables->face_count, error));
+    for (int64_t f = 0; f < tables->face_count; f++) {
+        cell[f] = place[faces->cell[2 * f]];
+    }
+    RETURN_IF_ERROR(lists_by_row(tables->face_count, 1, cell, body->point_count, &ptr, &face, error));
+    for (int64_t i = 0; i < tables->face_count; i++) {
+        int64_t f = face[i];
+        const int32_t *vertex = input->cell_node + (int64_t)faces->cell[2 * f] * 4;
+        const int32_t *node = faces->node + f * 3;
+        int32_t k = 0;
+        while (k < 3 && (vertex[k] == node[0] || vertex[k] == node[1] || vertex[k] == node[2])) {
+            k++;
+        }
+        tables->face_cell[i] = cell[f];
+        tables->face_vertex[i] = k;
+        (*face_row)[i] = (int32_t)(faces->edge_count + f);
+    }
+    return STATUS_OK;
+}
+
+/* A given table of shape functions: its section, what a row stands for, and the points of the rows. With
+ * several processes, rows that others have read are empty. */
+struct given_table {
+    const char *section, *of;
+    const int32_t *reader; /* of each row, as in smoothed_cells_input; NULL: all rows are here */
+    int rank;
+    const int64_t *ptr;
+    const int32_t *idx;
+    const double *phi, *x;
+};
+
+/* Check that the rows reproduce 1 and x: they are values of the shape functions at x, or averages over an
+ * edge or a face with the middle x. */
+static enum status check_table(const struct given_table *table, int64_t rows, int dim, const double *nodes,
+                               struct error *error)
+{
+    int64_t bad = rows;
+#pragma omp parallel for reduction(min : bad) num_threads(chunks_of(rows, ROWS_FOR_THREAD).threads)
+    for (int64_t r = 0; r < rows; r++) {
+        double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
+        if (table->reader != NULL && table->reader[r] != table->rank) {
+            continue;
+        }
+        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
+            sum[0] += table->phi[i];
+            size += fabs(table->phi[i]);
+            for (int a = 0; a < dim; a++) {
+                double offset = nodes[(int64_t)table->idx[i] * dim + a] - table->x[r * dim + a];
+                sum[1 + a] += table->phi[i] * offset;
+                extent = fmax(extent, fabs(offset));
+            }
+        }
+        for (int k = 0; k <= dim; k++) {
+            bool right = fabs(sum[k]) <= 1e-5 * size * (k == 0 ? 1.0 : extent);
+            bad = !right && r < bad ? r : bad;
+        }
+    }
+    if (bad < rows) {
+        return fail(error, STATUS_INPUT, "%s: %s %lld: not the shape functions at this %s: run shapefn again",
+                    table->section, table->of, (long long)bad, table->of);
+    }
+    return STATUS_OK;
+}
+
+/* Mark in wanted[] all rows of the cells that have a row in touched[]: the stiffness of own nodes needs them.
+ */
+static void add_rows_of_cells(const struct body *body, const bool *touched, bool *wanted)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    int edges = CELL_EDGES(body->dim);
+    int64_t faces = field_averages_faces(averages, body->dim);
+    for (int64_t r = 0; r < averages->row_count; r++) {
+        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && touched[r]; i++) {
+            int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
+            int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
+            for (int64_t c = first * edges; c < end * edges; c++) {
+                wanted[averages->of_use[c] / VECTOR_STRIDE(body->dim)] = true;
+            }
+            for (int64_t f = field_averages_face(averages, first); f < field_averages_face(averages, end);
+                 f++) {
+                wanted[averages->of_use[faces + f] / VECTOR_STRIDE(body->dim)] = true;
+            }
+        }
+    }
+}
+
+/* wanted[edges]: the averages that own cells need, those with own nodes in them, and all other rows
+ * of the cells that these belong to. */
+static enum status list_edges(const struct smoothed_cells_input *input, const struct read_rows *rows,
+                              const struct body *body, const int64_t *order, bool *wanted,
+                              struct error *error)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    SCRATCH bool *touched = NULL, *in_order = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&touched, averages->row_count, error));
+    RETURN_IF_ERROR(body_share_values(body, &in_order, error));
+    RETURN_IF_ERROR(read_rows_with(rows, body_share_owner, body, wanted, error));
+    for (int64_t r = 0; r < averages->row_count; r++) {
+        int64_t n =
+            r < face_row_count(input->faces) ? -1 : body->node_order[r - face_row_count(input->faces)];
+        touched[r] = n < 0 && wanted[order[r]];
+        for (int64_t i = n < 0 ? 0 : input->node_ptr[n]; n >= 0 && i < input->node_ptr[n + 1]; i++) {
+            touched[r] = touched[r] || body_share_owner(body, input->node_idx[i]) == rows->ranks->rank;
+        }
+    }
+    add_rows_of_cells(body, touched, in_order);
+    for (int64_t e = 0; e < face_row_count(input->faces); e++) {
+        wanted[order[e]] = wanted[order[e]] || in_order[e];
+    }
+    return STATUS_OK;
+}
+
+/* Fetch the rows of the edge table that this process needs, where none has read all of it. */
+static enum status fetch_edges(const struct smoothed_cells_input *input, struct body *body,
+                               struct average_table *edges, struct error *error)
+{
+    struct sparse *fetched = &body->cells.averages.fetched;
+    const struct read_rows rows = {.ranks = body->share.ranks,
+                                   .row_count = face_row_count(input->faces),
+                                   .column_count = body->node_count,
+                                   .ptr = input->edge_ptr,
+                                   .idx = input->edge_idx,
+                                   .value = input->edge_phi,
+                                   .reader = input->edge_reader};
+    SCRATCH bool *wanted = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&wanted, face_row_count(input->faces), error));
+    RETURN_IF_ERROR(list_edges(input, &rows, body, edges->order, wanted, error));
+    RETURN_IF_ERROR(read_rows_fetch(&rows, wanted, fetched, error));
+    edges->ptr = fetched->ptr;
+    edges->idx = fetched->idx;
+    edges->phi = fetched->value;
+    if (input->copied != NULL) {
+        input->copied(input->context);
+    }
+    return STATUS_OK;
+}
+
+/* One process: copy all rows. */
+static enum status copy_all(const struct smoothed_cells_input *input,
+                            const struct field_averages_input *tables, struct body *body, struct error *error)
+{
+    RETURN_IF_ERROR(field_averages_copy(tables, NULL, 0, body->node_count, &body->rows.matrix, error));
+    if (input->copied != NULL) {
+        input->copied(input->context);
+    }
+    RETURN_IF_ERROR(body_share_rows(body, NULL, error));
+    return row_ranges_of(0, body->cells.averages.row_count, NULL, &body->share.values, error);
+}
+
+/* Several processes: copy the rows that this one's cells need, and the columns of its nodes. */
+static enum status copy_shares(const struct smoothed_cells_input *input, struct field_averages_input *tables,
+                               struct body *body, struct error *error)
+{
+    struct body_share *share = &body->share;
+    struct field_averages *averages = &body->cells.averages;
+    struct row_operator *rows = &body->rows;
+    SCRATCH bool *needed = NULL, *used = NULL;
+    if (input->edge_reader != NULL) {
+        RETURN_IF_ERROR(fetch_edges(input, body, &tables->tables[0], error));
+    }
+    RETURN_IF_ERROR(body_share_values(body, &needed, error));
+    RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, needed, &share->values, error));
+    RETURN_IF_ERROR(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
+    RETURN_IF_ERROR(
+        field_averages_copy(tables, NULL, share->begin_node, share->end_node, &rows->columns, error));
+    RETURN_IF_ERROR(sparse_rows_used(&rows->columns, &used, error));
+    RETURN_IF_ERROR(body_share_rows(body, used, error));
+    memcpy(averages->given, tables->tables, sizeof averages->given);
+    return STATUS_OK;
+}
+
+enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,
+                                struct error *error)
+{
+    struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim, corners = dim + 1;
+    const struct faces *faces = input->faces;
+    int64_t rows = face_row_count(faces);
+    SCRATCH int64_t *order = NULL;
+    SCRATCH int32_t *vertex_of_cell = NULL, *edge_of_cell = NULL, *face_row = NULL, *place = NULL;
+    SCRATCH double *x = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&place, body->point_count, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        place[body->order[q]] = (int32_t)q;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&edge_of_cell, body->point_count * CELL_EDGES(dim), error));
+    RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&x, rows * dim, error));
+    RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
+    const struct given_table edges = {
+        "edge.phi",      "edge",          input->edge_reader, ranks_rank(body->share.ranks),
+        input->edge_ptr, input->edge_idx, input->edge_phi,    x};
+    const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
+                                      input->node_idx, input->node_phi, input->x};
+    enum status checked = check_table(&edges, rows, dim, input->x, error);
+    RETURN_IF_ERROR(input->edge_reader != NULL ? ranks_agree(body->share.ranks, checked, error) : checked);
+    RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&order, rows, error));
+    RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&vertex_of_cell, body->point_count * corners, error));
+    for (int64_t q = 0; q < body->point_count; q++) {
+        memcpy(vertex_of_cell + q * corners, input->cell_node + body->order[q] * corners,
+               (size_t)corners * sizeof *vertex_of_cell);
+    }
+    struct field_averages_input tables = {
+        .dim = dim,
+        .node_count = body->node_count,
+        .cell_count = body->point_count,
+        .place = body->node_place,
+        .lets_go = input->copied != NULL && body->share.ranks == NULL,
+        .tables = {{rows, order, input->edge_ptr, input->edge_idx, input->edge_phi, edge_of_cell},
+                   {body->node_count, body->node_order, input->node_ptr, input->node_idx, input->node_phi,
+                    vertex_of_cell}}};
+    enum status listed = list_faces(input, body, place, &tables, &face_row, error);
+    tables.face_row = face_row;
+    averages->face_cell = tables.face_cell; /* freed with the body, whatever comes */
+    averages->face_vertex = tables.face_vertex;
+    RETURN_IF_ERROR(listed);
+    RETURN_IF_ERROR(field_averages_build(&tables, averages, error));
+    if (body->share.ranks == NULL) {
+        RETURN_IF_ERROR(copy_all(input, &tables, body, error));
+    } else {
+        RETURN_IF_ERROR(copy_shares(input, &tables, body, error));
+        averages->edge_order = array_take(&order);
+    }
+    return STATUS_OK;
+}
