@@ -4,10 +4,9 @@
 
 #include <math.h>
 
-/* y += a x */
-ALL_SETS static void add_row(int64_t n, double a, const double *x, double *restrict y)
+ALL_SETS void dense_add_row(int64_t count, double a, const double *x, double *restrict y)
 {
-    for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < count; i++) {
         y[i] += a * x[i];
     }
 }
@@ -22,7 +21,7 @@ bool dense_factorise(int64_t n, double *matrix)
         above[k] = sqrt(pivot);
         for (int64_t i = k + 1; i < n; i++) {
             above[i] = matrix[i * n + k] /= above[k];
-            add_row(i - k, -above[i], above + k + 1, matrix + i * n + k + 1);
+            dense_add_row(i - k, -above[i], above + k + 1, matrix + i * n + k + 1);
         }
     }
     return true;
@@ -48,11 +47,11 @@ void dense_solve_large(int64_t n, const double *factor, double *x)
 {
     for (int64_t k = 0; k < n; k++) {
         x[k] /= factor[k * n + k];
-        add_row(n - k - 1, -x[k], factor + k * n + k + 1, x + k + 1);
+        dense_add_row(n - k - 1, -x[k], factor + k * n + k + 1, x + k + 1);
     }
     for (int64_t i = n - 1; i >= 0; i--) {
         x[i] /= factor[i * n + i];
-        add_row(i, -x[i], factor + i * n, x);
+        dense_add_row(i, -x[i], factor + i * n, x);
     }
 }
 
@@ -63,7 +62,7 @@ void dense_invert(int64_t n, double *factor)
         for (int64_t l = 0; l < i; l++) {
             double entry = row[l];
             row[l] = 0.0;
-            add_row(l + 1, entry, factor + l * n, row);
+            dense_add_row(l + 1, entry, factor + l * n, row);
         }
         for (int64_t k = 0; k < i; k++) {
             row[k] = -row[k] / row[i];
@@ -74,7 +73,7 @@ void dense_invert(int64_t n, double *factor)
         const double *row = factor + l * n;
         double last = row[l];
         for (int64_t i = 0; i < l; i++) {
-            add_row(l - i, row[i], row + i, factor + i * n + i);
+            dense_add_row(l - i, row[i], row + i, factor + i * n + i);
             factor[i * n + l] = row[i] * last;
         }
         factor[l * n + l] = last * last;

@@ -16,3 +16,6 @@ void dense_solve_large(int64_t n, const double *factor, double *x);
 
 /* The factor becomes A^-1, both triangles. */
 void dense_invert(int64_t n, double *factor);
+
+/* y += a x, for x[count] and y[count]. */
+void dense_add_row(int64_t count, double a, const double *x, double *restrict y);

@@ -10,6 +10,7 @@
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
+#include "base/dense.h"
 #include "base/memory.h"
 #include "base/processor.h"
 #include "base/vector.h"
@@ -51,13 +52,6 @@ struct block_row {
 };
 
 /* y += a x */
-ALL_SETS static void add_row(int64_t count, double a, const double *x, double *restrict y)
-{
-    for (int64_t i = 0; i < count; i++) {
-        y[i] += a * x[i];
-    }
-}
-
 ALL_SETS static void add_floats(int64_t count, double a, const float *x, double *restrict y)
 {
     for (int64_t i = 0; i < count; i++) {
@@ -92,12 +86,12 @@ static void put(const struct assembly *s, int64_t node, const double *force, dou
     double value[COARSE_MOST_AT_NODE];
     int count = coarse_space_at_node(&p->coarse, node, field, value);
     for (int64_t i = 0; i < count * dim; i++) {
-        add_row(size, value[i / dim], force + i % dim * size,
-                matrix + (field[i / dim] * dim + i % dim) * size);
+        dense_add_row(size, value[i / dim], force + i % dim * size,
+                      matrix + (field[i / dim] * dim + i % dim) * size);
     }
     for (int64_t i = 0; i < dim * size && s->near[node] >= 0; i++) {
-        add_row(size, (double)s->bent[s->near[node] * dim * size + i], force + i / size * size,
-                matrix + i % size * size);
+        dense_add_row(size, (double)s->bent[s->near[node] * dim * size + i], force + i / size * size,
+                      matrix + i % size * size);
     }
 }
 
@@ -105,7 +99,7 @@ void preconditioner_add_square(int64_t size, double stiffness, const double *row
 {
     for (int64_t k = 0; k < size; k++) {
         if (row[k] != 0.0) {
-            add_row(size, stiffness * row[k], row, matrix + k * size);
+            dense_add_row(size, stiffness * row[k], row, matrix + k * size);
         }
     }
 }
@@ -378,7 +372,7 @@ static enum status sum_chunks(struct assembly *s, double *matrix, struct error *
     ranks_gather(ranks, part, (size_t)cells * sizeof *part, first);
     memset(matrix, 0, (size_t)cells * sizeof *matrix);
     for (int64_t c = 0; c < nodes.count; c++) {
-        add_row(cells, 1.0, part + c * cells, matrix);
+        dense_add_row(cells, 1.0, part + c * cells, matrix);
     }
 done:
     for (int64_t c = 0; c < nodes.count; c++) {
