@@ -40,6 +40,9 @@ struct run_folds {
 void run_folds_begin(struct run *run);
 void run_folds_free(struct run *run);
 
+/* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
+void run_folds_at_rest(const struct run *run);
+
 /* Look at parameters u at a time of the run; `is_frame`: the state is given as a frame. */
 void run_folds_look(struct run *run, const double *u, double time, bool is_frame);
 
