@@ -2,6 +2,8 @@
 
 #include "base/memory.h"
 
+#include <stdlib.h>
+
 enum status lists_by_row(int64_t items, int per, const int32_t *row, int64_t rows, int64_t **ptr,
                          int32_t **idx, struct error *error)
 {
@@ -30,6 +32,18 @@ int compare_numbers(int count, const int32_t *a, const int32_t *b)
         k++;
     }
     return k == count ? 0 : a[k] < b[k] ? -1 : 1;
+}
+
+int64_t sort_distinct(int64_t count, int64_t *number)
+{
+    int64_t kept = 0;
+    qsort(number, (size_t)count, sizeof *number, compare_int64);
+    for (int64_t i = 0; i < count; i++) {
+        if (i == 0 || number[i] != number[i - 1]) {
+            number[kept++] = number[i];
+        }
+    }
+    return kept;
 }
 
 int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least)

@@ -16,6 +16,9 @@ MUST_CHECK enum status lists_by_row(int64_t items, int per, const int32_t *row, 
  */
 int compare_numbers(int count, const int32_t *a, const int32_t *b);
 
+/* Sort numbers, and remove repetitions; returns how many remain. */
+int64_t sort_distinct(int64_t count, int64_t *number);
+
 /* Binary search: the first i in [low, high) with ascending[i] >= least; `high` if there is none. */
 int64_t first_from(const int64_t *ascending, int64_t low, int64_t high, int64_t least);
 

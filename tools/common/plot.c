@@ -100,21 +100,15 @@ static void choose_fields(struct plot *plot, int64_t frame)
 
 static enum status find_frames(struct plot *plot, struct error *error)
 {
-    int64_t count = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&plot->frames, plot->stream.section_count, error));
     for (int64_t s = 0; s < plot->stream.section_count; s++) {
         size_t length;
         int64_t frame = frame_of(plot->stream.sections[s].name, &length);
         if (frame != FRAME_NONE) {
-            plot->frames[count++] = frame;
+            plot->frames[plot->frame_count++] = frame;
         }
     }
-    qsort(plot->frames, (size_t)count, sizeof *plot->frames, compare_int64);
-    for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || plot->frames[i] != plot->frames[i - 1]) {
-            plot->frames[plot->frame_count++] = plot->frames[i];
-        }
-    }
+    plot->frame_count = sort_distinct(plot->frame_count, plot->frames);
     return STATUS_OK;
 }
 

@@ -24,16 +24,14 @@ static int32_t label_of(const struct cutting *cutting, const int32_t *node)
     const struct lattice *lattice = cutting->lattice;
     int dim = lattice->dim;
     bool left_out = true;
-    double middle[3] = {0};
+    double middle[3];
     for (int k = 0; k <= dim; k++) {
         if (!on_interface(cutting, node[k])) {
             return lattice->label[node[k]];
         }
         left_out = left_out && node[k] < lattice->node_count && !lattice->keep[lattice->label[node[k]]];
-        for (int d = 0; d < dim; d++) {
-            middle[d] += cutting->x[(int64_t)node[k] * dim + d] / (dim + 1);
-        }
     }
+    vector_middle(dim, cutting->x, dim + 1, node, middle);
     return left_out ? lattice->label[node[0]] : labels_at(lattice->labels, middle);
 }
 

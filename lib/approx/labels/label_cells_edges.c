@@ -4,21 +4,14 @@
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* A cut moves a point if it is nearer than this share of the edge's length. For edges along the axes and half
  * diagonals of cubes: Labelle and Shewchuk 2007, section 3, for the best bound of the angles. For diagonals
  * of sides, where leaves of two sizes meet, and for triangles: values between these. */
 static const double near_axis = 0.24999, near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
 
-static int compare_keys(const void *left, const void *right)
-{
-    uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 /* Count the edges of cells between points of different labels; store them if the array exists. */
-static int64_t collect(const struct lattice *lattice, uint64_t *key)
+static int64_t collect(const struct lattice *lattice, int64_t *key)
 {
     int corners = lattice->dim + 1;
     int64_t count = 0;
@@ -26,7 +19,7 @@ static int64_t collect(const struct lattice *lattice, uint64_t *key)
         const int32_t *node = lattice->cell + c * corners;
         for (int k = 0; k < corners; k++) {
             for (int l = k + 1; l < corners; l++) {
-                uint64_t a = (uint64_t)node[k], b = (uint64_t)node[l];
+                int64_t a = node[k], b = node[l];
                 if (lattice->label[a] == lattice->label[b]) {
                     continue;
                 }
@@ -42,16 +35,11 @@ static int64_t collect(const struct lattice *lattice, uint64_t *key)
 
 static enum status find_edges(struct lattice *lattice, struct error *error)
 {
-    SCRATCH uint64_t *key = NULL;
+    SCRATCH int64_t *key = NULL;
     int64_t count = collect(lattice, NULL);
     RETURN_IF_ERROR(NEW_ARRAY(&key, count, error));
     collect(lattice, key);
-    qsort(key, (size_t)count, sizeof *key, compare_keys);
-    for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || key[i] != key[i - 1]) {
-            key[lattice->edge_count++] = key[i];
-        }
-    }
+    lattice->edge_count = sort_distinct(count, key);
     RETURN_IF_ERROR(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lattice->cut, lattice->edge_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&lattice->on, lattice->node_count, error));

@@ -95,13 +95,13 @@ static void turn(struct label_cells_keeping *keeping, const struct change *chang
     }
 }
 
-/* Make a change if it leaves fewer parts that are connected by single nodes only. */
+/* Make a change if it leaves at least `fewer` parts less that are connected by single nodes only. */
 static bool try_change(struct label_cells_keeping *keeping, const struct label_cells_star *star,
-                       const struct change *change)
+                       const struct change *change, int64_t fewer)
 {
     int64_t before = pinches_about(keeping, star, change);
     turn(keeping, change);
-    if (change->count == 0 || pinches_about(keeping, star, change) >= before) {
+    if (pinches_about(keeping, star, change) > before - fewer) {
         turn(keeping, change);
         return false;
     }
@@ -225,16 +225,7 @@ static bool fill_crevices(struct label_cells_keeping *keeping, const struct labe
     bool changed = false;
     for (int64_t c = 0; c < keeping->cells.count; c++) {
         struct change change;
-        if (is_crevice(keeping, c, &change)) {
-            int64_t before = pinches_about(keeping, star, &change);
-            turn(keeping, &change);
-            if (pinches_about(keeping, star, &change) > before) {
-                turn(keeping, &change);
-                continue;
-            }
-            keeping->mesh->label[c] = change.label[0];
-            changed = true;
-        }
+        changed = (is_crevice(keeping, c, &change) && try_change(keeping, star, &change, 0)) || changed;
     }
     return changed;
 }
@@ -248,12 +239,12 @@ static bool join_at(struct label_cells_keeping *keeping, const struct label_cell
         return false;
     }
     find_link(keeping, star, node, &change);
-    if (try_change(keeping, star, &change)) {
+    if (try_change(keeping, star, &change, 1)) {
         return true;
     }
     for (int32_t g = 0; g < count; g++) {
         find_tip(keeping, star, node, g, &change);
-        if (try_change(keeping, star, &change)) {
+        if (try_change(keeping, star, &change, 1)) {
             return true;
         }
     }

@@ -1,5 +1,6 @@
 /* Cuts in faces where three labels meet. */
 #include "approx/labels/label_cells_cut_private.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -25,16 +26,7 @@ static bool is_second(const struct cutting *cutting, int32_t cut, int32_t point)
 
 static int compare_seconds(const void *left, const void *right)
 {
-    const struct second_cut *a = left, *b = right;
-    return a->cut != b->cut ? (a->cut > b->cut) - (a->cut < b->cut)
-                            : (a->point > b->point) - (a->point < b->point);
-}
-
-static enum status add_second(struct cutting *cutting, int32_t cut, int32_t point, struct error *error)
-{
-    RETURN_IF_ERROR(GROW_ARRAY(&cutting->second, cutting->seconds + 1, &cutting->second_room, error));
-    cutting->second[cutting->seconds++] = (struct second_cut){cut, point, -1};
-    return STATUS_OK;
+    return compare_numbers(2, left, right);
 }
 
 enum status cutting_again(struct cutting *cutting, struct cutting_pieces *pieces, struct error *error)
@@ -47,7 +39,9 @@ enum status cutting_again(struct cutting *cutting, struct cutting_pieces *pieces
                 continue;
             }
             if (cutting->searching) {
-                RETURN_IF_ERROR(add_second(cutting, key.cut, key.point, error));
+                RETURN_IF_ERROR(
+                    GROW_ARRAY(&cutting->second, cutting->seconds + 1, &cutting->second_room, error));
+                cutting->second[cutting->seconds++] = key;
                 continue;
             }
             const struct second_cut *found =

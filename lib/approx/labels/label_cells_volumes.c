@@ -149,19 +149,11 @@ static void correct_volumes(struct volumes *volumes)
 /* Volumes of the labels by their voxels. */
 static void voxel_volumes(const struct labels *labels, const bool *keep, double *volume)
 {
-    const double(*m)[4] = labels->to_voxel;
-    double det = 0, across = 1;
-    for (int d = 0; d < 3; d++) {
-        if (labels->dim == 2 && labels->size[d] == 1) { /* areas do not depend on the slice's thickness */
-            across = sqrt(m[d][0] * m[d][0] + m[d][1] * m[d][1] + m[d][2] * m[d][2]);
-        }
-        det += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);
-    }
     for (int64_t i = 0; i < labels->size[0] * labels->size[1] * labels->size[2]; i++) {
         volume[labels->label[i]] += keep[labels->label[i]] ? 1 : 0;
     }
     for (int32_t l = 0; l < labels->count; l++) {
-        volume[l] *= across / fabs(det);
+        volume[l] *= labels_voxel_volume(labels);
     }
 }
 

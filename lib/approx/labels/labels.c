@@ -1,5 +1,7 @@
 #include "approx/labels/labels.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -174,16 +176,12 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
 static void invert(const struct labels *labels, double inverse[3][3])
 {
     const double(*m)[4] = labels->to_voxel;
-    double det = 0;
+    double det = determinant3(m[0], m[1], m[2]);
     for (int d = 0; d < 3; d++) {
         for (int e = 0; e < 3; e++) {
             int p = (d + 1) % 3, q = (d + 2) % 3, r = (e + 1) % 3, s = (e + 2) % 3;
-            inverse[e][d] = m[p][r] * m[q][s] - m[p][s] * m[q][r];
+            inverse[e][d] = (m[p][r] * m[q][s] - m[p][s] * m[q][r]) / det;
         }
-        det += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);
-    }
-    for (int d = 0; d < 9; d++) {
-        inverse[d / 3][d % 3] /= det;
     }
 }
 
@@ -235,4 +233,16 @@ double labels_voxel(const struct labels *labels)
         }
     }
     return least;
+}
+
+double labels_voxel_volume(const struct labels *labels)
+{
+    const double(*m)[4] = labels->to_voxel;
+    double across = 1;
+    for (int d = 0; d < 3; d++) {
+        if (labels->dim == 2 && labels->size[d] == 1) { /* areas do not depend on the slice's thickness */
+            across = vector_length(3, m[d]);
+        }
+    }
+    return across / fabs(determinant3(m[0], m[1], m[2]));
 }

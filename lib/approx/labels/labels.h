@@ -60,3 +60,6 @@ void labels_box(const struct labels *labels, double low[], double high[]);
 
 /* Least size of a voxel along the axes of the grid with more than one voxel, m. */
 double labels_voxel(const struct labels *labels);
+
+/* Volume of a voxel, m3, or its area in the plane of a slice, m2. */
+double labels_voxel_volume(const struct labels *labels);

@@ -3,7 +3,6 @@
 #include "base/lists.h"
 #include "io/mesh/msh_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define LONGEST_NAME 127
@@ -184,9 +183,6 @@ void msh_read_partitions(struct msh_reader *r)
     }
     read_entities(r, true);
     if (r->status == STATUS_OK && r->partition_count > 0) {
-        qsort(r->partitions, (size_t)r->partition_count, sizeof *r->partitions, compare_int64);
-        for (int64_t i = 0; i < r->partition_count; i++) {
-            r->msh->partitions_here += i == 0 || r->partitions[i] != r->partitions[i - 1];
-        }
+        r->msh->partitions_here = sort_distinct(r->partition_count, r->partitions);
     }
 }

@@ -44,19 +44,6 @@ static struct msh_group *find_group(const struct msh *msh, int64_t key)
     return bsearch(&key, msh->groups, (size_t)msh->group_count, sizeof *msh->groups, compare_group);
 }
 
-/* Sort keys and remove repetitions; returns the number that remains. */
-static int64_t sort_keys(int64_t keys[], int64_t count)
-{
-    int64_t kept = 0;
-    qsort(keys, (size_t)count, sizeof *keys, compare_int64);
-    for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || keys[i] != keys[i - 1]) {
-            keys[kept++] = keys[i];
-        }
-    }
-    return kept;
-}
-
 /* Collect the groups that the file names, and those of entities (MSH 4) or elements (MSH 1 and 2). */
 static void collect_groups(struct msh_reader *r)
 {
@@ -79,7 +66,7 @@ static void collect_groups(struct msh_reader *r)
             keys[count++] = r->element_key[e];
         }
     }
-    count = sort_keys(keys, count);
+    count = sort_distinct(count, keys);
     MSH_NEW(r, &msh->groups, count);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         msh->groups[msh->group_count++] =
@@ -177,7 +164,7 @@ static void sort_entities(struct msh_reader *r)
                              msh_entity_kind(key_dim(entity->key)), key_tag(entity->key));
             return;
         }
-        entity->count = sort_keys(list, entity->count);
+        entity->count = sort_distinct(entity->count, list);
         for (int64_t k = 0; k < entity->count; k++) {
             list[k] = find_group(r->msh, list[k]) - r->msh->groups;
         }

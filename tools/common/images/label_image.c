@@ -283,18 +283,7 @@ static void set_space(const struct tool *tool, const struct image *image, struct
     memcpy(result->to_world, image->to_world, sizeof result->to_world);
     labels->dim = 3;
     set_plane(tool, image, labels);
-    const double(*m)[4] = image->to_world;
-    double volume = 0;
-    for (int d = 0; d < 3; d++) {
-        volume += m[0][d] * (m[1][(d + 1) % 3] * m[2][(d + 2) % 3] - m[1][(d + 2) % 3] * m[2][(d + 1) % 3]);
-    }
-    for (int e = 0; e < 3 && labels->dim == 2; e++) {
-        const double *row = labels->to_voxel[e];
-        if (labels->size[e] == 1) {
-            volume *= sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-        }
-    }
-    result->voxel_volume = fabs(volume);
+    result->voxel_volume = labels_voxel_volume(labels);
 }
 
 static void check_size(const struct tool *tool, const struct label_image *image, bool unit_given)
