@@ -265,7 +265,9 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
     return status;
 }
 
-enum status parse_length(const char *text, const char *what, double *value, struct error *error)
+/* A number within [least, 1e12] with or without a unit. */
+static enum status parse_in_metres(const char *text, const char *what, double least, double *value,
+                                   struct error *error)
 {
     char number[64];
     double unit = 1.0;
@@ -275,12 +277,22 @@ enum status parse_length(const char *text, const char *what, double *value, stru
     }
     memcpy(number, text, length);
     number[length] = '\0';
-    enum status status = parse_double(number, what, 1e-12, 1e12, value, error);
-    if (status == STATUS_OK && text[length] != '\0') {
-        status = parse_length_unit(text + length, what, &unit, error);
+    RETURN_IF_ERROR(parse_double(number, what, least, 1e12, value, error));
+    if (text[length] != '\0') {
+        RETURN_IF_ERROR(parse_length_unit(text + length, what, &unit, error));
     }
     *value *= unit;
-    return status;
+    return STATUS_OK;
+}
+
+enum status parse_length(const char *text, const char *what, double *value, struct error *error)
+{
+    return parse_in_metres(text, what, 1e-12, value, error);
+}
+
+enum status parse_coordinate(const char *text, const char *what, double *value, struct error *error)
+{
+    return parse_in_metres(text, what, -1e12, value, error);
 }
 
 enum status parse_choice(const char *text, const char *what, const char *const choices[], int count,

@@ -70,6 +70,10 @@ MUST_CHECK enum status parse_length_unit(const char *text, const char *what, dou
  * metres. */
 MUST_CHECK enum status parse_length(const char *text, const char *what, double *value, struct error *error);
 
+/* The same for a coordinate, which need not be positive. */
+MUST_CHECK enum status parse_coordinate(const char *text, const char *what, double *value,
+                                        struct error *error);
+
 /* Index of `text` among `count` choices; the error lists them. */
 MUST_CHECK enum status parse_choice(const char *text, const char *what, const char *const choices[],
                                     int count, int *index, struct error *error);

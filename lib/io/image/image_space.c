@@ -1,6 +1,8 @@
 /* The map from voxels to world coordinates: sform, qform, voxel sizes. */
 #include "io/image/image_private.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -15,11 +17,6 @@ static double cofactor(double m[3][4], int r, int c)
 {
     int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
     return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
-}
-
-static double determinant(double m[3][4])
-{
-    return m[0][0] * cofactor(m, 0, 0) + m[0][1] * cofactor(m, 0, 1) + m[0][2] * cofactor(m, 0, 2);
 }
 
 static double column_length(double m[3][4], int c)
@@ -41,7 +38,7 @@ void image_to_voxel(const struct image *image, double inverse[3][4])
 {
     double m[3][4];
     memcpy(m, image->to_world, sizeof m);
-    double d = determinant(m);
+    double d = determinant3(m[0], m[1], m[2]);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) {
             inverse[r][c] = cofactor(m, c, r) / d;
@@ -85,7 +82,7 @@ bool nifti_quaternion(double matrix[3][4], double quatern[3], double pixdim[4])
     for (int c = 0; c < 3; c++) {
         pixdim[1 + c] = column_length(matrix, c);
     }
-    pixdim[0] = determinant(matrix) < 0 ? -1 : 1;
+    pixdim[0] = determinant3(matrix[0], matrix[1], matrix[2]) < 0 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < 3; i++) {
             r[i][c] = matrix[i][c] / pixdim[1 + c] * (c == 2 ? pixdim[0] : 1);
@@ -141,7 +138,7 @@ static bool is_sound(double m[3][4])
             return false;
         }
     }
-    return isfinite(volume) && volume > 0 && fabs(determinant(m)) > 1e-6 * volume;
+    return isfinite(volume) && volume > 0 && fabs(determinant3(m[0], m[1], m[2])) > 1e-6 * volume;
 }
 
 /* Largest distance between the positions of the image's corners under two maps. */

@@ -3,6 +3,7 @@
 #include "approx/cells/raster.h"
 #include "base/box.h"
 #include "base/lists.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -70,10 +71,7 @@ static double determinant(const struct image *grid, int dim)
 {
     double m[3][4];
     image_to_voxel(grid, m);
-    double plane = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    double space = m[2][0] * (m[0][1] * m[1][2] - m[0][2] * m[1][1]) +
-                   m[2][1] * (m[0][2] * m[1][0] - m[0][0] * m[1][2]) + m[2][2] * plane;
-    return dim == 2 ? plane : space;
+    return dim == 2 ? determinant2(m[0], m[1]) : determinant3(m[0], m[1], m[2]);
 }
 
 double voxel_volume(const struct image *image, int dim)

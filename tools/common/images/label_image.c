@@ -1,6 +1,7 @@
 #include "images/label_image.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "images/images.h"
 
 #include <math.h>
@@ -32,36 +33,25 @@ const char *label_image_name(const struct label_image *image, int32_t label)
 /* The different values of an image, ascending. */
 struct values {
     int32_t count;
-    double value[MOST_VALUES];
+    int64_t value[MOST_VALUES];
     int64_t voxels[MOST_VALUES];
     uint16_t label[MOST_VALUES];
 };
 
-/* The place of a value in the list, or the place where it would be inserted. */
-static int32_t find_value(const struct values *values, double value)
+/* The place of a value in the list, or the place where it would be inserted; often `guess`. */
+static int32_t place_of(const struct values *values, int64_t value, int32_t guess)
 {
-    int32_t low = 0, high = values->count;
-    while (low < high) {
-        int32_t middle = low + (high - low) / 2;
-        if (values->value[middle] < value) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    return guess < values->count && values->value[guess] == value
+               ? guess
+               : (int32_t)first_from(values->value, 0, values->count, value);
 }
 
 static void collect_values(const struct tool *tool, const struct image *image, struct values *values)
 {
     int64_t count = (int64_t)image_voxels(image);
-    int32_t at = -1;
+    int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
         double value = image->values[i];
-        if (at >= 0 && values->value[at] == value) {
-            values->voxels[at]++;
-            continue;
-        }
         if (!(value >= 0 && value <= INT32_MAX && floor(value) == value)) {
             int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
             tool_fail(tool, STATUS_INPUT,
@@ -69,8 +59,9 @@ static void collect_values(const struct tool *tool, const struct image *image, s
                       "probability map?",
                       (long long)(i % nx), (long long)(i / nx % ny), (long long)(i / nx / ny), value);
         }
-        at = find_value(values, value);
-        if (at == values->count || values->value[at] != value) {
+        int64_t label = (int64_t)value;
+        at = place_of(values, label, at);
+        if (at == values->count || values->value[at] != label) {
             if (values->count == MOST_VALUES) {
                 tool_fail(tool, STATUS_INPUT, "more than %d different values: is it a scan?", MOST_VALUES);
             }
@@ -78,7 +69,7 @@ static void collect_values(const struct tool *tool, const struct image *image, s
                     (size_t)(values->count - at) * sizeof *values->value);
             memmove(values->voxels + at + 1, values->voxels + at,
                     (size_t)(values->count - at) * sizeof *values->voxels);
-            values->value[at] = value;
+            values->value[at] = label;
             values->voxels[at] = 0;
             values->count++;
         }
@@ -90,7 +81,7 @@ static void collect_values(const struct tool *tool, const struct image *image, s
 static void name_values(const struct tool *tool, const struct values *values, struct label_table *table)
 {
     for (int32_t v = 0; v < values->count; v++) {
-        struct label_range range = {.first = (int64_t)values->value[v], .last = (int64_t)values->value[v]};
+        struct label_range range = {.first = values->value[v], .last = values->value[v]};
         char name[32];
         if (range.first == 0) {
             continue;
@@ -113,10 +104,10 @@ static void label_values(const struct tool *tool, struct values *values, struct 
     bool kept = false;
     for (int32_t v = 0; v < values->count; v++) {
         int32_t name = -1;
-        if (!label_table_find(&image->table, (int64_t)values->value[v], &name)) {
+        if (!label_table_find(&image->table, values->value[v], &name)) {
             tool_fail(tool, STATUS_INPUT,
-                      "%s: no row for label %.0f, of %lld voxels: name it, or write '%.0f -'", table,
-                      values->value[v], (long long)values->voxels[v], values->value[v]);
+                      "%s: no row for label %lld, of %lld voxels: name it, or write '%lld -'", table,
+                      (long long)values->value[v], (long long)values->voxels[v], (long long)values->value[v]);
         }
         values->label[v] = (uint16_t)(name + 1);
         image->volume[name + 1] += (double)values->voxels[v] * image->voxel_volume;
@@ -159,7 +150,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     label_values(tool, values, image, table);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
-        at = values->value[at] == source->values[i] ? at : find_value(values, source->values[i]);
+        at = place_of(values, (int64_t)source->values[i], at);
         image->voxel[i] = values->label[at];
     }
     image->labels.label = image->voxel;
@@ -209,19 +200,11 @@ static void take_slice(struct image *image, int axis, size_t slice)
 /* Parse "z=12mm". */
 static void parse_slice(const struct tool *tool, const char *text, int *axis, double *place)
 {
-    double unit = 1;
-    char number[64] = "";
-    size_t length = text[0] != '\0' && text[1] == '=' ? strspn(text + 2, "+-.0123456789eE") : 0;
     *axis = text[0] - 'x';
-    if (*axis < 0 || *axis > 2 || length == 0 || length >= sizeof number) {
+    if (*axis < 0 || *axis > 2 || text[1] != '=' || text[2] == '\0') {
         tool_fail(tool, STATUS_INPUT, "-s: '%s' is not a place on an axis, as z=12mm", text);
     }
-    memcpy(number, text + 2, length);
-    TOOL_TRY(tool, parse_double(number, "-s", -1e6, 1e6, place, &error));
-    if (text[2 + length] != '\0') {
-        TOOL_TRY(tool, parse_length_unit(text + 2 + length, "-s", &unit, &error));
-    }
-    *place *= unit;
+    TOOL_TRY(tool, parse_coordinate(text + 2, "-s", place, &error));
 }
 
 static void choose_slice(const struct tool *tool, struct image *image, const char *slice)

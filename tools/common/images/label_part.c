@@ -42,17 +42,10 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
     char *copy = tool_memory(tool, strdup(text)), *rest = copy;
     int count = 0;
     for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
-        bool negative = word[0] == '-';
         if (count == dim + 1) {
             tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted", text, dim + 1);
         }
-        if (strchr(word, '0') != NULL && strspn(word, "+-0.") == strcspn(word, "cmu")) {
-            value[count++] = 0; /* 0 and 0mm, which parse_length refuses */
-            continue;
-        }
-        TOOL_TRY(tool, parse_length(word + negative, "--part", &value[count], &error));
-        value[count] = negative ? -value[count] : value[count];
-        count++;
+        TOOL_TRY(tool, parse_coordinate(word, "--part", &value[count++], &error));
     }
     if (count != dim + 1 || !(value[dim] > 0)) {
         tool_fail(tool, STATUS_INPUT, "--part: ball:%s: %d lengths are wanted, the radius above 0", text,

@@ -36,10 +36,7 @@ static void unit_normal(const struct label_cells *mesh, int64_t facet, double no
 {
     int dim = mesh->dim;
     face_area_vector(dim, mesh->x, mesh->facet + facet * dim, normal);
-    double area = vector_length(dim, normal);
-    for (int d = 0; d < dim; d++) {
-        normal[d] /= area;
-    }
+    vector_normalise(dim, normal);
 }
 
 /* place[node_count * dim]: nodes of the facets moved outward along the mean normal of the facets there, so
@@ -56,10 +53,7 @@ static void move_outward(const struct label_cells *mesh, const struct label_surf
         }
     }
     for (int64_t n = 0; n < mesh->node_count; n++) {
-        double length = vector_length(dim, mean + n * dim);
-        for (int d = 0; d < dim && length > 0; d++) {
-            mean[n * dim + d] /= length;
-        }
+        vector_normalise(dim, mean + n * dim);
         least[n] = 1;
     }
     for (int64_t i = 0; i < mesh->facet_count * dim; i++) {
