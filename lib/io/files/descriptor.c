@@ -11,9 +11,9 @@ enum status descriptor_read(int descriptor, void *bytes, size_t size, size_t *go
         count = read(descriptor, bytes, size);
     } while (count < 0 && errno == EINTR);
     *got = count > 0 ? (size_t)count : 0;
-    return count >= 0 ? STATUS_OK
-                      : fail(error, errno == EISDIR ? STATUS_INPUT : STATUS_SYSTEM, "cannot read: %s",
-                             strerror(errno));
+    return count >= 0        ? STATUS_OK
+           : errno == EISDIR ? fail(error, STATUS_INPUT, "is a directory")
+                             : fail(error, STATUS_SYSTEM, "cannot read: %s", strerror(errno));
 }
 
 enum status descriptor_write(int descriptor, const void *bytes, size_t size, struct error *error)

@@ -2,14 +2,10 @@
 #include "io/files/descriptor.h"
 #include "io/mesh/msh_private.h"
 
-#include <errno.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* Number of bytes that identify a mesh. */
 #define MAGIC_SIZE 12
@@ -249,70 +245,29 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
 
 /* ---- bytes ---- */
 
-/* A file's bytes in memory. */
-struct bytes {
-    char *data;
-    size_t size;
-    bool mapped;
-};
-
-static enum status fail_read(struct error *error)
-{
-    return fail(error, STATUS_SYSTEM, "%s", strerror(errno));
-}
-
 /* Read to the end; only the first bytes if they do not begin a mesh. */
-static enum status read_all(struct bytes *bytes, int descriptor, struct error *error)
+static enum status read_all(int descriptor, char **bytes, size_t *size, struct error *error)
 {
-    int64_t capacity = 0;
+    int64_t room = 0;
     for (;;) {
         size_t got;
-        if ((int64_t)bytes->size == capacity) {
-            capacity = capacity == 0 ? 65536 : 2 * capacity;
-            RETURN_IF_ERROR(RESIZE_ARRAY(&bytes->data, capacity, error));
-        }
-        RETURN_IF_ERROR(descriptor_read(descriptor, bytes->data + bytes->size, (size_t)capacity - bytes->size,
-                                        &got, error));
-        bytes->size += got;
-        if (got == 0 || (bytes->size >= MAGIC_SIZE && !is_mesh(bytes->data, bytes->size))) {
+        RETURN_IF_ERROR(GROW_ARRAY(bytes, (int64_t)*size + 65536, &room, error));
+        RETURN_IF_ERROR(descriptor_read(descriptor, *bytes + *size, (size_t)room - *size, &got, error));
+        *size += got;
+        if (got == 0 || (*size >= MAGIC_SIZE && !is_mesh(*bytes, *size))) {
             return STATUS_OK;
         }
     }
 }
 
-/* Map a regular file, read another one. */
-static enum status take_in(struct bytes *bytes, int descriptor, struct error *error)
-{
-    struct stat info;
-    if (fstat(descriptor, &info) != 0) {
-        return fail_read(error);
-    }
-    if (S_ISDIR(info.st_mode)) {
-        return fail(error, STATUS_INPUT, "is a directory");
-    }
-    if (!S_ISREG(info.st_mode) || info.st_size == 0 || lseek(descriptor, 0, SEEK_CUR) != 0) {
-        return read_all(bytes, descriptor, error);
-    }
-    void *data = mmap(NULL, (size_t)info.st_size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    if (data == MAP_FAILED) {
-        return fail_read(error);
-    }
-    *bytes = (struct bytes){data, (size_t)info.st_size, true};
-    return STATUS_OK;
-}
-
 enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error)
 {
-    struct bytes bytes = {0};
+    SCRATCH char *bytes = NULL;
+    size_t size = 0;
     *msh = (struct msh){0};
-    enum status status = take_in(&bytes, descriptor, error);
+    enum status status = read_all(descriptor, &bytes, &size, error);
     if (status == STATUS_OK) {
-        status = msh_parse(msh, bytes.data, bytes.size, error);
-    }
-    if (bytes.mapped) {
-        munmap(bytes.data, bytes.size);
-    } else {
-        free(bytes.data);
+        status = msh_parse(msh, bytes, size, error);
     }
     return fail_in(error, status, "%s", name);
 }

@@ -7,30 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Text that grows up to LINE_LIMIT; `full` when it would grow beyond. */
-struct line {
-    char text[LINE_LIMIT];
-    size_t length;
-    bool full;
-};
-
-static void append(struct line *line, const char *bytes, size_t count)
-{
-    /* Room for "# @ ", the newline and the terminating zero. */
-    if (count > sizeof line->text - 8 - line->length) {
-        line->full = true;
-        return;
-    }
-    memcpy(line->text + line->length, bytes, count);
-    line->length += count;
-    line->text[line->length] = '\0';
-}
-
-static void append_text(struct line *line, const char *text)
-{
-    append(line, text, strlen(text));
-}
-
 static bool has_control(const char *text)
 {
     for (; *text != '\0'; text++) {
@@ -41,39 +17,28 @@ static bool has_control(const char *text)
     return false;
 }
 
-/* $'...' with escapes, for arguments with line ends and other control characters. */
-static void append_escaped(struct line *line, const char *argument)
-{
-    append_text(line, "$'");
-    for (const char *c = argument; *c != '\0'; c++) {
-        unsigned char byte = (unsigned char)*c;
-        char escape[8] = {*c, '\0'};
-        if (byte < 0x20 || byte == 0x7f) {
-            snprintf(escape, sizeof escape, "\\x%02x", byte);
-        } else if (*c == '\'' || *c == '\\') {
-            snprintf(escape, sizeof escape, "\\%c", *c);
-        }
-        append_text(line, escape);
-    }
-    append_text(line, "'");
-}
-
-static void append_quoted(struct line *line, const char *argument)
+/* Write an argument as a shell reads it, at most four bytes for each of its own and three more: as it is,
+ * within quotation marks, or with line ends and other control characters as $'...' with escapes. Returns the
+ * end. */
+static char *put_quoted(char *at, const char *argument)
 {
     static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    bool escaped = has_control(argument);
     if (argument[0] != '\0' && argument[strspn(argument, safe)] == '\0') {
-        append_text(line, argument);
-        return;
+        return stpcpy(at, argument);
     }
-    if (has_control(argument)) {
-        append_escaped(line, argument);
-        return;
-    }
-    append_text(line, "'");
+    at = stpcpy(at, escaped ? "$'" : "'");
     for (const char *c = argument; *c != '\0'; c++) {
-        append(line, *c == '\'' ? "'\\''" : c, *c == '\'' ? 4 : 1);
+        unsigned char byte = (unsigned char)*c;
+        if (escaped && (byte < 0x20 || byte == 0x7f)) {
+            at += sprintf(at, "\\x%02x", byte);
+        } else if (*c == '\'' || (escaped && *c == '\\')) {
+            at += sprintf(at, escaped ? "\\%c" : "'\\%c'", *c);
+        } else {
+            *at++ = *c;
+        }
     }
-    append_text(line, "'");
+    return stpcpy(at, "'");
 }
 
 enum status stream_append_provenance(struct stream *stream, const char *line, size_t length,
@@ -93,21 +58,19 @@ enum status stream_append_provenance(struct stream *stream, const char *line, si
 
 enum status stream_add_provenance(struct stream *stream, int argc, char *const argv[], struct error *error)
 {
-    SCRATCH struct line *line = malloc(sizeof *line);
-    if (line == NULL) {
-        return fail_memory(error, "provenance");
-    }
-    line->length = 0;
-    line->full = false;
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
     const char *tool = slash != NULL ? slash + 1 : argc > 0 ? argv[0] : "";
-    append_quoted(line, tool);
-    append_text(line, " " MTS_VERSION " ");
-    append_quoted(line, tool);
+    size_t room = 8 * strlen(tool) + sizeof MTS_VERSION + 16;
+    SCRATCH char *text = NULL;
     for (int i = 1; i < argc; i++) {
-        append_text(line, " ");
-        append_quoted(line, argv[i]);
+        room += 4 * strlen(argv[i]) + 4;
     }
-    return line->full ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
-                      : stream_append_provenance(stream, line->text, line->length, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&text, (int64_t)room, error));
+    char *at = put_quoted(stpcpy(put_quoted(text, tool), " " MTS_VERSION " "), tool);
+    for (int i = 1; i < argc; i++) {
+        at = put_quoted(stpcpy(at, " "), argv[i]);
+    }
+    return at - text > LINE_LIMIT - 8 /* "# @ " and the newline */
+               ? fail(error, STATUS_INPUT, "the command line is longer than %d bytes", LINE_LIMIT)
+               : stream_append_provenance(stream, text, (size_t)(at - text), error);
 }
