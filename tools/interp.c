@@ -48,11 +48,11 @@ static const char usage[] =
 
 #include "approx/field/field.h"
 #include "io/stream/sections.h"
+#include "io/files/descriptor.h"
 #include "io/files/table.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Points with their neighbours and shape functions. */
 struct points {
@@ -106,13 +106,10 @@ static void read_nodes(const struct tool *tool, const char *file, int dim, struc
     int other_dim;
     const double *x;
     const char *name;
-    int descriptor = tool_open(tool, file, &name);
+    FREED_BY(descriptor_close) int descriptor = tool_open(tool, file, &name);
     enum status status = stream_read(&other, descriptor, name, &why);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s (a table of coordinates needs -u)", why.text);
-    }
-    if (descriptor != STDIN_FILENO) {
-        close(descriptor);
     }
     TOOL_TRY(tool, fail_in(&error, stream_nodes(&other, &other_dim, &points->count, &x, &error), "%s", file));
     if (other_dim != dim) {

@@ -110,13 +110,6 @@ static void become_mpi(char *argv[])
     exit((int)STATUS_INPUT);
 }
 
-/* Remove the results of an earlier run from the stream. */
-static void drop_results(struct stream *stream)
-{
-    sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
-    run_drop_frames(stream);
-}
-
 /* The checkpoint and the previous one must be neither an input nor the result, as they are removed at the
  * end. */
 static void check_checkpoint(const struct tool *tool)
@@ -124,11 +117,8 @@ static void check_checkpoint(const struct tool *tool)
     static const char *const suffixes[] = {"", ".old"};
     const char *file = tool_value(tool, "checkpoint");
     for (int i = 0; i < 2 && file != NULL; i++) {
-        SCRATCH char *name = NULL;
+        SCRATCH char *name = tool_text(tool, "%s%s", file, suffixes[i]);
         overwrite_refuse(tool, "checkpoint", suffixes[i]);
-        if (asprintf(&name, "%s%s", file, suffixes[i]) < 0) {
-            tool_fail(tool, STATUS_SYSTEM, "out of memory");
-        }
         if (tool->output != NULL && overwrite_is_same(name, tool->output)) {
             tool_fail(tool, STATUS_INPUT,
                       "-o %s: is the checkpoint of -c %s, which is removed at the end: name another file",
@@ -140,13 +130,7 @@ static void check_checkpoint(const struct tool *tool)
 /* Exit if the operands are in the wrong order. */
 static void check_scene(const struct tool *tool)
 {
-    char begin[5] = "";
-    FILE *file = fopen(tool->operands[0], "r");
-    bool is_stream = file != NULL && fread(begin, 1, 5, file) == 5 && memcmp(begin, "# mts", 5) == 0;
-    if (file != NULL) {
-        fclose(file);
-    }
-    if (is_stream) {
+    if (overwrite_is_stream(tool->operands[0])) {
         tool_fail(tool, STATUS_INPUT, "%s: a stream, not a scene: mtled SCENE [FILE]", tool->operands[0]);
     }
 }
@@ -176,7 +160,8 @@ static void read_stream(const struct tool *tool, struct stream *stream, struct p
     } else {
         tool_read(tool, input, stream);
     }
-    drop_results(stream);
+    sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
+    run_drop_frames(stream);
     if (stream_find(stream, "part.node") != NULL) {
         tool_fail(tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
     }
@@ -213,14 +198,14 @@ static void compute(struct run *run)
             run_quasi_static(run);
         }
     } while (run_again(run));
-    run_checkpoint_end(run);
+    run_checkpoint_end();
 }
 
 /* Write the results; with -v report the time. */
 static void write_results(struct run *run)
 {
     run_put_results(run);
-    run_drop_tables(run->stream);
+    sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     double started = clock_seconds();
     tool_write(run->tool, run->stream, run->text);
     run->write_seconds = clock_seconds() - started;

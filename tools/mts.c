@@ -40,6 +40,7 @@ static const char usage[] =
 #include "tool.h"
 
 #include "cell_report.h"
+#include "io/files/descriptor.h"
 #include "stages/check.h"
 #include "stages/views.h"
 
@@ -146,7 +147,7 @@ static int recover(struct tool *tool)
     FREED_BY(stream_free) struct stream stream = {0};
     struct error why, error;
     const char *name;
-    int descriptor = tool_open(tool, tool->operands[1], &name);
+    FREED_BY(descriptor_close) int descriptor = tool_open(tool, tool->operands[1], &name);
     tool_check(tool, stream_recover(&stream, descriptor, name, &why, &error), &error);
     if (why.text[0] != '\0') {
         tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,

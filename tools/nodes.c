@@ -58,23 +58,13 @@ static const char usage[] =
     "  nodes -l body.msh\n";
 
 #include "cell_report.h"
+#include "io/files/descriptor.h"
 #include "io/mesh/msh.h"
 #include "tool.h"
 
 #include "base/box.h"
 
 #include <math.h>
-#include <unistd.h>
-
-static void read_mesh(const struct tool *tool, struct msh *msh)
-{
-    const char *name;
-    int descriptor = tool_open(tool, tool->operands[0], &name);
-    TOOL_TRY(tool, msh_read(msh, descriptor, name, &error));
-    if (descriptor != STDIN_FILENO) {
-        close(descriptor);
-    }
-}
 
 static void list_groups(const struct tool *tool, const struct msh *msh)
 {
@@ -147,11 +137,13 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct msh msh;
+    const char *name;
     FREED_BY(mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
     struct mesh_options wanted = parse(&tool);
-    read_mesh(&tool, &msh);
+    FREED_BY(descriptor_close) int descriptor = tool_open(&tool, tool.operands[0], &name);
+    TOOL_TRY(&tool, msh_read(&msh, descriptor, name, &error));
     if (tool_given(&tool, "list")) {
         list_groups(&tool, &msh);
         msh_free(&msh);

@@ -338,6 +338,6 @@ int main(int argc, char *argv[])
     } else {
         write_stream(&tool, &image, &result, tool_given(&tool, "text"));
     }
-    label_sizes_free(&sizes);
+    stream_free(&sizes.stream);
     return tool_end(&tool);
 }

@@ -127,25 +127,22 @@ static enum status regions_choose(const struct regions *regions, const char *nam
 void findings_make(const struct tool *tool, const struct comparison_request *request, const struct side *a,
                    const struct side *b, struct findings *findings)
 {
-    struct error error;
+    struct error why;
     struct field_comparison *comparison = &findings->comparison;
     SCRATCH bool *chosen = NULL;
     sides_check(tool, a, b, request->field);
-    tool_check(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error), &error);
-    tool_check(tool, regions_choose(&findings->regions, request->region, &chosen, &error), &error);
-    enum status status =
-        field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &error);
+    TOOL_TRY(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error));
+    TOOL_TRY(tool, regions_choose(&findings->regions, request->region, &chosen, &error));
+    enum status status = field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &why);
     if (status != STATUS_OK) {
-        tool_fail(tool, status, "%s%s", error.text,
+        tool_fail(tool, status, "%s%s", why.text,
                   comparison->outside > 0 ? ": --skip-outside leaves them out" : "");
     }
     if (comparison->count == 0) {
         tool_fail(tool, STATUS_INPUT, "no node of A to compare");
     }
-    tool_check(tool,
-               field_statistics(comparison->count, comparison->node, comparison->difference,
-                                &findings->statistics, &error),
-               &error);
+    TOOL_TRY(tool, field_statistics(comparison->count, comparison->node, comparison->difference,
+                                    &findings->statistics, &error));
     findings->reference = field_largest(b->field.cells.node_count, b->field.cols, b->field.values);
 }
 

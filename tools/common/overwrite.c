@@ -39,8 +39,7 @@ bool overwrite_is_same(const char *name, const char *other)
            stat_folder(other, &b) && is_one(&a, &b);
 }
 
-/* Whether a file is a stream, which a filter may replace by its output. */
-static bool is_stream(const char *name)
+bool overwrite_is_stream(const char *name)
 {
     char begin[6] = "";
     FILE *file = fopen(name, "rb");
@@ -63,19 +62,17 @@ void overwrite_refuse(const struct tool *tool, const char *option, const char *s
 {
     const struct options *options = &tool->options;
     const char *value = tool_value(tool, option), *taken = NULL;
-    char *output = NULL, text[32];
+    char text[32];
+    int files = 0;
     if (value == NULL) {
         return;
     }
-    if (asprintf(&output, "%s%s", value, suffix) < 0) {
-        tool_fail(tool, STATUS_SYSTEM, "out of memory");
-    }
-    int files = 0;
+    SCRATCH char *output = tool_text(tool, "%s%s", value, suffix);
     for (int i = 0; i < tool->operand_count; i++) {
         files += access(tool->operands[i], F_OK) == 0;
     }
     for (int i = 0; i < tool->operand_count && taken == NULL; i++) {
-        bool filtered = files == 1 && is_stream(tool->operands[i]);
+        bool filtered = files == 1 && overwrite_is_stream(tool->operands[i]);
         taken = replaces(output, tool->operands[i]) && !filtered ? tool->operands[i] : NULL;
     }
     for (int i = 0; i < options->use_count && taken == NULL; i++) {
@@ -89,5 +86,4 @@ void overwrite_refuse(const struct tool *tool, const char *option, const char *s
         tool_fail(tool, STATUS_INPUT, "%s %s: replaces %s, an input of this run: name another file",
                   option_text(options_find(options, option), text), output, taken);
     }
-    free(output);
 }

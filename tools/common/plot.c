@@ -8,10 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct plot_label {
-    char text[128];
-};
-
 static bool begins_with(const char *text, const char *prefix)
 {
     return strncmp(text, prefix, strlen(prefix)) == 0;
@@ -77,9 +73,9 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     if (is_wanted && is_field(&plot->mesh, section, &field.of_cells)) {
         field.name = section->name;
         if (of != FRAME_NONE) {
-            struct plot_label *label = &plot->labels[plot->field_count];
-            snprintf(label->text, sizeof label->text, "%.*s", (int)length, section->name);
-            field.name = label->text;
+            char *label = plot->labels[plot->field_count];
+            snprintf(label, sizeof plot->labels[0], "%.*s", (int)length, section->name);
+            field.name = label;
         }
         plot->fields[plot->field_count++] = field;
     }

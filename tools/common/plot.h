@@ -5,16 +5,14 @@
 #include "io/stream/sections.h"
 #include "io/vtk/vtk.h"
 
-struct plot_label;
-
 struct plot {
     struct stream stream;
     struct derived derived; /* fields derived from those of the stream */
     struct cells cells;
     struct cell_regions regions;
-    struct vtk_mesh mesh;      /* a view of the cells and regions */
-    struct vtk_field *fields;  /* of the frame chosen last; room for every section */
-    struct plot_label *labels; /* names of the fields of frames */
+    struct vtk_mesh mesh;     /* a view of the cells and regions */
+    struct vtk_field *fields; /* of the frame chosen last; room for every section */
+    char (*labels)[128];      /* names of the fields of frames */
     int64_t field_count;
     struct vtk_number *numbers; /* of the frame chosen last: its rows of reactions.frames and the like */
     int64_t number_count;

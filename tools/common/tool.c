@@ -4,6 +4,8 @@
 #include "overwrite.h"
 #include "process.h"
 
+#include "io/files/descriptor.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
@@ -32,18 +34,15 @@ static void print_message(const struct tool *tool, const char *format, va_list v
     fprintf(stderr, "%s: %s\n", tool->name, message.text);
 }
 
+/* Of several processes the first one prints, or one that fails alone. */
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
 {
     va_list values;
-    bool said = process_speaks();
-    for (int turn = 0; turn < 2;
-         turn++) { /* of several processes the first one prints, or one that fails alone */
-        if (turn == 0 ? said : process_fails_alone() && !said) {
-            va_start(values, format);
-            print_message(tool, format, values);
-            va_end(values);
-        }
+    va_start(values, format);
+    if (process_speaks() || process_fails_alone()) {
+        print_message(tool, format, values);
     }
+    va_end(values);
     tool_exit(status);
 }
 
@@ -226,11 +225,8 @@ void tool_names_input(const char *operand)
 void tool_read(const struct tool *tool, const char *file, struct stream *stream)
 {
     const char *name;
-    int descriptor = tool_open(tool, file, &name);
+    FREED_BY(descriptor_close) int descriptor = tool_open(tool, file, &name);
     TOOL_TRY(tool, stream_read(stream, descriptor, name, &error));
-    if (descriptor != STDIN_FILENO) {
-        close(descriptor);
-    }
 }
 
 /* The value of a silent option that is this argument or within it, or NULL. */

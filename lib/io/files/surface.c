@@ -214,3 +214,21 @@ enum status surface_read(const char *path, int dim, struct table *table, struct 
     RETURN_IF_ERROR(stl ? read_stl(path, table, error) : table_read(path, 9, 9, table, error));
     return check_triangles(path, table, error);
 }
+
+enum status surface_facets(const char *path, int dim, double unit, double **x, int64_t *count,
+                           struct error *error)
+{
+    FREED_BY(table_free) struct table table = {0};
+    *x = NULL;
+    *count = 0;
+    RETURN_IF_ERROR(surface_read(path, dim, &table, error));
+    RETURN_IF_ERROR(NEW_ARRAY(x, table.rows * dim * dim, error));
+    for (int64_t b = 0; b < table.block_count; b++) {
+        for (int64_t r = table.block_ptr[b]; r + (dim == 2) < table.block_ptr[b + 1]; r++, ++*count) {
+            for (int i = 0; i < dim * dim; i++) {
+                (*x)[*count * dim * dim + i] = unit * table.values[r * table.cols + i];
+            }
+        }
+    }
+    return STATUS_OK;
+}

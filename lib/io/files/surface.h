@@ -10,3 +10,8 @@
  * right-hand normal of the corners counts, the normals stated in an STL file do not. Errors as table_read;
  * curves of one point, triangles without area and segments without length are errors. */
 MUST_CHECK enum status surface_read(const char *path, int dim, struct table *table, struct error *error);
+
+/* The corners of its facets, in another unit: (*x)[*count * dim * dim], to be freed, segments between
+ * consecutive points of each curve, or triangles. Errors as surface_read. */
+MUST_CHECK enum status surface_facets(const char *path, int dim, double unit, double **x, int64_t *count,
+                                      struct error *error);

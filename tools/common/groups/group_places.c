@@ -157,19 +157,6 @@ enum status term_end(const struct term *term)
 
 /* ---- by a file ---- */
 
-/* Segments between the rows of each block. */
-static enum status table_segments(const struct table *table, struct pieces *pieces, double **x,
-                                  struct error *error)
-{
-    RETURN_IF_ERROR(NEW_ARRAY(x, (table->rows - table->block_count) * 4, error));
-    for (int64_t b = 0; b < table->block_count; b++) {
-        for (int64_t r = table->block_ptr[b]; r + 1 < table->block_ptr[b + 1]; r++) {
-            memcpy(*x + 4 * pieces->count++, table->values + 2 * r, 4 * sizeof **x);
-        }
-    }
-    return STATUS_OK;
-}
-
 /* near:DISTANCE,FILE (points) and along:DISTANCE,FILE (a surface) */
 enum status term_near(const struct term *term)
 {
@@ -189,17 +176,16 @@ enum status term_near(const struct term *term)
                     term->text);
     }
     const char *path = term->arguments + length + 1;
-    RETURN_IF_ERROR(surface ? surface_read(path, dim, &table, term->error)
-                            : table_read(path, dim, dim, &table, term->error));
-    for (int64_t i = 0; i < table.rows * table.cols; i++) {
-        table.values[i] *= term->unit;
+    if (surface) {
+        RETURN_IF_ERROR(surface_facets(path, dim, term->unit, &x, &pieces.count, term->error));
+    } else {
+        RETURN_IF_ERROR(table_read(path, dim, dim, &table, term->error));
+        x = array_take(&table.values);
+        pieces.count = table.rows;
+        for (int64_t i = 0; i < table.rows * dim; i++) {
+            x[i] *= term->unit;
+        }
     }
-    pieces.count = table.rows;
-    pieces.x = table.values;
-    if (surface && dim == 2) {
-        pieces.count = 0;
-        RETURN_IF_ERROR(table_segments(&table, &pieces, &x, term->error));
-        pieces.x = x;
-    }
+    pieces.x = x;
     return items_near(&term->body->items[term->kind], &pieces, reach * term->unit, term->chosen, term->error);
 }

@@ -1,5 +1,6 @@
 #include "images/images.h"
 
+#include "io/files/descriptor.h"
 #include "output.h"
 
 #include <string.h>
@@ -8,11 +9,8 @@
 void tool_read_image(const struct tool *tool, const char *file, struct image *image)
 {
     const char *name;
-    int descriptor = tool_open(tool, file, &name);
+    FREED_BY(descriptor_close) int descriptor = tool_open(tool, file, &name);
     TOOL_TRY(tool, image_read_from(image, descriptor, name, &error));
-    if (descriptor != STDIN_FILENO) {
-        close(descriptor);
-    }
     if (image->note[0] != '\0') {
         tool_note(tool, "%s: %s", name, image->note);
     }

@@ -60,8 +60,3 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
         }
     }
 }
-
-void label_sizes_free(struct label_sizes *sizes)
-{
-    stream_free(&sizes->stream);
-}

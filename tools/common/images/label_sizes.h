@@ -10,7 +10,7 @@
 bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
                        double spacing, double *finest);
 
-/* Sizes at the nodes of cells, as views of a stream. */
+/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
 struct label_sizes {
     struct stream stream;
     struct cells cells;
@@ -21,4 +21,3 @@ struct label_sizes {
  * image. Exits on failure. */
 void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
                       struct label_sizes *sizes);
-void label_sizes_free(struct label_sizes *sizes);

@@ -30,10 +30,9 @@ static enum status check_moments(const struct model *model, struct error *error)
 
 static void drop_copied(void *stream)
 {
-    static const char *const names[] = {"edge.ptr", "edge.idx", "edge.phi"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        stream_remove(stream, names[i]);
-    }
+    stream_remove(stream, "edge.ptr");
+    stream_remove(stream, "edge.idx");
+    stream_remove(stream, "edge.phi");
 }
 
 enum status model_build(struct stream *stream, const int32_t *edge_reader, const struct scene *scene,

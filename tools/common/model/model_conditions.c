@@ -143,43 +143,21 @@ static enum status add_loads(struct model *model, struct error *error)
     return STATUS_OK;
 }
 
-/* Read the corners of a rigid surface's facets, m: consecutive points of each polyline, or triangles. */
-static enum status read_surface(struct model *model, const struct scene_contact *section,
-                                struct contact_condition *contact, struct error *error)
-{
-    FREED_BY(table_free) struct table table = {0};
-    double *corners;
-    int dim = model->assembly.cells.dim;
-    int64_t count = 0;
-    RETURN_IF_ERROR(surface_read(section->rigid, dim, &table, error));
-    RETURN_IF_ERROR(MODEL_ARRAY(model, &corners, table.rows * (dim == 2 ? 4 : 9), error));
-    for (int64_t b = 0; b < table.block_count && dim == 2; b++) {
-        for (int64_t r = table.block_ptr[b]; r + 1 < table.block_ptr[b + 1]; r++) {
-            for (int i = 0; i < 4; i++) {
-                corners[count * 4 + i] = table.values[r * 2 + i] * section->rigid_unit;
-            }
-            count++;
-        }
-    }
-    for (int64_t i = 0; i < table.rows * 9 && dim == 3; i++) {
-        corners[i] = table.values[i] * section->rigid_unit;
-    }
-    contact->corners = corners;
-    contact->rigid_count = dim == 3 ? table.rows : count;
-    contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
-    return STATUS_OK;
-}
-
 static enum status add_contact(struct model *model, const struct scene_contact *section,
                                struct contact_condition *contact, struct error *error)
 {
     struct rigid_motion *motion = &contact->motion;
+    double *corners = NULL;
     *contact = (struct contact_condition){.where = section->label.where, .stiffness = section->stiffness};
     if (section->against.count > 0) {
         return model_between(model, section, contact, error);
     }
     RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &contact->facets, error));
-    RETURN_IF_ERROR(read_surface(model, section, contact, error));
+    RETURN_IF_ERROR(surface_facets(section->rigid, model->assembly.cells.dim, section->rigid_unit, &corners,
+                                   &contact->rigid_count, error));
+    contact->corners = corners;
+    RETURN_IF_ERROR(model_own(model, corners, error));
+    contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
     motion->moves = section->moves;
     if (!section->moves) {
         return STATUS_OK;

@@ -5,11 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *file_of(const struct rejoin *rejoin, int64_t k)
-{
-    return rejoin->part[k].file;
-}
-
 static int64_t attribute(const struct rejoin *rejoin, const struct rejoin_part *part, const char *key)
 {
     struct error error;
@@ -131,7 +126,7 @@ static void sort_parts(struct rejoin *rejoin)
         check_versions(rejoin, part);
         for (int64_t i = 0; i < k; i++) {
             if (rejoin->part[i].number == part->number) {
-                tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", file_of(rejoin, i),
+                tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", rejoin->part[i].file,
                           part->file, (long long)part->number);
             }
         }
@@ -340,7 +335,7 @@ void rejoin_streams(struct rejoin *rejoin)
             if (here != (stream_find(&rejoin->part[0].stream, needed[i]) != NULL)) {
                 tool_fail(tool, STATUS_INPUT,
                           "%s: no section %s, but in %s: run the same stages on all parts",
-                          file_of(rejoin, here ? 0 : k), needed[i], file_of(rejoin, here ? k : 0));
+                          rejoin->part[here ? 0 : k].file, needed[i], rejoin->part[here ? k : 0].file);
             }
         }
     }

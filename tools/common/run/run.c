@@ -35,11 +35,6 @@ void run_clear_progress(const struct display *display)
     }
 }
 
-void run_drop_tables(struct stream *stream)
-{
-    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
-}
-
 /* The number that follows that of the last frame. */
 static int64_t next_frame(const struct stream *stream)
 {
@@ -74,7 +69,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
         if (run->last_good >= 0.0) {
             run_put_frame(run, next_frame(run->stream), run->last_good, run->u);
         }
-        run_drop_tables(run->stream);
+        sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
         tool_write_stopped(run->tool, run->stream, reason.text, run->text);
     }
     tool_exit(status);

@@ -63,9 +63,6 @@ bool run_again(struct run *run);
 /* Add that contact to the scene. */
 void run_touch_itself(struct run *run);
 
-/* Remove the sections that only the computation needs from the stream. */
-void run_drop_tables(struct stream *stream);
-
 /* Exits with a verdict where a body has a free rigid-body mode and no contact acts on it; with -v, reports
  * the modes that only contacts prevent. */
 void run_check_rigid_modes(struct run *run);

@@ -14,9 +14,9 @@ static void on_signal(int number)
     caught = number;
 }
 
-/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, only set the returned flag to their number; it is initially
- * 0. A second signal of the same kind ends the process at once. */
-static const volatile sig_atomic_t *catch_signals(void)
+/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, only set `caught` to their number; it is initially 0. A
+ * second signal of the same kind ends the process at once. */
+static void catch_signals(void)
 {
     struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
@@ -24,18 +24,6 @@ static const volatile sig_atomic_t *catch_signals(void)
         struct sigaction present;
         if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler != SIG_IGN) {
             sigaction(numbers[i], &action, NULL);
-        }
-    }
-    return &caught;
-}
-
-/* Restore the default actions of the signals. */
-static void release_signals(void)
-{
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction present;
-        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
-            signal(numbers[i], SIG_DFL);
         }
     }
 }
@@ -131,7 +119,8 @@ void run_checkpoint_begin(struct run *run)
         resume(run);
     }
     checkpoint->last = clock_seconds();
-    checkpoint->interrupted = catch_signals();
+    checkpoint->interrupted = &caught;
+    catch_signals();
 }
 
 const struct state *run_checkpoint_state(const struct run *run)
@@ -225,10 +214,14 @@ bool run_checkpoint_tell(struct run *run, const struct progress *progress)
     return !interrupted;
 }
 
-void run_checkpoint_end(struct run *run)
+void run_checkpoint_end(void)
 {
-    (void)run;
-    release_signals();
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
+            signal(numbers[i], SIG_DFL);
+        }
+    }
 }
 
 void run_checkpoint_stop(struct run *run, int64_t steps)

@@ -33,7 +33,7 @@ const struct state *run_checkpoint_state(const struct run *run);
 bool run_checkpoint_tell(struct run *run, const struct progress *progress);
 
 /* After the last step: restore the default actions of signals. */
-void run_checkpoint_end(struct run *run);
+void run_checkpoint_end(void);
 
 /* Report that the run was interrupted after `steps` steps, and exit with 128 + the number of the signal. */
 _Noreturn void run_checkpoint_stop(struct run *run, int64_t steps);

@@ -3,6 +3,7 @@
 #include "run/run.h"
 
 #include "approx/field/field_compare.h"
+#include "base/box.h"
 #include "solid/contact/contact_patch.h"
 #include "solid/system/energy.h"
 
@@ -59,15 +60,11 @@ static double own_motion(const struct solid_system *system, const struct contact
  * around both, and from the points, until one is within `enough`. */
 static double distance_at_rest(const struct contact *contact, double enough)
 {
-    const struct rigid_branch *box = contact->surface.branch;
+    const struct rigid_branch *surface = contact->surface.branch;
+    struct box box = box_of(contact->dim, contact->count, contact->rest);
     double between2 = 0.0, nearest = INFINITY;
     for (int a = 0; a < contact->dim; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t p = 0; p < contact->count; p++) {
-            low = fmin(low, contact->rest[p * contact->dim + a]);
-            high = fmax(high, contact->rest[p * contact->dim + a]);
-        }
-        double gap = fmax(0.0, fmax(box->low[a] - high, low - box->high[a]));
+        double gap = fmax(0.0, fmax(surface->low[a] - box.high[a], box.low[a] - surface->high[a]));
         between2 += gap * gap;
     }
     for (int64_t p = 0; p < contact->count && nearest > enough; p++) {

@@ -10,12 +10,6 @@
  * of a facet's width. */
 static const double most_inside = 0.1;
 
-/* place = the coordinates of row `row` of points or nodes, as text. */
-static void place_of(const struct run *run, const double *x, int64_t row, char place[96])
-{
-    point_text(run->scene->dim, x + row * run->scene->dim, place);
-}
-
 /* Largest penetration of contacts at the end, as a share of the largest displacement, as in quasi-static
  * scenes. */
 static const double most_given = 1e-3;
@@ -26,10 +20,15 @@ static void judge(struct run *run, const struct dynamics_report *report)
     const struct scene *scene = run->scene;
     const struct solid_system *system = &run->model->system;
     double largest_move = field_largest(system->node_count, system->dim, run->u);
-    char place[96] = "";
+    bool inverted = report->outcome == DYNAMICS_INVERTED;
+    char place[96];
     if (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run)) {
         return;
     }
+    point_text(scene->dim,
+               inverted ? run->model->assembly.x + report->point * scene->dim
+                        : run->model->assembly.cells.x + report->node * scene->dim,
+               place);
     switch (report->outcome) {
     case DYNAMICS_DONE:
         run_folds_judge(run);
@@ -37,21 +36,18 @@ static void judge(struct run *run, const struct dynamics_report *report)
         run_contacts_judge(run, 0.0, most_inside);
         return;
     case DYNAMICS_INVERTED:
-        place_of(run, run->model->assembly.x, report->point, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: integration point %lld at %s is inverted (J = %.3g): apply the "
                  "load more slowly, or a smaller one, lower time_step_margin (%g), or refine there",
                  scene->path, (long long)report->steps, report->time, (long long)report->point, place,
                  report->least_jacobian, scene->solver.time_step_margin);
     case DYNAMICS_COLLAPSED:
-        place_of(run, run->model->assembly.cells.x, report->node, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: the critical step has fallen below %g of the first one "
                  "(%.3g s), by node %lld at %s: apply a smaller load, or refine there",
                  scene->path, (long long)report->steps, report->time, DYNAMICS_LEAST_STEP, report->first_step,
                  (long long)report->node, place);
     case DYNAMICS_DRIFTED:
-        place_of(run, run->model->assembly.cells.x, report->node, place);
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
                  "%g), the fastest is node %lld at %s: lower time_step_margin (%g), or apply the load more "

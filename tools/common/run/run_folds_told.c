@@ -152,8 +152,7 @@ static int64_t count_touching(const struct scene *scene, bool *whole)
     for (int64_t c = 0; c < scene->contact_count; c++) {
         const struct name_list *facets = &scene->contacts[c].facets, *against = &scene->contacts[c].against;
         count += against->count > 0;
-        *whole = *whole || (against->count > 0 && strcmp(against->names[0], "*") == 0 &&
-                            strcmp(facets->names[0], "*") == 0);
+        *whole = *whole || (model_is_whole(against) && model_is_whole(facets));
     }
     return count;
 }
