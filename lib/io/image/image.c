@@ -2,7 +2,9 @@
 
 #include "base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const struct nifti_type types[] = {
     {IMAGE_UINT8, "uint8", 1, 1, 0, UINT8_MAX},
@@ -27,6 +29,45 @@ const struct nifti_type *nifti_type(int code)
         }
     }
     return NULL;
+}
+
+void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool swapped, size_t count,
+               double *values)
+{
+    int unused = 64 - 8 * type->bytes, code = type->code;
+    bool negative = type->least < 0;
+    for (size_t i = 0; i < count; i++, bytes += (64 - unused) / 8) {
+        uint64_t word;
+        memcpy(&word, bytes, sizeof word);
+        word = swapped ? __builtin_bswap64(word) : word << unused; /* the number is in its upper bytes */
+        if (code == IMAGE_FLOAT32) {
+            uint32_t high = (uint32_t)(word >> 32);
+            float single;
+            memcpy(&single, &high, sizeof single);
+            values[i] = (double)single;
+        } else if (code == IMAGE_FLOAT64) {
+            memcpy(&values[i], &word, sizeof word);
+        } else {
+            values[i] = negative ? (double)((int64_t)word >> unused) : (double)(word >> unused);
+        }
+    }
+}
+
+void nifti_put(const struct nifti_type *type, double value, unsigned char *bytes)
+{
+    uint64_t bits = 0;
+    if (type->code == IMAGE_FLOAT32) {
+        float single = (float)value;
+        memcpy(&bits, &single, sizeof single);
+    } else if (type->code == IMAGE_FLOAT64) {
+        memcpy(&bits, &value, sizeof value);
+    } else {
+        double whole = isnan(value) ? 0 : fmin(fmax(rint(value), type->least), type->most);
+        bits = whole < 0 ? (uint64_t)(int64_t)whole : (uint64_t)whole;
+    }
+    for (int b = 0; b < type->bytes; b++) {
+        bytes[b] = (unsigned char)(bits >> (8 * b));
+    }
 }
 
 enum status image_new(struct image *image, const size_t size[3], size_t components, struct error *error)

@@ -3,12 +3,19 @@
 
 #include <string.h>
 
-enum kind { I1, I2, I4, I8, F4, F8 };
+/* The types of fields. */
+enum {
+    I1 = IMAGE_UINT8,
+    I2 = IMAGE_INT16,
+    I4 = IMAGE_INT32,
+    I8 = IMAGE_INT64,
+    F4 = IMAGE_FLOAT32,
+    F8 = IMAGE_FLOAT64
+};
 
 /* The place of a field in each version. */
 struct place {
-    int offset;
-    enum kind kind;
+    int offset, type;
 };
 struct field {
     struct place at[2];
@@ -25,59 +32,20 @@ static const int description_offset[2] = {148, 240}, intent_name_offset[2] = {32
                  magic_offset[2] = {344, 4};
 static const char magic1[] = "n+1", magic2[] = "n+2\0\r\n\032\n";
 
-static int bytes_of(enum kind kind)
-{
-    static const int bytes[] = {1, 2, 4, 8, 4, 8};
-    return bytes[kind];
-}
-
 static double get(const unsigned char *bytes, const struct nifti *header, struct field field, int index)
 {
     struct place at = field.at[header->version - 1];
-    int size = bytes_of(at.kind);
-    const unsigned char *from = bytes + at.offset + index * size;
-    uint64_t bits = 0;
-    for (int b = 0; b < size; b++) {
-        bits |= (uint64_t)from[header->swapped ? size - 1 - b : b] << (8 * b);
-    }
-    uint32_t low = (uint32_t)bits;
-    float single;
-    double number;
-    switch (at.kind) {
-    case I1:
-        return (double)bits;
-    case I2:
-        return (int16_t)bits;
-    case I4:
-        return (int32_t)bits;
-    case I8:
-        return (double)(int64_t)bits;
-    case F4:
-        memcpy(&single, &low, sizeof single);
-        return (double)single;
-    case F8:
-        memcpy(&number, &bits, sizeof number);
-        return number;
-    }
-    return 0;
+    const struct nifti_type *type = nifti_type(at.type);
+    double value;
+    nifti_get(type, bytes + at.offset + index * type->bytes, header->swapped, 1, &value);
+    return value;
 }
 
 static void put(unsigned char *bytes, int version, struct field field, int index, double value)
 {
     struct place at = field.at[version - 1];
-    int size = bytes_of(at.kind);
-    uint64_t bits = 0;
-    if (at.kind == F4) {
-        float single = (float)value;
-        memcpy(&bits, &single, sizeof single);
-    } else if (at.kind == F8) {
-        memcpy(&bits, &value, sizeof value);
-    } else {
-        bits = (uint64_t)(int64_t)value;
-    }
-    for (int b = 0; b < size; b++) {
-        bytes[at.offset + index * size + b] = (unsigned char)(bits >> (8 * b));
-    }
+    const struct nifti_type *type = nifti_type(at.type);
+    nifti_put(type, value, bytes + at.offset + index * type->bytes);
 }
 
 int nifti_version(const unsigned char *bytes, bool *swapped)

@@ -31,6 +31,14 @@ struct nifti_type {
 /* NULL for a type that is not read. */
 const struct nifti_type *nifti_type(int code);
 
+/* Numbers of this type from their bytes, in the other byte order if `swapped`. Eight bytes are read for each:
+ * up to seven behind the last one are to be there. */
+void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool swapped, size_t count,
+               double *values);
+
+/* The bytes of a number, little-endian: rounded to what the type can hold, NaN to 0 in integers. */
+void nifti_put(const struct nifti_type *type, double value, unsigned char *bytes);
+
 /* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 

@@ -148,53 +148,6 @@ static enum status check_header(const struct nifti *header, const struct nifti_t
     return check_sizes(header, *type, image, count, error);
 }
 
-/* Convert stored values to doubles. */
-static void convert(const struct nifti_type *type, const unsigned char *bytes, size_t count, double *values)
-{
-#define CONVERT(c_type)                                                                                      \
-    for (size_t i = 0; i < count; i++) {                                                                     \
-        c_type value;                                                                                        \
-        memcpy(&value, bytes + i * sizeof value, sizeof value);                                              \
-        values[i] = (double)value;                                                                           \
-    }                                                                                                        \
-    break
-    switch (type->code) {
-    case IMAGE_INT8:
-        CONVERT(int8_t);
-    case IMAGE_INT16:
-        CONVERT(int16_t);
-    case IMAGE_UINT16:
-        CONVERT(uint16_t);
-    case IMAGE_INT32:
-        CONVERT(int32_t);
-    case IMAGE_UINT32:
-        CONVERT(uint32_t);
-    case IMAGE_INT64:
-        CONVERT(int64_t);
-    case IMAGE_UINT64:
-        CONVERT(uint64_t);
-    case IMAGE_FLOAT32:
-        CONVERT(float);
-    case IMAGE_FLOAT64:
-        CONVERT(double);
-    default: /* UINT8, RGB24, RGBA32 */
-        CONVERT(uint8_t);
-    }
-#undef CONVERT
-}
-
-static void reverse_bytes(unsigned char *bytes, size_t count, size_t size)
-{
-    for (size_t i = 0; i < count; i++) {
-        for (size_t b = 0; b < size / 2; b++) {
-            unsigned char *low = bytes + i * size + b, *high = bytes + i * size + size - 1 - b;
-            unsigned char kept = *low;
-            *low = *high;
-            *high = kept;
-        }
-    }
-}
-
 /* Skip the extensions between the header and the data. */
 static enum status skip_extensions(struct image_source *source, const struct nifti *header,
                                    unsigned char *scratch, size_t room, struct error *error)
@@ -221,7 +174,7 @@ static enum status read_values(struct image_source *source, const struct nifti *
 {
     size_t size = (size_t)type->bytes, done_count = 0, capacity = 0, got;
     SCRATCH unsigned char *block = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&block, (int64_t)(block_values * size), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&block, (int64_t)(block_values * size + 8), error));
     RETURN_IF_ERROR(skip_extensions(source, header, block, block_values * size, error));
     while (done_count < count) {
         size_t wanted = count - done_count < block_values ? count - done_count : block_values;
@@ -235,10 +188,7 @@ static enum status read_values(struct image_source *source, const struct nifti *
             capacity = capacity < count ? capacity : count;
             RETURN_IF_ERROR(RESIZE_ARRAY(&image->values, (int64_t)capacity, error));
         }
-        if (header->swapped && size > 1) {
-            reverse_bytes(block, wanted, size);
-        }
-        convert(type, block, wanted, image->values + done_count);
+        nifti_get(type, block, header->swapped, wanted, image->values + done_count);
         done_count += wanted;
     }
     RETURN_IF_ERROR(image_source_take(source, block, 1, &got, error));

@@ -12,24 +12,6 @@
 
 enum { BLOCK = 1 << 20, DICTIONARY = 1 << 15, LEVEL = 6 };
 
-/* Store a value as its type: rounded, within range. */
-static void store(const struct nifti_type *type, double value, unsigned char *bytes)
-{
-    uint64_t bits = 0;
-    if (type->code == IMAGE_FLOAT32) {
-        float single = (float)value;
-        memcpy(&bits, &single, sizeof single);
-    } else if (type->code == IMAGE_FLOAT64) {
-        memcpy(&bits, &value, sizeof value);
-    } else {
-        double whole = isnan(value) ? 0 : fmin(fmax(rint(value), type->least), type->most);
-        bits = whole < 0 ? (uint64_t)(int64_t)whole : (uint64_t)whole;
-    }
-    for (int b = 0; b < type->bytes; b++) {
-        bytes[b] = (unsigned char)(bits >> (8 * b));
-    }
-}
-
 void image_range(const struct image *image, double *least, double *most)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
@@ -57,7 +39,7 @@ static void store_values(const struct image *image, const struct nifti_type *typ
         for (int64_t c = 0; c < components; c++) {
             double value = image->values[v * components + c];
             int64_t at = together ? v * components + c : c * voxels + v;
-            store(type, scaled ? (value - image->inter) / image->slope : value, bytes + at * type->bytes);
+            nifti_put(type, scaled ? (value - image->inter) / image->slope : value, bytes + at * type->bytes);
         }
     }
 }
