@@ -183,6 +183,13 @@ violates() {
     violates 'u: row 3: inf' u 's/^0 1/0 inf/'
 }
 
+@test "check sums the shape functions on edges" {
+    cloud -d 2 -k regular -n 3 --box 0,1,0,1 | shapefn | mts text |
+        awk '/^# / { on = $2 == "edge.phi" } !/^#/ && NF && on { $1 *= 1.01; on = 0 } { print }' > damaged
+    run -1 mts check damaged
+    [[ "$output" == "edge.phi: list 0: sums to 1 "* ]]
+}
+
 @test "check compares the shapes of sections" {
     square | mts drop nbr.idx | mts binary > damaged
     run -1 mts check damaged

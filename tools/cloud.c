@@ -68,21 +68,12 @@ static void parse_box(const struct tool *tool, const char *text, struct cloud_op
     }
 }
 
-static void parse_count(const struct tool *tool, const char *text, struct cloud_options *cloud)
+static void parse_count(const struct tool *tool, struct cloud_options *cloud)
 {
-    double numbers[3];
-    int count;
-    TOOL_TRY(tool, parse_double_list(text, "-n", 1, INT32_MAX, 3, numbers, &count, &error));
+    int count = tool_whole_numbers(tool, "count", 1, INT32_MAX, cloud->count);
     if (count != 1 && (count != cloud->dim || cloud->kind == CLOUD_HALTON)) {
         tool_fail(tool, STATUS_INPUT, "-n: %d numbers, not 1%s", count,
                   cloud->kind == CLOUD_HALTON ? "" : " or one for each axis");
-    }
-    for (int a = 0; a < 3; a++) {
-        double number = numbers[a < count ? a : 0];
-        cloud->count[a] = (int64_t)number;
-        if ((double)cloud->count[a] != number) {
-            tool_fail(tool, STATUS_INPUT, "-n: %g is not a whole number", number);
-        }
     }
 }
 
@@ -98,7 +89,7 @@ static struct cloud_options parse(const struct tool *tool)
     }
     cloud.dim = (int)tool_integer(tool, "dim", 2, 3, 2);
     cloud.kind = (enum cloud_kind)tool_choice(tool, "kind", kinds, 4, 0);
-    parse_count(tool, tool_value(tool, "count"), &cloud);
+    parse_count(tool, &cloud);
     parse_box(tool, tool_value(tool, "box"), &cloud);
     check_kind(tool, "jitter", cloud.kind == CLOUD_JITTERED);
     check_kind(tool, "ratio", cloud.kind == CLOUD_GRADED);

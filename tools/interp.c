@@ -285,7 +285,7 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
     const char *file = tool_value(tool, "points");
     struct support_options support = parse(tool, dim);
     if (tool_first_given(tool, choose_supports) == NULL) {
-        TOOL_TRY(tool, solved_read(stream, &points->solved, &error));
+        TOOL_TRY(tool, supports_read(stream, "parameters", &points->solved, &error));
     }
     struct solved known = points->solved;
     if (file == NULL) {

@@ -48,18 +48,7 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-static void parse_lattice(const struct tool *tool, const char *text, int64_t lattice[3])
-{
-    double numbers[3];
-    int count;
-    TOOL_TRY(tool, parse_double_list(text, "--lattice", 2, 1e6, 3, numbers, &count, &error));
-    for (int a = 0; a < count; a++) {
-        lattice[a] = (int64_t)numbers[a];
-        if ((double)lattice[a] != numbers[a]) {
-            tool_fail(tool, STATUS_INPUT, "--lattice: %g is not a whole number", numbers[a]);
-        }
-    }
-}
+#include <string.h>
 
 /* The options of adaptive integration; shape functions not given by options are those of `mls`. */
 static struct adaptive_options parse_adaptive(const struct tool *tool, const struct mls *mls)
@@ -77,8 +66,8 @@ static struct adaptive_options parse_adaptive(const struct tool *tool, const str
 static struct ipoints_options parse(const struct tool *tool, const struct mls *mls)
 {
     static const char *const of_adaptive[] = {"levels", RADIUS_OPTIONS, MLS_OPTIONS, NULL};
-    struct ipoints_options ipoints = ipoints_defaults();
     bool gauss = tool_given(tool, "gauss"), adaptive = tool_given(tool, "adaptive");
+    struct ipoints_options ipoints = {.smoothed = !gauss && !adaptive};
     const char *extra = tool_first_given(tool, of_adaptive);
     if (tool_given(tool, "conforming") + (gauss || adaptive) + tool_given(tool, "lattice") > 1) {
         tool_fail(tool, STATUS_INPUT, "give one of -c, -g, -a and --lattice (-a may have its -g)");
@@ -86,7 +75,6 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
     if (extra != NULL && !adaptive) {
         tool_fail(tool, STATUS_INPUT, "--%s is for adaptive integration: give -a too", extra);
     }
-    ipoints.smoothed = !gauss && !adaptive;
     ipoints.given_radius = tool_given(tool, "factor") || tool_given(tool, "radius");
     if (adaptive) {
         ipoints.adaptive = true;
@@ -94,7 +82,8 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
     } else if (gauss) {
         ipoints.gauss_points = (int)tool_integer(tool, "gauss", 1, 1000, 1);
     } else if (tool_given(tool, "lattice")) {
-        parse_lattice(tool, tool_value(tool, "lattice"), ipoints.lattice);
+        int count = tool_whole_numbers(tool, "lattice", 2, 1e6, ipoints.lattice);
+        memset(ipoints.lattice + count, 0, (size_t)(3 - count) * sizeof *ipoints.lattice);
     }
     return ipoints;
 }

@@ -52,6 +52,7 @@ static const char usage[] =
 #include "model/tissue.h"
 #include "stages/views.h"
 
+#include "base/box.h"
 #include "io/image/image_sample.h"
 
 #include <float.h>
@@ -128,7 +129,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
                          const char *name, struct sample_points *rows, int64_t first)
 {
     double inverse[3][4];
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, widest = 0;
+    struct box box = box_of(3, 0, NULL);
     int64_t outside = 0, first_outside = -1;
     image_to_voxel(image, inverse);
     for (int64_t p = 0; p < rows->count; p++) {
@@ -136,11 +137,7 @@ static void sample_image(const struct tool *tool, const struct request *request,
         double *value = rows->value + p * rows->cols + first;
         memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
         image_map(&inverse[0][0], place, voxel);
-        for (int d = 0; d < 3; d++) {
-            low[d] = fmin(low[d], voxel[d]);
-            high[d] = fmax(high[d], voxel[d]);
-            widest = fmax(widest, high[d] - low[d]);
-        }
+        box_add(&box, 1, voxel);
         if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
             for (size_t c = 0; c < image->components; c++) {
@@ -148,10 +145,10 @@ static void sample_image(const struct tool *tool, const struct request *request,
             }
         }
     }
-    if (request->points == NULL && rows->count > 1 && widest < 1) {
+    if (request->points == NULL && rows->count > 1 && box_side(&box) < 1) {
         tool_fail(tool, STATUS_INPUT,
                   "%s: all points lie within %.2g of a voxel of %s: another space, or unit?", rows->what,
-                  widest, name);
+                  box_side(&box), name);
     }
     if (outside == 0) {
         return;

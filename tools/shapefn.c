@@ -33,13 +33,6 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
-/* Record the settings of the shape functions, by which other tools evaluate them. */
-static void record(const struct tool *tool, struct stream *stream, const struct recorded *recorded)
-{
-    const struct section *radius = stream_find(stream, "support.radius");
-    TOOL_TRY(tool, stage_record(stream, recorded, radius->rows, radius->data, &error));
-}
-
 int main(int argc, char *argv[])
 {
     struct tool tool;
@@ -56,7 +49,9 @@ int main(int argc, char *argv[])
     recorded.shapes = recorded.support.mls;
     mls_parse(&tool, &recorded.shapes);
     TOOL_TRY(&tool, stage_shapefn(&stream, &recorded.shapes, &error));
-    record(&tool, &stream, &recorded);
+    /* Other tools evaluate the shape functions by these settings. */
+    const struct section *radius = stream_find(&stream, "support.radius");
+    TOOL_TRY(&tool, stage_record(&stream, &recorded, radius->rows, radius->data, &error));
     tool_write(&tool, &stream, tool_given(&tool, "text"));
     return tool_end(&tool);
 }

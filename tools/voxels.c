@@ -199,9 +199,7 @@ static void report_cells(const struct tool *tool, const struct cells *cells, dou
     for (int64_t c = 0; c < cells->count; c++) {
         const double *x[4];
         double angles[2];
-        for (int k = 0; k <= cells->dim; k++) {
-            x[k] = cells->x + (int64_t)cells->node[c * (cells->dim + 1) + k] * cells->dim;
-        }
+        cell_corners(cells, c, x);
         simplex_angles(cells->dim, x, angles);
         least = fmin(least, angles[0]);
         most = fmax(most, angles[1]);

@@ -202,7 +202,7 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
 {
     struct error error;
     struct solved solved;
-    tool_check(tool, solved_read(stream, &solved, &error), &error);
+    tool_check(tool, supports_read(stream, "parameters", &solved, &error), &error);
     const struct section *field = stream_find(stream, section);
     const struct section *parameters = solved_parameters(stream, &solved, field);
     struct motion_source source = {&solved.recorded.support, &solved.recorded.shapes, solved.radius,

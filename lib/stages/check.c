@@ -119,12 +119,12 @@ static enum status check_unity(const struct neighbours *lists, const struct sect
     return STATUS_OK;
 }
 
-/* Check the lists PREFIX.ptr, PREFIX.idx, and the shape functions on them. */
-static enum status check_lists(const struct stream *stream, const char *prefix, struct error *error)
+/* Check the lists of a section PREFIX.ptr and of PREFIX.idx, and the shape functions on them. */
+static enum status check_lists(const struct stream *stream, const char *ptr_name, struct error *error)
 {
-    char ptr_name[64], idx_name[64];
+    char prefix[64], idx_name[72];
     struct neighbours lists;
-    snprintf(ptr_name, sizeof ptr_name, "%s.ptr", prefix);
+    snprintf(prefix, sizeof prefix, "%.*s", (int)strcspn(ptr_name, "."), ptr_name);
     snprintf(idx_name, sizeof idx_name, "%s.idx", prefix);
     const struct section *ptr = stream_find(stream, ptr_name), *nodes = stream_find(stream, "nodes.x");
     if (ptr == NULL && stream_find(stream, idx_name) == NULL) {
@@ -206,7 +206,6 @@ static void tell(struct check *check, enum status status, const struct error *er
 
 static void check_together(const struct stream *stream, struct check *check, struct error *error)
 {
-    static const char *const prefixes[] = {"nbr", "facepoint", "node", "face", "boundary"};
     struct cells cells = {0};
     if (stream_find(stream, "nodes.x") != NULL) {
         tell(check, stream_cells(stream, false, &cells, error), error);
@@ -216,8 +215,11 @@ static void check_together(const struct stream *stream, struct check *check, str
     }
     tell(check, check_groups(stream, &cells, error), error);
     tell(check, check_faces(stream, &cells, error), error);
-    for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-        tell(check, check_lists(stream, prefixes[i], error), error);
+    for (int k = 0; k < SECTION_KINDS; k++) {
+        const struct section_kind *kind = &section_kinds[k];
+        if (kind->content == LIST && strcmp(kind->name, "sets.ptr") != 0) {
+            tell(check, check_lists(stream, kind->name, error), error);
+        }
     }
 }
 

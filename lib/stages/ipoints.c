@@ -9,11 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-struct ipoints_options ipoints_defaults(void)
-{
-    return (struct ipoints_options){.smoothed = true};
-}
-
 /* Allocate `count` points. */
 static enum status new_points(int64_t count, int dim, struct adaptive_points *points, struct error *error)
 {

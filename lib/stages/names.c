@@ -5,11 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum status names_read(const struct section *section, struct names *names, struct error *error)
-{
-    return names_of(section, "names", names, error);
-}
-
 enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
 {
     size_t size = strlen(section->attributes) + 1;

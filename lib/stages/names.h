@@ -9,9 +9,8 @@ struct names {
     char **name; /* count */
 };
 
-/* The names of a section; to be freed also on failure. */
-MUST_CHECK enum status names_read(const struct section *section, struct names *names, struct error *error);
-/* The same for another attribute that is a list, such as rows=. */
+/* The names in an attribute of a section, names= or another list such as rows=; to be freed also on
+ * failure. */
 MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
                                 struct error *error);
 void names_free(struct names *names);

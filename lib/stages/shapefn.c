@@ -7,20 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Check the numbers of a section from any source: coordinates are finite, radii and factors positive. */
-static enum status check_numbers(const struct section *section, bool positive, struct error *error)
-{
-    const double *values = section->data;
-    for (int64_t i = 0; i < section->rows * section->cols; i++) {
-        if (!isfinite(values[i]) || (positive && !(values[i] > 0.0))) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a %s", section->name,
-                        (long long)(i / section->cols), values[i],
-                        positive ? "positive length" : "finite coordinate");
-        }
-    }
-    return STATUS_OK;
-}
-
 /* The points of one section, and their lists of one prefix. */
 struct tabulated {
     int64_t node_count;
@@ -41,8 +27,8 @@ static enum status view_points(const struct stream *stream, const char *section,
     if (radius->rows != of->node_count || of->lists.widen == NULL) {
         return fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
     }
-    RETURN_IF_ERROR(check_numbers(points, false, error));
-    RETURN_IF_ERROR(check_numbers(radius, true, error));
+    RETURN_IF_ERROR(section_check_numbers(points, false, error));
+    RETURN_IF_ERROR(section_check_numbers(radius, true, error));
     for (int64_t p = 0; p < points->rows; p++) {
         if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
             return fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,

@@ -1,15 +1,9 @@
 #include "stages/solved.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 static const char prefix[] = "parameters";
-
-enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error)
-{
-    return supports_read(stream, "parameters", solved, error);
-}
 
 enum status supports_read(const struct stream *stream, const char *of, struct solved *solved,
                           struct error *error)
@@ -32,13 +26,7 @@ enum status supports_read(const struct stream *stream, const char *of, struct so
                     (long long)radius->rows, (long long)node_count);
     }
     solved->radius = radius->data;
-    for (int64_t i = 0; i < node_count; i++) {
-        if (!(solved->radius[i] > 0.0) || !isfinite(solved->radius[i])) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a positive length", radius->name,
-                        (long long)i, solved->radius[i]);
-        }
-    }
-    return STATUS_OK;
+    return section_check_numbers(radius, true, error);
 }
 
 const struct section *solved_parameters(const struct stream *stream, const struct solved *solved,

@@ -9,10 +9,7 @@ struct solved {
     struct recorded recorded; /* further settings of supports and shape functions */
 };
 
-/* A view of the stream; zeros if it has no section parameters.radius. */
-MUST_CHECK enum status solved_read(const struct stream *stream, struct solved *solved, struct error *error);
-
-/* The same for the supports of the sections PREFIX.radius and PREFIX.side. */
+/* A view of the supports of the sections PREFIX.radius and PREFIX.side; zeros if the stream has none. */
 MUST_CHECK enum status supports_read(const struct stream *stream, const char *prefix, struct solved *solved,
                                      struct error *error);
 

@@ -7,7 +7,7 @@
 #include "approx/adaptive/adaptive.h"
 #include "approx/support/support.h"
 
-/* How ipoints places integration points. */
+/* How ipoints places integration points; by default for smoothed cells. */
 struct ipoints_options {
     bool smoothed;    /* one point per cell, gradients smoothed over the cell */
     int gauss_points; /* else: points per cell */
@@ -18,7 +18,6 @@ struct ipoints_options {
                            nodes, with this number along each axis; with zeros behind the first number, along
                            all axes */
 };
-struct ipoints_options ipoints_defaults(void);
 
 /* Add the sections of ipoints: points.*, faces, faces.cell, facepoints.x (lib/README.md). *unresolved counts
  * the cells that are too coarse even at the last level of adaptive integration. */

@@ -46,6 +46,19 @@ enum status stream_cells(const struct stream *stream, bool needed, struct cells 
     return cells_check(cells, error);
 }
 
+enum status section_check_numbers(const struct section *section, bool positive, struct error *error)
+{
+    const double *values = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        if (!isfinite(values[i]) || (positive && !(values[i] > 0.0))) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a %s", section->name,
+                        (long long)(i / section->cols), values[i],
+                        positive ? "positive length" : "finite coordinate");
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
                          const struct section **field, struct error *error)
 {
@@ -82,7 +95,7 @@ enum status stream_regions(const struct stream *stream, const struct cells *cell
         return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld: does not fit",
                     (long long)section->rows, (long long)cells->count);
     }
-    RETURN_IF_ERROR(names_read(section, &regions->names, error));
+    RETURN_IF_ERROR(names_of(section, "names", &regions->names, error));
     regions->of_cell = section->data;
     return check_numbers(section, "region", " in names=", regions->names.count, error);
 }
@@ -101,7 +114,7 @@ enum status stream_facets(const struct stream *stream, bool needed, const struct
         return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
     }
     RETURN_IF_ERROR(check_numbers(facet, "node", "", cells->node_count, error));
-    RETURN_IF_ERROR(names_read(group, &facets->names, error));
+    RETURN_IF_ERROR(names_of(group, "names", &facets->names, error));
     RETURN_IF_ERROR(check_numbers(group, "group", " in names=", facets->names.count, error));
     facets->count = facet->rows;
     facets->facet = facet->data;
@@ -118,7 +131,7 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_need(stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
-    RETURN_IF_ERROR(names_read(ptr, &sets->names, error));
+    RETURN_IF_ERROR(names_of(ptr, "names", &sets->names, error));
     return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
 }
 

@@ -14,6 +14,10 @@ MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
 
+/* Check the numbers of a section of type f8: coordinates are finite, lengths positive as well. */
+MUST_CHECK enum status section_check_numbers(const struct section *section, bool positive,
+                                             struct error *error);
+
 /* A nodal field of 1 to 3 columns. */
 MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
                                     const struct section **field, struct error *error);

@@ -32,7 +32,7 @@ static enum status view_side(struct side *side, const char *field, struct error 
     struct nodal_field *view = &side->field;
     RETURN_IF_ERROR(stream_cells(&side->stream, false, &view->cells, error));
     RETURN_IF_ERROR(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
-    RETURN_IF_ERROR(solved_read(&side->stream, &side->solved, error));
+    RETURN_IF_ERROR(supports_read(&side->stream, "parameters", &side->solved, error));
     const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
     view->cols = side->section->cols;
     view->values = side->section->data;

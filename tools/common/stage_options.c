@@ -29,7 +29,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     int64_t unresolved;
     tool_check(tool, stream_nodes(stream, &dim, NULL, NULL, &error), &error);
     if (strcmp(stage, "ipoints") == 0) {
-        struct ipoints_options options = ipoints_defaults();
+        const struct ipoints_options options = {.smoothed = true};
         status = stage_ipoints(stream, &options, &unresolved, &error);
     } else if (strcmp(stage, "support") == 0) {
         struct support_options options = support_defaults(dim);

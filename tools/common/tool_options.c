@@ -59,6 +59,25 @@ int tool_choice(const struct tool *tool, const char *option, const char *const c
     return choice;
 }
 
+int tool_whole_numbers(const struct tool *tool, const char *option, double least, double most,
+                       int64_t numbers[3])
+{
+    double values[3];
+    int count = 1;
+    char what[32];
+    const struct option *found = options_find(&tool->options, option);
+    TOOL_TRY(tool, parse_double_list(found->value, option_text(found, what), least, most, 3, values, &count,
+                                     &error));
+    for (int a = 0; a < 3; a++) {
+        double value = values[a < count ? a : 0];
+        numbers[a] = (int64_t)value;
+        if ((double)numbers[a] != value) {
+            tool_fail(tool, STATUS_INPUT, "%s: %g is not a whole number", what, value);
+        }
+    }
+    return count;
+}
+
 const char *tool_first_given(const struct tool *tool, const char *const options[])
 {
     for (int i = 0; options[i] != NULL; i++) {

@@ -2,7 +2,6 @@
 
 #include "stages/views.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,10 +52,5 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
                   (long long)sizes->cells.node_count);
     }
     sizes->size = section->data;
-    for (int64_t n = 0; n < section->rows; n++) {
-        if (!(sizes->size[n] > 0) || !isfinite(sizes->size[n])) {
-            tool_fail(tool, STATUS_INPUT, "--sizes: size: row %lld: %g is not a positive length, m",
-                      (long long)n, sizes->size[n]);
-        }
-    }
+    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, true, &error), "--sizes"));
 }

@@ -33,7 +33,7 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
     if (cell->rows != rows->count) {
         tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
     }
-    TOOL_TRY(tool, names_read(region, &names, &error));
+    TOOL_TRY(tool, names_of(region, "names", &names, &error));
     TOOL_TRY(tool, NEW_ARRAY(&wanted, names.count, &error));
     for (char *name; (name = strsep(&list, ",")) != NULL;) {
         int64_t index = names_find(&names, name);

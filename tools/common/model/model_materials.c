@@ -1,4 +1,5 @@
 #include "model/model.h"
+#include "model/tissue.h"
 
 #include "io/files/table.h"
 
@@ -36,13 +37,8 @@ static enum status check_row(const struct model *model, const struct scene_mater
                     section->label.where, section->table, (long long)table->line[row],
                     away * model->assembly.extent, (long long)q);
     }
-    double modulus = values[dim], ratio = values[dim + 1];
-    if (!(modulus > 0.0) || !(ratio > -1.0 && ratio < 0.5)) {
-        return fail(error, STATUS_INPUT,
-                    "%s: %s:%lld: E = %g, nu = %g: E must be positive, nu within (-1, .5)",
-                    section->label.where, section->table, (long long)table->line[row], modulus, ratio);
-    }
-    return STATUS_OK;
+    return fail_in(error, moduli_check(values + dim, error), "%s: %s:%lld", section->label.where,
+                   section->table, (long long)table->line[row]);
 }
 
 /* Read a table with one row for each integration point of the section's regions, in their order: coordinates,

@@ -4,16 +4,14 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-static enum status check_moduli(const double moduli[2], const char *where, struct error *error)
+enum status moduli_check(const double moduli[2], struct error *error)
 {
-    if (moduli[0] > 0 && moduli[1] > -1 && moduli[1] < 0.5) {
-        return STATUS_OK;
-    }
-    return fail(error, STATUS_INPUT, "%s: E = %g, nu = %g: E must be positive, nu within (-1, .5)", where,
-                moduli[0], moduli[1]);
+    return moduli[0] > 0 && moduli[1] > -1 && moduli[1] < 0.5
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "E = %g, nu = %g: E must be positive, nu within (-1, .5)",
+                      moduli[0], moduli[1]);
 }
 
 enum status tissue_read(const char *path, struct tissue *tissue, struct error *error)
@@ -22,14 +20,11 @@ enum status tissue_read(const char *path, struct tissue *tissue, struct error *e
     *tissue = (struct tissue){0};
     RETURN_IF_ERROR(table_read(path, 3, 3, law, error));
     for (int64_t r = 0; r < law->rows; r++) {
-        char where[32];
-        snprintf(where, sizeof where, "line %lld", (long long)law->line[r]);
-        enum status status = check_moduli(law->values + 3 * r + 1, where, error);
+        enum status status = moduli_check(law->values + 3 * r + 1, error);
         if (status == STATUS_OK && r > 0 && !(law->values[3 * r] > law->values[3 * (r - 1)])) {
-            status =
-                fail(error, STATUS_INPUT, "%s: the values of the image (first column) must ascend", where);
+            status = fail(error, STATUS_INPUT, "the values of the image (first column) must ascend");
         }
-        RETURN_IF_ERROR(fail_in(error, status, "%s", path));
+        RETURN_IF_ERROR(fail_in(error, status, "%s: line %lld", path, (long long)law->line[r]));
     }
     return STATUS_OK;
 }
@@ -45,7 +40,7 @@ enum status tissue_parse(int count, const char *const text[], struct tissue *tis
         if (numbers != 2) {
             return fail(error, STATUS_INPUT, "--tissue %s: two numbers, E (Pa) and nu", text[i]);
         }
-        RETURN_IF_ERROR(check_moduli(tissue->moduli[i], "--tissue", error));
+        RETURN_IF_ERROR(fail_in(error, moduli_check(tissue->moduli[i], error), "--tissue"));
     }
     return STATUS_OK;
 }

@@ -12,6 +12,9 @@ struct tissue {
     double (*moduli)[2]; /* count: E, Pa, and nu of each */
 };
 
+/* Check that E is positive, and nu within (-1, .5). */
+MUST_CHECK enum status moduli_check(const double moduli[2], struct error *error);
+
 /* Read a table of rows value, E (Pa), nu. Errors as table_read; STATUS_INPUT for values that do not ascend,
  * and for invalid moduli. */
 MUST_CHECK enum status tissue_read(const char *path, struct tissue *tissue, struct error *error);
