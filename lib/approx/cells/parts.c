@@ -79,8 +79,11 @@ void ridges_list(int dim, int64_t count, const int32_t *node, struct ridge *ridg
         int k = (int)(i % dim);
         int32_t a = of[(k + 1) % dim], b = dim == 3 ? of[(k + 2) % dim] : -1;
         bool turned = b >= 0 && b < a;
-        ridge[i] = (struct ridge){
-            .node = {turned ? b : a, turned ? a : b}, .facet = (int32_t)(i / dim), .opposite = of[k]};
+        ridge[i] = (struct ridge){.node = {turned ? b : a, turned ? a : b},
+                                  .facet = (int32_t)(i / dim),
+                                  .opposite = of[k],
+                                  .corner = (int8_t)k,
+                                  .upward = dim == 2 ? k == 0 : !turned};
     }
     qsort(ridge, (size_t)(count * dim), sizeof *ridge, compare_ridges);
 }

@@ -6,7 +6,9 @@
 /* Where facets of a boundary meet: a node, in 3D an edge. */
 struct ridge {
     int32_t node[2];         /* ascending; 2D: the second is -1 */
-    int32_t facet, opposite; /* the facet, and its vertex that is not on the ridge */
+    int32_t facet, opposite; /* the facet, and its vertex that is not on the ridge, */
+    int8_t corner;           /* and the number of that corner */
+    bool upward;             /* the facet goes from the first node to the second; 2D: it ends at the node */
 };
 
 /* ridge[count * dim]: the ridges of the facets node[count * dim], sorted by nodes, then by facets. */

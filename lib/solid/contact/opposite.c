@@ -32,46 +32,31 @@ enum status opposite_parts(const struct cells *cells, int32_t *part, struct erro
     return STATUS_OK;
 }
 
-/* 3D: the facet beyond each edge, and the rims. Edges of more than two facets, where bodies meet, are no
+/* The rims, and in 3D the facet beyond each edge. Ridges of more than two facets, where bodies meet, are no
  * rims. */
-static enum status join_edges(struct opposite *opposite, struct error *error)
+static enum status join_facets(struct opposite *opposite, struct error *error)
 {
     struct rigid_surface *surface = &opposite->surface;
-    int64_t count = surface->facet_count * 3;
-    SCRATCH struct half_edge *edges = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&edges, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&opposite->across, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_normal, count * 3, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_is_rim, count, error));
-    for (int64_t slot = 0; slot < count; slot++) {
+    int dim = surface->dim;
+    int64_t count = surface->facet_count * dim, edges = dim == 3 ? count : 0;
+    SCRATCH struct ridge *ridges = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->across, edges, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_normal, edges * 3, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_is_rim, edges, error));
+    for (int64_t slot = 0; slot < edges; slot++) {
         opposite->across[slot] = slot;
     }
-    rigid_list_edges(surface, edges);
-    for (int64_t first = 0, last; first < count; first = last) {
-        last = rigid_edge_end(edges, first, count);
-        if (last - first == 1) {
-            opposite->across[edges[first].slot] = -1;
-            surface->edge_is_rim[edges[first].slot] = true;
-            surface->is_rim[edges[first].low] = surface->is_rim[edges[first].high] = true;
-        } else if (last - first == 2) {
-            opposite->across[edges[first].slot] = edges[first + 1].slot;
-            opposite->across[edges[first + 1].slot] = edges[first].slot;
+    RETURN_IF_ERROR(rigid_list_ridges(surface, &ridges, error));
+    for (int64_t first = 0, end; first < count; first = end) {
+        end = ridges_end(count, ridges, first);
+        int64_t one = rigid_edge_slot(&ridges[first]), other = rigid_edge_slot(&ridges[end - 1]);
+        if (end - first == 1) {
+            rigid_mark_rim(surface, &ridges[first]);
         }
-    }
-    return STATUS_OK;
-}
-
-/* 2D: ends of the curves. */
-static enum status find_ends(struct opposite *opposite, struct error *error)
-{
-    struct rigid_surface *surface = &opposite->surface;
-    SCRATCH int8_t *at = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&at, surface->vertex_count, error));
-    for (int64_t c = 0; c < surface->facet_count * 2; c++) {
-        at[surface->facet[c]] = (int8_t)(at[surface->facet[c]] < 2 ? at[surface->facet[c]] + 1 : 2);
-    }
-    for (int64_t v = 0; v < surface->vertex_count; v++) {
-        surface->is_rim[v] = at[v] < 2;
+        if (dim == 3 && end - first <= 2) {
+            opposite->across[one] = end - first == 1 ? -1 : other;
+            opposite->across[other] = end - first == 1 ? -1 : one;
+        }
     }
     return STATUS_OK;
 }
@@ -129,20 +114,6 @@ static enum status measure_rest(struct opposite *opposite, const struct facet_se
     return STATUS_OK;
 }
 
-/* The angle of a facet at its corner k; in 2D all weigh alike. */
-static double corner_angle(const struct rigid_surface *surface, const int32_t *facet, int k)
-{
-    if (surface->dim == 2) {
-        return 1.0;
-    }
-    const double *x = surface->vertex + (int64_t)facet[k] * 3;
-    double one[3], other[3], cross[3];
-    vector_subtract(3, surface->vertex + (int64_t)facet[(k + 1) % 3] * 3, x, one);
-    vector_subtract(3, surface->vertex + (int64_t)facet[(k + 2) % 3] * 3, x, other);
-    vector_cross(one, other, cross);
-    return atan2(vector_length(3, cross), vector_dot(3, one, other));
-}
-
 /* Fit the boxes of the tree to the moved facets. The branches below a branch come behind it. */
 static void fit_boxes(struct rigid_surface *surface)
 {
@@ -178,7 +149,7 @@ static void refit(struct opposite *opposite)
         face_area_vector(dim, surface->vertex, facet, normal);
         vector_normalise(dim, normal);
         for (int k = 0; k < dim; k++) {
-            add_scaled(dim, corner_angle(surface, facet, k), normal,
+            add_scaled(dim, rigid_corner_angle(surface, f, k), normal,
                        surface->vertex_normal + (int64_t)facet[k] * dim);
         }
     }
@@ -210,7 +181,7 @@ enum status opposite_build(const struct face_table *table, const struct facet_se
     RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex_normal, surface->vertex_count * table->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
-    RETURN_IF_ERROR(table->dim == 2 ? find_ends(opposite, error) : join_edges(opposite, error));
+    RETURN_IF_ERROR(join_facets(opposite, error));
     RETURN_IF_ERROR(measure_rest(opposite, set, part, error));
     RETURN_IF_ERROR(rigid_grow_tree(surface, error));
     refit(opposite);

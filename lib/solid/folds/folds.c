@@ -1,6 +1,7 @@
 /* Preparation of the search for folds, on the body at rest; see folds.h. */
 #include "solid/folds/folds.h"
 
+#include "approx/cells/parts.h"
 #include "base/memory.h"
 #include "base/sets.h"
 #include "solid/folds/folds_private.h"
@@ -22,39 +23,19 @@ static int compare_rings(const void *left, const void *right)
                            ((const struct fold_ring *)right)->node);
 }
 
-static int compare_sides(const void *left, const void *right)
+/* The node (2D), or the first two nodes (3D), ascending. */
+static void side_nodes(int dim, const int32_t *facet, int32_t node[2])
 {
-    const struct fold_ring *a = left, *b = right;
-    int order = compare_rings(a, b);
-    return order != 0 ? order : (a->facet > b->facet) - (a->facet < b->facet);
-}
-
-/* Side k of a facet: in 2D node k, in 3D the edge from corner k to the next. */
-static void side_nodes(int dim, const int32_t *facet, int k, int32_t node[2])
-{
-    int32_t a = facet[k], b = dim == 3 ? facet[(k + 1) % 3] : -1;
+    int32_t a = facet[0], b = dim == 3 ? facet[1] : -1;
     node[0] = dim == 2 || a < b ? a : b;
     node[1] = dim == 2 || a < b ? b : a;
-}
-
-/* The sides of all facets; those that meet follow each other. */
-static enum status list_sides(const struct fold_input *input, struct fold_ring **sides, struct error *error)
-{
-    int dim = input->dim;
-    RETURN_IF_ERROR(NEW_ARRAY(sides, input->facet_count * dim, error));
-    for (int64_t i = 0; i < input->facet_count * dim; i++) {
-        (*sides)[i].facet = i / dim;
-        side_nodes(dim, input->facet + i / dim * dim, (int)(i % dim), (*sides)[i].node);
-    }
-    qsort(*sides, (size_t)(input->facet_count * dim), sizeof **sides, compare_sides);
-    return STATUS_OK;
 }
 
 /* The ring of a node (2D) or of an edge (3D) of a cell, -1 for none. */
 static int32_t find_ring(const struct folds *folds, const int32_t *side)
 {
     struct fold_ring key;
-    side_nodes(folds->input.dim, side, 0, key.node);
+    side_nodes(folds->input.dim, side, key.node);
     const struct fold_ring *ring =
         bsearch(&key, folds->rings, (size_t)folds->ring_count, sizeof key, compare_rings);
     return ring != NULL ? (int32_t)(ring - folds->rings) : -1;
@@ -122,14 +103,19 @@ static enum status list_cells(struct folds *folds, struct error *error)
     return find_flat_cells(folds, part, error);
 }
 
-static enum status build_rings(struct folds *folds, const struct fold_ring *sides, struct error *error)
+static bool meet(const struct ridge *side, const struct ridge *next)
+{
+    return compare_numbers(2, side->node, next->node) == 0;
+}
+
+static enum status build_rings(struct folds *folds, const struct ridge *sides, struct error *error)
 {
     int64_t count = folds->input.facet_count * folds->input.dim;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->rings, count, error));
     for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || compare_rings(&sides[i - 1], &sides[i]) != 0) {
-            folds->rings[folds->ring_count] = sides[i];
-            folds->rings[folds->ring_count++].other = -1;
+        if (i == 0 || !meet(&sides[i - 1], &sides[i])) {
+            folds->rings[folds->ring_count++] = (struct fold_ring){
+                .node = {sides[i].node[0], sides[i].node[1]}, .facet = sides[i].facet, .other = -1};
         } else {
             folds->rings[folds->ring_count - 1].other = sides[i].facet;
         }
@@ -149,7 +135,7 @@ static bool in_one_plane(const struct fold_input *input, int64_t f, int64_t g)
 }
 
 /* Held facets that meet in one plane are one support, numbered by its first facet. */
-static enum status find_supports(struct folds *folds, const struct fold_ring *sides, struct error *error)
+static enum status find_supports(struct folds *folds, const struct ridge *sides, struct error *error)
 {
     const struct fold_input *input = &folds->input;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->support, input->facet_count, error));
@@ -162,8 +148,7 @@ static enum status find_supports(struct folds *folds, const struct fold_ring *si
     }
     for (int64_t i = 1; i < input->facet_count * input->dim; i++) {
         int64_t f = sides[i - 1].facet, g = sides[i].facet;
-        if (compare_rings(&sides[i - 1], &sides[i]) == 0 && input->held[f] && input->held[g] &&
-            in_one_plane(input, f, g)) {
+        if (meet(&sides[i - 1], &sides[i]) && input->held[f] && input->held[g] && in_one_plane(input, f, g)) {
             set_join(folds->support, (int32_t)f, (int32_t)g);
         }
     }
@@ -175,23 +160,20 @@ static enum status find_supports(struct folds *folds, const struct fold_ring *si
     return STATUS_OK;
 }
 
-/* Add the rim between a free facet and a support, which meet in a node or an edge. */
-static void add_rim(struct folds *folds, const struct fold_ring *side, int64_t facet, int64_t support_facet)
+/* Add the rim between a free facet, by its side, and a support, which meet in a node or an edge. */
+static void add_rim(struct folds *folds, const struct ridge *side, int64_t support_facet)
 {
-    int dim = folds->input.dim;
     double reach;
-    struct fold_rim rim = {
-        .facet = facet, .support_facet = support_facet, .node = -1, .on_rim = side->node[0]};
-    for (int k = 0; k < dim; k++) {
-        int32_t node = folds->input.facet[facet * dim + k];
-        rim.node = node == side->node[0] || node == side->node[1] ? rim.node : node;
-    }
+    struct fold_rim rim = {.facet = side->facet,
+                           .support_facet = support_facet,
+                           .node = side->opposite,
+                           .on_rim = side->node[0]};
     if (folds_rim_beyond(folds, &rim, folds->input.x, &reach) < -least_turn * reach) {
         folds->rims[folds->rim_count++] = rim;
     }
 }
 
-static enum status find_rims(struct folds *folds, const struct fold_ring *sides, struct error *error)
+static enum status find_rims(struct folds *folds, const struct ridge *sides, struct error *error)
 {
     const struct fold_input *input = &folds->input;
     int64_t count = input->facet_count * input->dim;
@@ -199,8 +181,8 @@ static enum status find_rims(struct folds *folds, const struct fold_ring *sides,
     folds_fill_planes(folds, input->x);
     for (int64_t i = 1; i < count; i++) {
         int64_t f = sides[i - 1].facet, g = sides[i].facet;
-        if (compare_rings(&sides[i - 1], &sides[i]) == 0 && input->held[f] != input->held[g]) {
-            add_rim(folds, &sides[i], input->held[f] ? g : f, input->held[f] ? f : g);
+        if (meet(&sides[i - 1], &sides[i]) && input->held[f] != input->held[g]) {
+            add_rim(folds, &sides[input->held[f] ? i : i - 1], input->held[f] ? f : g);
         }
     }
     return STATUS_OK;
@@ -213,7 +195,7 @@ static bool interpenetrates(const struct fold *fold)
 
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
-    SCRATCH struct fold_ring *sides = NULL;
+    SCRATCH struct ridge *sides = NULL;
     SCRATCH double *u = NULL;
     SCRATCH bool *stopped = NULL;
     int64_t size = input->node_count * input->dim;
@@ -225,7 +207,8 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
-    RETURN_IF_ERROR(list_sides(input, &sides, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sides, input->facet_count * input->dim, error));
+    ridges_list(input->dim, input->facet_count, input->facet, sides);
     RETURN_IF_ERROR(build_rings(folds, sides, error));
     RETURN_IF_ERROR(find_supports(folds, sides, error));
     RETURN_IF_ERROR(find_rims(folds, sides, error));

@@ -1,6 +1,7 @@
 /* Steps of building a rigid surface; private to lib/solid. */
 #pragma once
 
+#include "approx/cells/parts.h"
 #include "base/box.h"
 #include "base/vector.h"
 #include "solid/rigid/rigid.h"
@@ -11,20 +12,21 @@
  * disagree on the side. */
 MUST_CHECK enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error);
 
-/* An edge of a triangle; it goes from corner k to k + 1. */
-struct half_edge {
-    int32_t low, high; /* its vertices */
-    int32_t opposite;  /* the other vertex of the triangle */
-    bool upward;       /* from low to high */
-    int64_t slot;      /* facet * 3 + k */
-};
+/* The ridges of a surface, facet_count * dim, to be freed. */
+MUST_CHECK enum status rigid_list_ridges(const struct rigid_surface *surface, struct ridge **ridges,
+                                         struct error *error);
 
-/* 3D: edges[facet_count * 3] = the half-edges of a surface, sorted so that those on one edge are
- * consecutive. */
-void rigid_list_edges(const struct rigid_surface *surface, struct half_edge *edges);
+/* Mark the nodes (3D: and the edge) of a ridge of one facet as rim. */
+void rigid_mark_rim(struct rigid_surface *surface, const struct ridge *ridge);
 
-/* The end of the run of half-edges on one edge that begins at `first`. */
-int64_t rigid_edge_end(const struct half_edge *edges, int64_t first, int64_t count);
+/* 3D: facet * 3 + k of the edge from corner k to k + 1 that lies on the ridge. */
+static inline int64_t rigid_edge_slot(const struct ridge *ridge)
+{
+    return (int64_t)ridge->facet * 3 + (ridge->corner + 1) % 3;
+}
+
+/* The angle of facet f at its corner k; in 2D all weigh alike. */
+double rigid_corner_angle(const struct rigid_surface *surface, int64_t f, int k);
 
 /* Set branch, branch_count and in_order. */
 MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);
