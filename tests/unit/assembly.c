@@ -87,8 +87,8 @@ TEST(held_faces)
         {.facets = side_facets(&l, 1u << 3, &high)}};
     l.assembly.conditions = conditions;
     l.assembly.condition_count = 2;
-    GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
-    GOOD(assembly_sliding_faces(&l.assembly, &slides, &error));
+    GOOD(assembly_held_faces(&l.assembly, 1, false, &held, &error));
+    GOOD(assembly_held_faces(&l.assembly, 1, true, &slides, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
         const double *a = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
                      *b = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];

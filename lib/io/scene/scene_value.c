@@ -31,12 +31,6 @@ bool place_has(const struct place *place, const char *key)
     return ini_find(place->section, key) != NULL;
 }
 
-static char *text_of(const struct place *place, const char *key)
-{
-    const struct ini_entry *entry = ini_find(place->section, key);
-    return entry != NULL ? entry->value : NULL;
-}
-
 enum status place_require(const struct place *place, const char *key, const char *what)
 {
     return place_has(place, key) ? STATUS_OK : place_fail(place, key, "missing: %s", what);
@@ -296,12 +290,13 @@ static enum status read_curve(const struct place *place, const char *text, struc
 
 enum status place_read(const struct place *place, const struct scene_key *key, int dim, void *item)
 {
-    char *text = text_of(place, key->name);
+    const struct ini_entry *entry = ini_find(place->section, key->name);
     void *value = (char *)item + key->at;
     bool *is_free = key->free > 0 ? (void *)((char *)item + key->free) : NULL;
-    if (text == NULL) {
+    if (entry == NULL) {
         return key->missing != NULL ? place_require(place, key->name, key->missing) : STATUS_OK;
     }
+    char *text = entry->value;
     switch (key->type) {
     case VALUE_NUMBER:
     case VALUE_POSITIVE:

@@ -143,12 +143,13 @@ static void put_bytes(struct writer *writer, const void *bytes, size_t size)
     }
 }
 
-/* Write the start tag of an array. */
-static void begin_array(struct writer *writer, const char *type, const char *name, int64_t columns)
+/* Write the start tag of an array; `size`: what `count` numbers. */
+static void begin_array(struct writer *writer, const char *type, const char *name, const char *size,
+                        int64_t count)
 {
     fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
     print_escaped(writer->file, name);
-    fprintf(writer->file, "\" NumberOfComponents=\"%" PRId64 "\"", columns);
+    fprintf(writer->file, "\" %s=\"%" PRId64 "\"", size, count);
 }
 
 static void begin_data(struct writer *writer, int64_t count, size_t size)
@@ -233,7 +234,7 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
     static const char *const added[] = {"", "", "z", "", "yz", "xz"}; /* names of columns of zeros */
     struct layout layout = layout_of(mesh, field->section);
     char name[64];
-    begin_array(writer, types[field->section->type], field->name, layout.count);
+    begin_array(writer, types[field->section->type], field->name, "NumberOfComponents", layout.count);
     bool is_named = layout.count > 1 && column_name(field->section, 0, name, sizeof name);
     for (int64_t k = 0; is_named && k < layout.count; k++) {
         int64_t column = layout_column(&layout, field->section, k);
@@ -248,13 +249,6 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
     put_rows(writer, field->section, &layout);
 }
 
-static void begin_number(struct writer *writer, const char *type, const char *name)
-{
-    fprintf(writer->file, "<DataArray type=\"%s\" Name=\"", type);
-    print_escaped(writer->file, name);
-    fputs("\" NumberOfTuples=\"1\"", writer->file);
-}
-
 /* Write the regions as arrays by name with their index in cells.region, as readers other than VTK do not
  * support arrays of strings; and the numbers. */
 static void put_field_data(struct writer *writer, const char *regions, int64_t count,
@@ -265,7 +259,7 @@ static void put_field_data(struct writer *writer, const char *regions, int64_t c
     fputs(is_empty ? "" : "<FieldData>\n", writer->file);
     for (int64_t i = 0; list_item(regions, i, name, sizeof name); i++) {
         snprintf(label, sizeof label, "region.%s", name);
-        begin_number(writer, "Int64", label);
+        begin_array(writer, "Int64", label, "NumberOfTuples", 1);
         begin_data(writer, 1, 8);
         put_integer(writer, i, 8);
         end_array(writer);
@@ -273,7 +267,7 @@ static void put_field_data(struct writer *writer, const char *regions, int64_t c
     for (int64_t i = 0; i < count; i++) {
         double value = numbers[i].value;
         struct section section = {.type = TYPE_F8, .rows = 1, .cols = 1, .data = &value};
-        begin_number(writer, "Float64", numbers[i].name);
+        begin_array(writer, "Float64", numbers[i].name, "NumberOfTuples", 1);
         put_rows(writer, &section, &(struct layout){.count = 1});
     }
     fputs(is_empty ? "" : "</FieldData>\n", writer->file);
@@ -285,19 +279,19 @@ static void put_cells(struct writer *writer, const struct vtk_mesh *mesh)
     int64_t count = mesh->node != NULL ? mesh->cell_count : mesh->node_count;
     int type = mesh->node == NULL ? VTK_VERTEX : mesh->dim == 2 ? VTK_TRIANGLE : VTK_TETRA;
     fputs("<Cells>\n", writer->file);
-    begin_array(writer, "Int64", "connectivity", 1);
+    begin_array(writer, "Int64", "connectivity", "NumberOfComponents", 1);
     begin_data(writer, count * corners, 8);
     for (int64_t i = 0; i < count * corners; i++) {
         put_integer(writer, mesh->node != NULL ? mesh->node[i] : i, 8);
     }
     end_array(writer);
-    begin_array(writer, "Int64", "offsets", 1);
+    begin_array(writer, "Int64", "offsets", "NumberOfComponents", 1);
     begin_data(writer, count, 8);
     for (int64_t c = 1; c <= count; c++) {
         put_integer(writer, c * corners, 8);
     }
     end_array(writer);
-    begin_array(writer, "UInt8", "types", 1);
+    begin_array(writer, "UInt8", "types", "NumberOfComponents", 1);
     begin_data(writer, count, 1);
     for (int64_t c = 0; c < count; c++) {
         put_integer(writer, type, 1);
@@ -337,7 +331,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_cou
     put_field_data(&writer, mesh->region_names, number_count, numbers);
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
             mesh->node_count, cell_count);
-    begin_array(&writer, "Float64", "Points", 3);
+    begin_array(&writer, "Float64", "Points", "NumberOfComponents", 3);
     put_rows(&writer, &points, &(struct layout){.count = 3});
     fputs("</Points>\n", file);
     put_cells(&writer, mesh);

@@ -187,10 +187,8 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
     }
 }
 
-/* The faces of conditions that prescribe at least `least` directions; with `sliding` only of conditions along
- * normals. */
-static enum status find_faces(const struct assembly *input, int least, bool sliding, bool **held,
-                              struct error *error)
+enum status assembly_held_faces(const struct assembly *input, int least, bool sliding, bool **held,
+                                struct error *error)
 {
     SCRATCH int64_t *stamp = NULL; /* of each node: the last set that contains it, from 1 on */
     RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
@@ -203,16 +201,6 @@ static enum status find_faces(const struct assembly *input, int least, bool slid
         }
     }
     return STATUS_OK;
-}
-
-enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
-{
-    return find_faces(input, least, false, held, error);
-}
-
-enum status assembly_sliding_faces(const struct assembly *input, bool **slides, struct error *error)
-{
-    return find_faces(input, 1, true, slides, error);
 }
 
 double assembly_penalty_modulus(const struct solid_system *system, double factor)

@@ -101,11 +101,6 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* Replace the contacts of the system by those of `input` in their initial state. Errors: as
- * assembly_build. */
-MUST_CHECK enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
-                                               struct error *error);
-
 /* Steps of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
  * reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
@@ -133,14 +128,10 @@ bool assembly_has_gravity(const struct assembly *input);
 bool assembly_holds_averages(const struct assembly *input);
 
 /* (*held)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition that
- * prescribes at least `least` directions. */
-MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
+ * prescribes at least `least` directions; with `sliding`, of one along normals, so that the face stays in its
+ * plane. */
+MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool sliding, bool **held,
                                            struct error *error);
-
-/* (*slides)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition
- * along normals, so that the face stays in its plane. */
-MUST_CHECK enum status assembly_sliding_faces(const struct assembly *input, bool **slides,
-                                              struct error *error);
 
 /* The modulus of penalties, Pa: the P-wave modulus, but at most `factor` times the shear modulus, so that it
  * does not grow with the bulk modulus; the largest value of the body's materials. */

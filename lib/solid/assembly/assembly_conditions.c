@@ -103,16 +103,17 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
 {
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
+    struct nodal_constraints *nodal = p->nodal_constraints;
     for (int64_t a = 0; a < count; a++) {
-        struct nodal_constraint nodal = {.node = averages->node[a], .condition = p->number};
         struct demand demand;
         RETURN_IF_ERROR(
             add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
         RETURN_IF_ERROR(prescription_demand(p, averages, a, true, &demand, error));
+        RETURN_IF_ERROR(GROW_ARRAY(&nodal->list, nodal->count + demand.count, &nodal->room, error));
         for (int k = 0; k < demand.count; k++) {
-            memcpy(nodal.direction, demand.direction + k * dim, (size_t)dim * sizeof *nodal.direction);
-            nodal.value = demand.value[k];
-            RETURN_IF_ERROR(nodal_constraints_add(p->nodal_constraints, &nodal, error));
+            struct nodal_constraint *added = &nodal->list[nodal->count++];
+            *added = (struct nodal_constraint){averages->node[a], p->number, {0.0}, demand.value[k]};
+            memcpy(added->direction, demand.direction + k * dim, (size_t)dim * sizeof *added->direction);
         }
     }
     held_note(p->held, &p->system->rows, first, p->system->rows.count);

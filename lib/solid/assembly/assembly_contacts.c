@@ -132,13 +132,6 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     return add_motion(condition, system, &contact->motion, error);
 }
 
-enum status assembly_renew_contacts(const struct assembly *input, struct solid_system *system,
-                                    struct error *error)
-{
-    system_free_contacts(system);
-    return assembly_add_contacts(input, system, error);
-}
-
 enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                   struct error *error)
 {

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Append an empty dead load. */
 static enum status new_load(struct solid_system *system, int32_t curve, double **force, struct error *error)
@@ -137,12 +138,10 @@ static enum status add_pressure(const struct assembly *input, const struct load 
     struct pressure_load *pressure = &system->pressures[system->pressure_count++];
     *pressure = (struct pressure_load){
         .pressure = load->pressure, .curve = load->curve, .facet_count = set->count, .facet = set->facet};
-    for (int a = 0; a < 3 && load->is_fluid; a++) {
-        pressure->weight[a] = load->weight[a];
-        pressure->level[a] = load->level[a];
-    }
     pressure->is_fluid = load->is_fluid;
     pressure->part = load->part;
+    memcpy(pressure->weight, load->weight, sizeof load->weight);
+    memcpy(pressure->level, load->level, sizeof load->level);
     RETURN_IF_ERROR(boundary_nodes_build(&input->face_table, set, &input->node_lists, input->node_phi,
                                          &pressure->corners, error));
     RETURN_IF_ERROR(boundary_points_build(&input->face_table, set, &pressure->points, error));

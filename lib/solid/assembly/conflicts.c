@@ -1,5 +1,6 @@
 #include "solid/assembly/conflicts.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -11,15 +12,6 @@
  * size. */
 static const double largest_jump = 0.1, same_jump = 1e-9, least_size = 1e-6;
 
-enum status nodal_constraints_add(struct nodal_constraints *nodal_constraints,
-                                  const struct nodal_constraint *nodal_constraint, struct error *error)
-{
-    RETURN_IF_ERROR(
-        GROW_ARRAY(&nodal_constraints->list, nodal_constraints->count + 1, &nodal_constraints->room, error));
-    nodal_constraints->list[nodal_constraints->count++] = *nodal_constraint;
-    return STATUS_OK;
-}
-
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints)
 {
     free(nodal_constraints->list);
@@ -29,9 +21,7 @@ void nodal_constraints_free(struct nodal_constraints *nodal_constraints)
 /* By node, then in the order of the conditions. */
 static int compare_nodal_constraints(const void *left, const void *right)
 {
-    const struct nodal_constraint *a = left, *b = right;
-    return a->node != b->node ? (a->node > b->node) - (a->node < b->node)
-                              : (a->condition > b->condition) - (a->condition < b->condition);
+    return compare_numbers(2, left, right); /* node and condition begin it */
 }
 
 /* The difference of two prescribed values along one direction; 0 when their directions differ. */

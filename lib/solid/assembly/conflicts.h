@@ -17,9 +17,6 @@ struct nodal_constraints {
     struct nodal_constraint *list;
 };
 
-MUST_CHECK enum status nodal_constraints_add(struct nodal_constraints *nodal_constraints,
-                                             const struct nodal_constraint *nodal_constraint,
-                                             struct error *error);
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints);
 
 /* STATUS_INPUT if two conditions prescribe values at one node along one direction that differ by more than a

@@ -48,10 +48,8 @@ static enum status add_displacement(struct model *model, const struct scene_disp
                                     .normal = section->normal,
                                     .unit = section->table_unit,
                                     .table = section->table};
-    for (int a = 0; a < dim; a++) {
-        condition->components[a] = section->components[a];
-        condition->is_free[a] = section->is_free[a];
-    }
+    memcpy(condition->components, section->components, sizeof section->components);
+    memcpy(condition->is_free, section->is_free, sizeof section->is_free);
     RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &condition->curve, error));
     if (section->kind == SCENE_POINTS) {
         return model_points(model, section, condition, error);
@@ -213,7 +211,8 @@ enum status model_conditions(struct model *model, struct error *error)
 enum status model_renew_contacts(struct model *model, struct error *error)
 {
     RETURN_IF_ERROR(add_contacts(model, error));
-    return assembly_renew_contacts(&model->assembly, &model->system, error);
+    system_free_contacts(&model->system);
+    return assembly_add_contacts(&model->assembly, &model->system, error);
 }
 
 enum status model_initial(const struct model *model, double *u, double *v, struct error *error)

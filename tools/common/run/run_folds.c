@@ -21,8 +21,8 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node,
                               .ranks = process_ranks()};
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
-    RETURN_IF_ERROR(assembly_sliding_faces(input, &folds->slides, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &folds->held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, true, &folds->slides, error));
     body.held = folds->held;
     body.slides = folds->slides;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));

@@ -159,9 +159,7 @@ static bool is_of_shape(const struct run *run, int64_t node)
 {
     const struct cells *cells = &run->model->assembly.cells;
     double *field = run_new_values(run, parameter_count(run)), least = INFINITY;
-    const struct assembly *input = &run->model->assembly;
-    field_evaluate(cells->node_count, input->node_lists.ptr, input->node_lists.idx, input->node_phi,
-                   cells->dim, run->stability.near, field);
+    assembly_nodal_field(&run->model->assembly, run->stability.near, field);
     for (int64_t i = 0; i < cells->count * (cells->dim + 1); i++) {
         if (cells->node[i] == node) {
             least = fmin(least, least_stretch(cells, i / (cells->dim + 1), field));
