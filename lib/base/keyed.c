@@ -14,16 +14,21 @@ void simplex_face(int dim, const int32_t *node, int vertex, int32_t *face)
     }
 }
 
+void sort_nodes(int count, const int32_t *node, int32_t *sorted)
+{
+    for (int i = 0; i < count; i++) {
+        int at = i;
+        for (; at > 0 && sorted[at - 1] > node[i]; at--) {
+            sorted[at] = sorted[at - 1];
+        }
+        sorted[at] = node[i];
+    }
+}
+
 void face_key(int dim, const int32_t *node, int32_t key[3])
 {
     key[2] = -1;
-    for (int i = 0; i < dim; i++) {
-        int at = i;
-        for (; at > 0 && key[at - 1] > node[i]; at--) {
-            key[at] = key[at - 1];
-        }
-        key[at] = node[i];
-    }
+    sort_nodes(dim, node, key);
 }
 
 static int compare_keyed(const void *left, const void *right)

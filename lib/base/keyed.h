@@ -6,6 +6,9 @@
 /* face[dim]: the nodes of the face opposite a vertex of a cell, node[dim + 1], oriented outward. */
 void simplex_face(int dim, const int32_t *node, int vertex, int32_t *face);
 
+/* sorted[count]: a few node indices in ascending order. */
+void sort_nodes(int count, const int32_t *node, int32_t *sorted);
+
 /* The node indices node[dim] of a face in ascending order, in 2D -1 last. The key identifies the face
  * whatever its orientation. */
 void face_key(int dim, const int32_t *node, int32_t key[3]);

@@ -1,6 +1,7 @@
 #include "approx/cells/renumber.h"
 
 #include "base/box.h"
+#include "base/lists.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -15,13 +16,9 @@ struct sort_key {
 static int compare_keys(const void *left, const void *right)
 {
     const struct sort_key *a = left, *b = right;
-    if (a->group != b->group) {
-        return a->group < b->group ? -1 : 1;
-    }
-    if (a->place != b->place) {
-        return a->place < b->place ? -1 : 1;
-    }
-    return (a->index > b->index) - (a->index < b->index);
+    int groups = compare_int32(&a->group, &b->group);
+    int places = (a->place > b->place) - (a->place < b->place);
+    return groups != 0 ? groups : places != 0 ? places : compare_int64(&a->index, &b->index);
 }
 
 /* The Morton code of a point: the bits of its coordinates, interleaved. */

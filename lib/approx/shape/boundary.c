@@ -83,7 +83,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
     while (vertex + 1 < dim && face[vertex] != corner->node) {
         vertex++;
     }
-    boundary_unit_normal(table, set->facet + corner->facet * dim, normal, &size);
+    boundary_unit_normal(table, set->facet + (int64_t)corner->facet * dim, normal, &size);
     quadrature_positions(&rule, dim, table->x, face, x);
     for (int g = 0; g < rule.points; g++) {
         double near = rule.barycentric[g * dim + vertex], weight = rule.weight[g] * size * near;
@@ -98,7 +98,7 @@ static enum status add_corner(const struct face_table *table, const struct facet
         averages->area[part] += weight;
         int64_t sample = averages->sample_ptr[part + 1]++;
         averages->sample_share[sample] = weight;
-        averages->sample_point[sample] = corner->facet * table->per_face + g;
+        averages->sample_point[sample] = (int64_t)corner->facet * table->per_face + g;
         for (int a = 0; a < dim; a++) {
             averages->normal[part * dim + a] += weight * normal[a];
             averages->position[part * dim + a] += weight * x[g * dim + a];

@@ -13,11 +13,11 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
 
 /* A corner of a facet, and the part to which it belongs. */
 struct corner {
-    int32_t node;
+    int64_t part;   /* first, as it begins the order in which corners are sorted */
+    int32_t node;   /* then this, */
+    int32_t facet;  /* of the set, and this */
     int32_t vertex; /* of the facet */
     int32_t side;   /* side of an interface on which the facet is */
-    int64_t facet;  /* of the set */
-    int64_t part;
 };
 
 /* The corners[set->count * dim] of the set, whose facets are those faces of the table, sorted by part; with

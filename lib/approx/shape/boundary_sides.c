@@ -40,16 +40,13 @@ void boundary_unit_normal(const struct face_table *table, const int32_t *facet, 
     }
 }
 
+/* By parts, nodes and facets. */
 static int compare_corners(const void *left, const void *right)
 {
-    const struct corner *a = left, *b = right;
-    if (a->node != b->node) {
-        return a->node < b->node ? -1 : 1;
-    }
-    if (a->facet != b->facet) {
-        return a->facet < b->facet ? -1 : 1;
-    }
-    return a->vertex - b->vertex;
+    int parts = compare_int64(left, right);
+    return parts != 0 ? parts
+                      : compare_numbers(2, &((const struct corner *)left)->node,
+                                        &((const struct corner *)right)->node);
 }
 
 /* Whether two facets, given by their dim nodes, have an edge (2D: a node) in common. */
@@ -80,8 +77,8 @@ static bool of_one_side(const struct face_table *table, const int32_t *a, const 
 static bool same_side(const struct face_table *table, const struct facet_set *set, const struct corner *a,
                       const struct corner *b)
 {
-    return a->side == b->side &&
-           of_one_side(table, set->facet + a->facet * table->dim, set->facet + b->facet * table->dim);
+    return a->side == b->side && of_one_side(table, set->facet + (int64_t)a->facet * table->dim,
+                                             set->facet + (int64_t)b->facet * table->dim);
 }
 
 /* Number the parts of one node: corners first..last-1 joined through neighbours of one side. */
@@ -112,22 +109,14 @@ static void split_node(const struct face_table *table, const struct facet_set *s
     }
 }
 
-static int compare_parts(const void *left, const void *right)
-{
-    const struct corner *a = left, *b = right;
-    if (a->part != b->part) {
-        return a->part < b->part ? -1 : 1;
-    }
-    return compare_corners(left, right);
-}
-
 void boundary_collect_corners(const struct face_table *table, const struct facet_set *set,
                               const int64_t *face_of, bool split, struct corner *corners, int64_t *part_count)
 {
     int dim = table->dim;
     int64_t count = set->count * dim;
     for (int64_t i = 0; i < count; i++) {
-        corners[i] = (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = i / dim};
+        corners[i] =
+            (struct corner){.node = set->facet[i], .vertex = (int32_t)(i % dim), .facet = (int32_t)(i / dim)};
         if (table->cell_side != NULL) {
             corners[i].side = table->cell_side[table->faces->cell[2 * face_of[i / dim]]];
         }
@@ -142,7 +131,7 @@ void boundary_collect_corners(const struct face_table *table, const struct facet
         split_node(table, set, corners, first, last, split, part_count);
         first = last;
     }
-    qsort(corners, (size_t)count, sizeof *corners, compare_parts);
+    qsort(corners, (size_t)count, sizeof *corners, compare_corners);
 }
 
 /* side, piece[set->count]: the first facet of the side and of the piece of each. */
@@ -155,10 +144,10 @@ static void join_facets(const struct face_table *table, const struct facet_set *
     }
     for (int64_t begin = 0, i = 0; i < count; i++) {
         begin = corners[i].node == corners[begin].node ? begin : i;
-        set_join(piece, (int32_t)corners[begin].facet, (int32_t)corners[i].facet);
+        set_join(piece, corners[begin].facet, corners[i].facet);
         for (int64_t k = begin; k < i; k++) {
             if (same_side(table, set, &corners[i], &corners[k])) {
-                set_join(side, (int32_t)corners[i].facet, (int32_t)corners[k].facet);
+                set_join(side, corners[i].facet, corners[k].facet);
             }
         }
     }
@@ -184,10 +173,10 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
         part[f] = of_side == f ? (*part_count)++ : part[of_side];
         for (int k = 0; k < dim; k++) {
             corners[count + f * dim + k] =
-                (struct corner){.node = set->facet[f * dim + k], .vertex = k, .facet = f, .part = part[f]};
+                (struct corner){part[f], set->facet[f * dim + k], (int32_t)f, k, 0};
         }
     }
-    qsort(corners, (size_t)(2 * count), sizeof *corners, compare_parts);
+    qsort(corners, (size_t)(2 * count), sizeof *corners, compare_corners);
     return STATUS_OK;
 }
 

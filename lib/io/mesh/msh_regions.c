@@ -88,13 +88,7 @@ static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *
     int corners = msh_type(msh_type(msh->element_type[element]).linear).node_count;
     key->element = element;
     memset(key->node, 0xff, sizeof key->node);
-    for (int k = 0; k < corners; k++) {
-        int at = k;
-        for (; at > 0 && key->node[at - 1] > node[k]; at--) {
-            key->node[at] = key->node[at - 1];
-        }
-        key->node[at] = node[k];
-    }
+    sort_nodes(corners, node, key->node);
 }
 
 /* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. Repeated elements

@@ -2,6 +2,7 @@
 #include "solid/folds/folds.h"
 
 #include "approx/cells/parts.h"
+#include "base/keyed.h"
 #include "base/memory.h"
 #include "base/sets.h"
 #include "solid/folds/folds_private.h"
@@ -23,19 +24,11 @@ static int compare_rings(const void *left, const void *right)
                            ((const struct fold_ring *)right)->node);
 }
 
-/* The node (2D), or the first two nodes (3D), ascending. */
-static void side_nodes(int dim, const int32_t *facet, int32_t node[2])
-{
-    int32_t a = facet[0], b = dim == 3 ? facet[1] : -1;
-    node[0] = dim == 2 || a < b ? a : b;
-    node[1] = dim == 2 || a < b ? b : a;
-}
-
 /* The ring of a node (2D) or of an edge (3D) of a cell, -1 for none. */
 static int32_t find_ring(const struct folds *folds, const int32_t *side)
 {
-    struct fold_ring key;
-    side_nodes(folds->input.dim, side, key.node);
+    struct fold_ring key = {.node = {-1, -1}};
+    sort_nodes(folds->input.dim - 1, side, key.node);
     const struct fold_ring *ring =
         bsearch(&key, folds->rings, (size_t)folds->ring_count, sizeof key, compare_rings);
     return ring != NULL ? (int32_t)(ring - folds->rings) : -1;
