@@ -122,7 +122,7 @@ static enum status places_of_face_points(const struct stream *stream, const stru
     *places = (struct visibility_places){.ptr = *ptr,
                                          .cell = *cell,
                                          .points_per_row = FACE_POINTS(cells->dim),
-                                         .long_rows = cells->dim == 2 ? faces.count : faces.boundary_count};
+                                         .long_rows = faces.boundary_count};
     return STATUS_OK;
 }
 

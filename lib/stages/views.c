@@ -139,8 +139,11 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
 static enum status view_edges(const struct stream *stream, struct faces *faces, struct error *error)
 {
     const struct section *edge, *points = stream_find(stream, "points.x");
-    faces->edge_count = faces->dim == 2 ? faces->count : 0;
-    if (faces->dim == 2 || points == NULL || !points_are_smoothed(points)) {
+    if (points == NULL || !points_are_smoothed(points)) {
+        return STATUS_OK;
+    }
+    if (faces->dim == 2) {
+        faces->edge_count = faces->count;
         return STATUS_OK;
     }
     RETURN_IF_ERROR(stream_need(stream, "faces.edge", TYPE_I4, 3, "ipoints", &edge, error));

@@ -56,8 +56,9 @@ static inline struct sample sample_of(int dim, bool smoothed, struct cloud cloud
         sample.barycentric[i] = rule.barycentric[i % (per_cell * corners)];
     }
     if (smoothed) {
-        sample.of_cells =
-            cell_table_make(&assembly->cells, &assembly->faces, &assembly->lists, assembly->phi);
+        const struct cell_sources sources = {&assembly->lists, &assembly->node_lists, assembly->phi,
+                                             assembly->node_phi};
+        sample.of_cells = cell_table_make(&assembly->cells, &assembly->faces, &sources);
     }
     sample.ptr = smoothed ? sample.of_cells.ptr : assembly->lists.ptr;
     sample.idx = smoothed ? sample.of_cells.idx : assembly->lists.idx;

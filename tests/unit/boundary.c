@@ -444,6 +444,51 @@ TEST_IN_EACH_DIM(ends)
     }
 }
 
+/* A box without its corner beyond the middle of the first two axes: of all its edges (2D: corners) only that
+ * in the middle is re-entrant. */
+TEST_IN_EACH_DIM(reentrant)
+{
+    struct cloud_options options = {
+        .kind = CLOUD_JITTERED, .dim = dim, .count = {5, 5, 3}, .high = {1.0, 1.0, 1.0}, .seed = 1};
+    FREED_BY(cloud_free) struct cloud cloud = {0};
+    GOOD(cloud_make(&options, &cloud, &error));
+    SCRATCH int32_t *kept = calloc((size_t)(cloud.cell_count * (dim + 1)), sizeof *kept);
+    struct cells cells = {dim, cloud.node_count, cloud.x, 0, kept};
+    for (int64_t c = 0; c < cloud.cell_count; c++) {
+        double centre[3];
+        vector_middle(dim, cloud.x, dim + 1, cloud.cells + c * (dim + 1), centre);
+        if (centre[0] < 0.5 || centre[1] < 0.5) {
+            memcpy(kept + cells.count++ * (dim + 1), cloud.cells + c * (dim + 1),
+                   (size_t)(dim + 1) * sizeof *kept);
+        }
+    }
+    FREED_BY(faces_free) struct faces faces = {0};
+    GOOD(faces_build(&cells, true, &faces, &error));
+    struct face_table table = {.dim = dim, .node_count = cloud.node_count, .x = cloud.x, .faces = &faces};
+    bool *none = zeros(faces.count, sizeof *none), *edge = zeros(cloud.node_count, sizeof *edge);
+    GOOD(boundary_find_junctions(&table, BOUNDARY_REENTRANT, none, none, edge, &error));
+    for (int64_t n = 0; n < cloud.node_count; n++) {
+        const double *x = cloud.x + n * dim;
+        assert_true(edge[n] == (fabs(x[0] - 0.5) < 1e-9 && fabs(x[1] - 0.5) < 1e-9));
+    }
+}
+
+/* The tip of a slit whose lips lie on each other; its mouth is not re-entrant. */
+TEST(closed_slit)
+{
+    static const double x[] = {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 0.5, 0.5, 1.0, 0.5, 1.0, 0.5};
+    static const int32_t node[] = {0, 1, 4, 1, 5, 4, 6, 2, 4, 2, 3, 4, 3, 0, 4};
+    struct cells cells = {2, 7, x, 5, node};
+    FREED_BY(faces_free) struct faces faces = {0};
+    GOOD(faces_build(&cells, true, &faces, &error));
+    struct face_table table = {.dim = 2, .node_count = 7, .x = x, .faces = &faces};
+    bool none[7] = {false}, edge[7] = {false};
+    GOOD(boundary_find_junctions(&table, BOUNDARY_REENTRANT, none, none, edge, &error));
+    for (int n = 0; n < 7; n++) {
+        assert_true(edge[n] == (n == 4));
+    }
+}
+
 TEST_IN_EACH_DIM(faults)
 {
     FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);

@@ -72,7 +72,7 @@ static void check_cells(const struct cells *cells, const struct faces *faces)
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *cell = NULL;
     int dim = faces->dim;
-    int64_t of_faces = dim == 2 ? 0 : faces->boundary_count;
+    int64_t of_faces = faces->boundary_count;
     int32_t *ends = zeros(faces->edge_count * 2, sizeof *ends);
     GOOD(face_edges_ends(faces, ends, &error));
     GOOD(face_points_cells(faces, &ptr, &cell, &error));

@@ -53,7 +53,9 @@ static inline void lattice_build(struct lattice *l, const struct lattice_options
     /* Wider supports need the penalties that back conditions, which are not here. */
     make_tables(&cloud, options->gauss_points, 1.8, &l->cloud, &l->stream, assembly);
     if (assembly->smoothed) {
-        l->smoothed = cell_table_make(&assembly->cells, &assembly->faces, &assembly->lists, assembly->phi);
+        const struct cell_sources sources = {&assembly->lists, &assembly->node_lists, assembly->phi,
+                                             assembly->node_phi};
+        l->smoothed = cell_table_make(&assembly->cells, &assembly->faces, &sources);
     }
     list->count = 1;
     ARRAY(list->items, 1);

@@ -224,7 +224,7 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
             add_face(cells, s, partner[s] / (dim + 1), faces);
         }
     }
-    if (boundary_only && dim == 3) {
+    if (boundary_only) {
         return STATUS_OK;
     }
     return face_edges_number(cells->node_count, faces, error);

@@ -88,20 +88,19 @@ static void keep_new_cells(int64_t rows, int64_t *ptr, int32_t *cell)
     ptr[rows] = kept;
 }
 
-/* The row of points that a use of a face belongs to: the face's own, then in 3D those of its edges; -1: none.
- */
+/* The row of points that a use of a face belongs to: the face's own, then those of its edges; -1: none. */
 static int64_t row_of_use(const struct faces *faces, int64_t f, int use)
 {
     if (use == 0) {
-        return faces->dim == 2 || f < faces->boundary_count ? f : -1;
+        return f < faces->boundary_count ? f : -1;
     }
     return faces->edge_count > 0 ? faces->boundary_count + face_edge(faces, f, use - 1) : -1;
 }
 
 enum status face_points_cells(const struct faces *faces, int64_t **ptr, int32_t **cell, struct error *error)
 {
-    const int uses = faces->dim == 2 ? 1 : 1 + FACE_EDGES(3);
-    int64_t rows = faces->dim == 2 ? faces->count : faces->boundary_count + faces->edge_count;
+    const int uses = 1 + FACE_EDGES(faces->dim);
+    int64_t rows = faces->boundary_count + faces->edge_count;
     int64_t *start = NULL;
     enum status status;
     *cell = NULL;
@@ -129,16 +128,15 @@ done:
 
 void face_points(const struct faces *faces, const double *nodes, double *x)
 {
-    int dim = faces->dim;
+    int dim = faces->dim, edges = FACE_EDGES(dim);
     const struct quadrature_rule rule = quadrature_face_rule(dim);
-    int64_t with_points = dim == 2 ? faces->count : faces->boundary_count;
     double *midpoint = x + face_boundary_points(faces) * dim;
-    for (int64_t f = 0; f < with_points; f++) {
+    for (int64_t f = 0; f < faces->boundary_count; f++) {
         quadrature_positions(&rule, dim, nodes, faces->node + f * dim, x + f * FACE_POINTS(dim) * dim);
     }
-    for (int64_t i = 0; dim == 3 && faces->edge_count > 0 && i < faces->count * 3; i++) {
-        const int32_t *node = faces->node + i / 3 * 3;
-        const int32_t ends[2] = {node[i % 3], node[(i % 3 + 1) % 3]};
-        vector_middle(3, nodes, 2, ends, midpoint + face_edge(faces, i / 3, (int)(i % 3)) * 3);
+    for (int64_t i = 0; faces->edge_count > 0 && i < faces->count * edges; i++) {
+        const int32_t *node = faces->node + i / edges * dim;
+        const int32_t ends[2] = {node[i % edges], node[(i % edges + 1) % dim]};
+        vector_middle(dim, nodes, 2, ends, midpoint + face_edge(faces, i / edges, (int)(i % edges)) * dim);
     }
 }

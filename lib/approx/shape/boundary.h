@@ -90,12 +90,12 @@ MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
 
-/* Junctions of the prescribed and the free boundary: smooth, within a side; sharp, at an edge between two
- * sides. */
-enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP };
+/* Edges of the boundary (2D: nodes) at which the stress is singular. Junctions of the prescribed and the free
+ * boundary: smooth, where it turns by less than 45 degrees; sharp, where it turns by more. Re-entrant edges,
+ * such as the tip of a slit: it turns inwards by more. */
+enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP, BOUNDARY_REENTRANT };
 
-/* Set junction[table->node_count] at the nodes where a held face and a free face of the boundary share an
- * edge (2D: a node) at which the boundary turns by less than 45 degrees (smooth) or by more (sharp).
+/* Set junction[table->node_count] at the nodes of these edges; others are left as they are.
  * held[table->faces->count]: the prescribed faces; constrained[table->faces->count]: these and all others
  * that are not free. */
 MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,

@@ -1,4 +1,5 @@
 /* The facets of a set: their faces in the table, their normals, and the sides that they form. */
+#include "approx/cells/parts.h"
 #include "approx/shape/boundary_private.h"
 
 #include "base/lists.h"
@@ -7,10 +8,14 @@
 #include "base/vector.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Facets that turn by 45 degrees or more at a node belong to different sides; slightly less, so that
  * round-off does not decide at chamfers of 45 degrees. */
 static const double side_cosine = 0.7072;
+/* Angle in radians below which the two sides of an edge are the lips of a closed slit, not those of a spike.
+ */
+static const double least_angle = 1e-6;
 
 enum status boundary_find_faces(const struct face_table *table, const struct facet_set *set, int64_t *face_of,
                                 struct error *error)
@@ -180,28 +185,46 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
     return STATUS_OK;
 }
 
+/* Whether facets a and b that meet on a ridge, not of one side, do so at a re-entrant edge: b does not lie
+ * behind a. */
+static bool turns_inwards(const struct face_table *table, const struct ridge *a, const struct ridge *b)
+{
+    int dim = table->dim;
+    double normal[3], size, into_b[3];
+    boundary_unit_normal(table, table->faces->node + (int64_t)a->facet * dim, normal, &size);
+    vector_subtract(dim, table->x + (int64_t)b->opposite * dim, table->x + (int64_t)b->node[0] * dim, into_b);
+    return vector_dot(dim, normal, into_b) > -least_angle * vector_length(dim, into_b);
+}
+
+static bool is_junction(const struct face_table *table, enum boundary_junction kind, const bool *held,
+                        const bool *constrained, const struct ridge *a, const struct ridge *b)
+{
+    const int32_t *node = table->faces->node;
+    int32_t f = a->facet, g = b->facet;
+    bool meets = (held[f] && !constrained[g]) || (held[g] && !constrained[f]);
+    if (!meets && kind != BOUNDARY_REENTRANT) {
+        return false;
+    }
+    bool smooth = of_one_side(table, node + (int64_t)f * table->dim, node + (int64_t)g * table->dim);
+    return kind == BOUNDARY_REENTRANT ? !smooth && turns_inwards(table, a, b)
+                                      : smooth == (kind == BOUNDARY_JUNCTION_SMOOTH);
+}
+
 enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
                                     const bool *held, const bool *constrained, bool *junction,
                                     struct error *error)
 {
     int dim = table->dim;
-    const int32_t *node = table->faces->node;
-    int64_t count = table->faces->count;
-    SCRATCH int64_t *ptr = NULL;
-    SCRATCH int32_t *row = NULL, *at = NULL; /* faces of the boundary at each node */
-    RETURN_IF_ERROR(NEW_ARRAY(&row, count * dim, error));
-    for (int64_t i = 0; i < count * dim; i++) {
-        row[i] = table->faces->cell[2 * (i / dim) + 1] < 0 ? node[i] : -1;
-    }
-    RETURN_IF_ERROR(lists_by_row(count, dim, row, table->node_count, &ptr, &at, error));
-    for (int64_t n = 0; n < table->node_count; n++) {
-        for (int64_t i = ptr[n]; i < ptr[n + 1]; i++) {
-            for (int64_t k = i + 1; k < ptr[n + 1]; k++) {
-                const int32_t *f = node + (int64_t)at[i] * dim, *g = node + (int64_t)at[k] * dim;
-                bool meets = (held[at[i]] && !constrained[at[k]]) || (held[at[k]] && !constrained[at[i]]);
-                if (meets && share_edge(dim, f, g) &&
-                    of_one_side(table, f, g) == (kind == BOUNDARY_JUNCTION_SMOOTH)) {
-                    junction[n] = true;
+    int64_t facets = table->faces->boundary_count, count = facets * dim;
+    SCRATCH struct ridge *ridge = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&ridge, count, error));
+    ridges_list(dim, facets, table->faces->node, ridge);
+    for (int64_t begin = 0, i = 0; i < count; i++) {
+        begin = memcmp(ridge[i].node, ridge[begin].node, sizeof ridge->node) == 0 ? begin : i;
+        for (int64_t k = begin; k < i; k++) {
+            if (is_junction(table, kind, held, constrained, &ridge[i], &ridge[k])) {
+                for (int j = 0; j < dim - 1; j++) {
+                    junction[ridge[i].node[j]] = true;
                 }
             }
         }

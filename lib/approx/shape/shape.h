@@ -40,7 +40,7 @@ struct shape_rows {
 };
 void shape_rows_free(struct shape_rows *rows);
 
-/* The rows of edges and, in 3D, of boundary faces (face_edges.h): means of the values phi at their points, on
+/* The rows of edges and of boundary faces (face_edges.h): means of the values phi at their points, on
  * the lists of these. */
 MUST_CHECK enum status shape_on_edges(const struct neighbours *points, const double *phi,
                                       const struct faces *faces, struct shape_rows *rows,

@@ -118,8 +118,8 @@ MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struc
 MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
                                                  struct error *error);
 
-/* (*at_edge)[node_count], to be freed: in 3D, the nodes at edges between clamped and free sides; NULL:
- * none. */
+/* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
+ * edges (2D: corners); NULL: none. */
 MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
 
 bool assembly_has_gravity(const struct assembly *input);

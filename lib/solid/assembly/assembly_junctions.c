@@ -17,16 +17,15 @@
  * 707 nodes of the calibration set. */
 static const double junction_stiffness = 0.85;
 
-/* (*junction)[node_count], to be freed: nodes where faces with at least `least` prescribed directions meet
- * faces with none. */
+/* junction[node_count]: set at nodes of such edges, where faces with at least `least` prescribed directions
+ * are held. */
 static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
-                                  bool **junction, struct error *error)
+                                  bool *junction, struct error *error)
 {
     SCRATCH bool *held = NULL, *constrained = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, least, false, &held, error));
     RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &constrained, error));
-    RETURN_IF_ERROR(NEW_ARRAY(junction, input->cells.node_count, error));
-    return boundary_find_junctions(&input->face_table, kind, held, constrained, *junction, error);
+    return boundary_find_junctions(&input->face_table, kind, held, constrained, junction, error);
 }
 
 /* softer[cells.count]: cells that have a node on a smooth junction, and no prescribed facet. */
@@ -35,7 +34,8 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
     int corners = input->cells.dim + 1;
     SCRATCH bool *held = NULL, *junction = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &held, error));
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&junction, input->cells.node_count, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, junction, error));
     for (int64_t i = 0; i < input->cells.count * corners; i++) {
         softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];
     }
@@ -82,17 +82,16 @@ enum status assembly_soften_junctions(const struct assembly *input, struct mater
     return STATUS_OK;
 }
 
-/* In 3D only: in 2D the error is .2 %. Only an edge between a clamped and a free side is a junction. A side
- * that slides is not free, as it may be a plane of symmetry. A side that may come into contact counts as
- * free: the treatment of edges does not change a uniform pressure. */
+/* An edge between a clamped side and one that slides is not singular: it may be at a plane of symmetry. A
+ * side that may come into contact counts as free: the treatment of edges does not change a uniform pressure.
+ */
 enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error)
 {
     bool found = false;
     *at_edge = NULL;
-    if (input->cells.dim < 3) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, at_edge, error));
+    RETURN_IF_ERROR(NEW_ARRAY(at_edge, input->cells.node_count, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, *at_edge, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_REENTRANT, input->cells.dim, *at_edge, error));
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         found = found || (*at_edge)[n];
     }

@@ -16,9 +16,9 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return STATUS_OK;
 }
 
-/* The mass of each row of the table over points or faces. The mean of the quadratic
- * interpolant over a cell is that of its values on the edges in 2D; in 3D, where values at the vertices have
- * negative weights, that of its means over the faces is taken, which is the same for linear fields. */
+/* The mass of each row of the table over points or edges. The mean of the quadratic interpolant over a cell
+ * is that of its values at the midpoints in 2D; in 3D, where values at the vertices have negative weights,
+ * that of its means over the faces is taken, which is the same for linear fields. */
 static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
 {
     const struct material_list *materials = &input->materials;

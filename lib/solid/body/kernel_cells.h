@@ -58,7 +58,7 @@ KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int
     }
 }
 
-/* Of component a: sum_k v_k grad N_k and c sum_e m_e (grad N_i + grad N_j). */
+/* Component a of F_h - I and F - I. */
 KERNEL_INLINE void cell_gradients(const block_edges edges, const block_vertices vertices, int64_t i, int dim,
                                   int a, const lanes grad_N[12], lanes interpolant[3], lanes mean[3])
 {
@@ -84,7 +84,7 @@ KERNEL_INLINE void cell_gradients(const block_edges edges, const block_vertices 
         }
     }
     for (int b = 0; b < dim; b++) {
-        mean[b] *= EDGE_GRADIENT(dim);
+        mean[b] = EDGE_GRADIENT(dim) * mean[b] + VERTEX_GRADIENT(dim) * interpolant[b];
     }
 }
 
@@ -104,51 +104,66 @@ KERNEL_INLINE void cell_forces(const lanes P[3], const lanes T[3], int dim, cons
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         on_edge[e] = EDGE_GRADIENT(dim) * (mean[cell_edge_ends[e][0]] + mean[cell_edge_ends[e][1]]);
     }
+    for (int k = 0; k <= dim && VERTEX_GRADIENT(dim) > 0.0; k++) {
+        on_vertex[k] += VERTEX_GRADIENT(dim) * mean[k];
+    }
 }
 
-/* Add the forces of component a of the energy within cells, modulus / 2 sum_k |R_k - R|^2, in 2D with R in
- * place of R_k - R. */
-KERNEL_INLINE void add_variance_forces(const block_edges edges, const block_vertices vertices, int64_t i,
-                                       int dim, int a, const lanes grad_N[12], const lanes *modulus,
-                                       lanes on_edge[6], lanes on_vertex[4])
+/* V times factor, where sum_k |R_k - R|^2 = s . V s with the offsets s_e of one component of the field. With
+ * h_e = grad N_i + grad N_j, e from i to j, V_ef is -h_e . h_f / (dim + 1), and more for each vertex that e
+ * and f share: the product of the gradients of N at their other ends. */
+KERNEL_INLINE void variance_matrix(int dim, const lanes grad_N[12], const lanes *factor, lanes V[6][6])
 {
-    lanes value[4], offset[6], R[12];
+    lanes product[4][4];
+    for (int k = 0; k <= dim; k++) {
+        for (int l = 0; l <= k; l++) {
+            product[k][l] = grad_N[3 * k] * grad_N[3 * l];
+            for (int b = 1; b < dim; b++) {
+                product[k][l] += grad_N[3 * k + b] * grad_N[3 * l + b];
+            }
+            product[k][l] *= *factor;
+            product[l][k] = product[k][l];
+        }
+    }
+    for (int e = 0; e < CELL_EDGES(dim); e++) {
+        for (int f = 0; f <= e; f++) {
+            lanes with_end[2], sum;
+            for (int i = 0; i < 2; i++) {
+                int k = cell_edge_ends[e][i];
+                with_end[i] = product[k][cell_edge_ends[f][0]] + product[k][cell_edge_ends[f][1]];
+            }
+            sum = (-1.0 / (dim + 1)) * (with_end[0] + with_end[1]);
+            for (int i = 0; i < 4; i++) {
+                if (cell_edge_ends[e][i / 2] == cell_edge_ends[f][i % 2]) {
+                    sum += product[cell_edge_ends[e][1 - i / 2]][cell_edge_ends[f][1 - i % 2]];
+                }
+            }
+            V[e][f] = V[f][e] = sum;
+        }
+    }
+}
+
+/* Add the forces of component a of the energy s . V s / 2, here with s_e = m_e - (v_i + v_j) / 2. */
+KERNEL_INLINE void add_variance_forces(const block_edges edges, const block_vertices vertices, int64_t i,
+                                       int dim, int a, lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
+{
+    lanes value[4], offset[6];
     for (int k = 0; k <= dim; k++) {
         LOAD(value[k], vertices[k * dim + a] + i);
-        for (int b = 0; b < dim; b++) {
-            R[3 * k + b] = (lanes){0.0};
-        }
     }
     for (int e = 0; e < CELL_EDGES(dim); e++) {
-        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
         LOAD(offset[e], edges[e * dim + a] + i);
-        offset[e] = EDGE_OFFSET(dim) * (offset[e] - 0.5 * (value[k] + value[l]));
-        for (int b = 0; b < dim; b++) {
-            R[3 * k + b] += offset[e] * grad_N[3 * l + b];
-            R[3 * l + b] += offset[e] * grad_N[3 * k + b];
-        }
-    }
-    for (int b = 0; b < dim; b++) {
-        lanes mean = R[b];
-        for (int k = 1; k <= dim; k++) {
-            mean += R[3 * k + b];
-        }
-        mean *= 1.0 / (dim + 1);
-        for (int k = 0; k <= dim; k++) {
-            R[3 * k + b] = *modulus * (dim == 2 ? mean : R[3 * k + b] - mean);
-        }
+        offset[e] -= 0.5 * (value[cell_edge_ends[e][0]] + value[cell_edge_ends[e][1]]);
     }
     for (int e = 0; e < CELL_EDGES(dim); e++) {
-        int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
-        lanes force = R[3 * k] * grad_N[3 * l] + R[3 * l] * grad_N[3 * k];
-        for (int b = 1; b < dim; b++) {
-            force += R[3 * k + b] * grad_N[3 * l + b] + R[3 * l + b] * grad_N[3 * k + b];
+        lanes force = V[e][0] * offset[0];
+        for (int f = 1; f < CELL_EDGES(dim); f++) {
+            force += V[e][f] * offset[f];
         }
-        force *= EDGE_OFFSET(dim);
         on_edge[e] += force;
         force *= 0.5;
-        on_vertex[k] -= force;
-        on_vertex[l] -= force;
+        on_vertex[cell_edge_ends[e][0]] -= force;
+        on_vertex[cell_edge_ends[e][1]] -= force;
     }
 }
 
@@ -162,51 +177,58 @@ KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block,
     }
 }
 
-/* In 3D the mean over a face on the boundary is that of its own row, in place of that of its midpoints: a
- * mean that is larger by d changes F by -3 d (x) grad N_k, k the opposite vertex. change: by how much, of
- * each cell. */
-KERNEL_INLINE void change_at_boundary(const struct body *body, const struct block *block,
-                                      const block_edges edges, block_rows change)
+/* The mean over a face on the boundary is that of its own row, in place of that of the interpolant: a mean
+ * that is larger by d changes F by -dim d (x) grad N_k, k the opposite vertex. change: by how much, of each
+ * cell. */
+KERNEL_INLINE void change_at_boundary(const struct body *body, const struct block *block, int dim,
+                                      const block_edges edges, const block_vertices vertices,
+                                      block_rows change)
 {
     const struct field_averages *averages = &body->cells.averages;
     int64_t last = block->first_point + block->point_count, first = block->boundary_face;
-    const int32_t *row = averages->of_use + field_averages_faces(averages, 3);
+    const int32_t *row = averages->of_use + field_averages_faces(averages, dim);
     memset(change, 0, sizeof(block_rows));
     for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
-        const int *edge = cell_face_edges[k];
         const double *grad_N = averages->face_gradient + 3 * f;
-        for (int a = 0; a < 3; a++) {
-            double of_edges =
-                edges[3 * edge[0] + a][i] + edges[3 * edge[1] + a][i] + edges[3 * edge[2] + a][i];
-            double difference = of_edges - 3.0 * averages->value[row[f] + a];
-            for (int b = 0; b < 3; b++) {
-                change[3 * a + b][i] += difference * grad_N[b];
+        for (int a = 0; a < dim; a++) {
+            double difference = -averages->value[row[f] + a];
+            for (int e = 0; e < FACE_EDGES(dim); e++) {
+                difference += EDGE_IN_FACE(dim) * edges[cell_face_edge(dim, k, e) * dim + a][i];
+            }
+            for (int v = 0; v <= dim && VERTEX_IN_FACE(dim) > 0.0; v++) {
+                difference += v != k ? VERTEX_IN_FACE(dim) * vertices[v * dim + a][i] : 0.0;
+            }
+            for (int b = 0; b < dim; b++) {
+                change[dim * a + b][i] += dim * difference * grad_N[b];
             }
         }
     }
 }
 
-/* The transpose: the forces of P on these faces, and on the edges of the cells there. */
-KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *block, const block_rows P,
-                                      block_edges at_edges)
+/* The transpose: the forces of P on these faces, and on the edges and vertices of the cells there. */
+KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *block, int dim,
+                                      const block_rows P, block_edges at_edges, block_vertices at_vertices)
 {
     struct field_averages *averages = &body->cells.averages;
     int64_t last = block->first_point + block->point_count, first = block->boundary_face;
-    double *force = averages->use_force + field_averages_faces(averages, 3) * VECTOR_STRIDE(3);
+    double *force = averages->use_force + field_averages_faces(averages, dim) * VECTOR_STRIDE(dim);
     for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
         const double *grad_N = averages->face_gradient + 3 * f;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < dim; a++) {
             double along = 0.0;
-            for (int b = 0; b < 3; b++) {
-                along += P[3 * a + b][i] * grad_N[b];
+            for (int b = 0; b < dim; b++) {
+                along += dim * P[dim * a + b][i] * grad_N[b];
             }
-            force[f * VECTOR_STRIDE(3) + a] = -3.0 * along;
-            for (int e = 0; e < 3; e++) {
-                at_edges[3 * cell_face_edges[k][e] + a][i] += along;
+            force[f * VECTOR_STRIDE(dim) + a] = -along;
+            for (int e = 0; e < FACE_EDGES(dim); e++) {
+                at_edges[cell_face_edge(dim, k, e) * dim + a][i] += EDGE_IN_FACE(dim) * along;
+            }
+            for (int v = 0; v <= dim && VERTEX_IN_FACE(dim) > 0.0; v++) {
+                at_vertices[v * dim + a][i] += v != k ? VERTEX_IN_FACE(dim) * along : 0.0;
             }
         }
     }
@@ -220,9 +242,8 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
     block_rows F, interpolant, change;
     double determinant[BLOCK_MOST_POINTS], J[BLOCK_MOST_POINTS];
     read_cells(body, block, dim, edges, vertices);
-    if (dim == 3) {
-        change_at_boundary(body, block, (const double(*)[BLOCK_MOST_POINTS])edges, change);
-    }
+    change_at_boundary(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
+                       (const double(*)[BLOCK_MOST_POINTS])vertices, change);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
         lanes grad_N[12], f[9], h[9], C[9], volume;
         load_linear_gradients(body, block->first_point + i, dim, grad_N);
@@ -235,11 +256,9 @@ KERNEL_INLINE void kernel_cell_gradients(struct body *body, struct block *block,
             double unit = k % (dim + 1) == 0 ? 1.0 : 0.0;
             f[k] += unit;
             h[k] += unit;
-            if (dim == 3) {
-                lanes more;
-                LOAD(more, change[k] + i);
-                f[k] += more;
-            }
+            lanes more;
+            LOAD(more, change[k] + i);
+            f[k] += more;
             STORE(F[k] + i, f[k]);
             STORE(interpolant[k] + i, h[k]);
         }
@@ -324,12 +343,13 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
     block_vertices vertices, at_vertices;
     read_cells(body, block, dim, edges, vertices);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], modulus, shear, bulk;
+        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], V[6][6], modulus, shear, bulk;
         int64_t q = block->first_point + i;
         load_linear_gradients(body, q, dim, grad_N);
         load_moduli(body, q, &shear, &bulk);
         LOAD(modulus, body->cells.variance_weight + q);
-        modulus *= VARIANCE_FACTOR(dim) * shear;
+        modulus *= EDGE_OFFSET * EDGE_OFFSET * VARIANCE_FACTOR(dim) * shear;
+        variance_matrix(dim, grad_N, &modulus, V);
         for (int a = 0; a < dim; a++) {
             for (int b = 0; b < dim; b++) {
                 LOAD(mean[b], P[a * dim + b] + i);
@@ -337,8 +357,8 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
             }
             cell_forces(mean, interpolant, dim, grad_N, on_edge, on_vertex);
             add_variance_forces((const double(*)[BLOCK_MOST_POINTS])edges,
-                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, grad_N, &modulus,
-                                on_edge, on_vertex);
+                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, V, on_edge,
+                                on_vertex);
             for (int e = 0; e < CELL_EDGES(dim); e++) {
                 STORE(at_edges[e * dim + a] + i, on_edge[e]);
             }
@@ -347,9 +367,7 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
             }
         }
     }
-    if (dim == 3) {
-        forces_at_boundary(body, block, P, at_edges);
-    }
+    forces_at_boundary(body, block, dim, P, at_edges, at_vertices);
     write_uses(averages, 0, CELL_EDGES(dim), block, dim, (const double(*)[BLOCK_MOST_POINTS])at_edges);
     write_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim,
                (const double(*)[BLOCK_MOST_POINTS])at_vertices);

@@ -11,9 +11,9 @@
 typedef double pair2 __attribute__((vector_size(16)));
 typedef double quad4 __attribute__((vector_size(32)));
 
-/* Points are taken LANES at a time; arrays over points are padded by LANES, so that whole vectors may be
- * read. */
-#define LANES BODY_POINT_PADDING
+/* Points are taken LANES at a time: as many as fit into a register with AVX2, as longer vectors would go
+ * through memory. Arrays over points are padded (BODY_POINT_PADDING), so that whole vectors may be read. */
+#define LANES 4
 typedef double lanes __attribute__((vector_size(8 * LANES)));
 typedef float lanes_float __attribute__((vector_size(4 * LANES)));
 typedef int32_t lanes_int __attribute__((vector_size(4 * LANES)));

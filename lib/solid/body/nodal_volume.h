@@ -24,9 +24,10 @@
  * The pressure at point q, the derivative of the energy by J_q per volume, is
  *
  *   p_q = ( sum_a N_a(q) pi_a + s_q y_q ) y'(J_q).
- * At edges between clamped and free sides the pressure is singular. A nodal pressure cannot approximate it,
- * and the displacement of the clamped side is fixed, so the body would be too stiff. Nodes at such edges own
- * no nodal volume: the other nodes of their cells share it, with N_a scaled to the sum 1, as multipliers of
+ *
+ * At edges between clamped and free sides, and at re-entrant ones such as the tip of a slit, the pressure is
+ * singular. A nodal pressure cannot approximate it: the body would be too stiff. Nodes at such edges own no
+ * nodal volume: the other nodes of their cells share it, with N_a scaled to the sum 1, as multipliers of
  * mortar methods are constant in the last element of an interface (Bernardi, Maday and Patera 1994). If a
  * nodal volume has a cell at an edge, s acts on the volume as a whole, not on its points: with theta_a = 1
  * for these volumes and 0 for others, the first term of the energy is

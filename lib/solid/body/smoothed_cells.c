@@ -44,11 +44,13 @@ static enum status set_linear_gradients(const struct smoothed_cells_input *input
 static enum status set_face_gradients(struct body *body, struct error *error)
 {
     struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim;
     double grad_N[12];
     RETURN_IF_ERROR(NEW_ARRAY(&averages->face_gradient, averages->face_count * 3, error));
     for (int64_t f = 0; f < averages->face_count; f++) {
         smoothed_cells_linear_gradients(body, averages->face_cell[f], grad_N);
-        memcpy(averages->face_gradient + 3 * f, grad_N + 3 * averages->face_vertex[f], 3 * sizeof *grad_N);
+        memcpy(averages->face_gradient + 3 * f, grad_N + dim * averages->face_vertex[f],
+               (size_t)dim * sizeof *grad_N);
     }
     return STATUS_OK;
 }
@@ -108,7 +110,7 @@ void smoothed_cells_variation(int dim, const double *grad_N, const double *edge,
     memset(variation, 0, (size_t)((dim + 1) * dim) * sizeof *variation);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
-        double offset = EDGE_OFFSET(dim) * (edge[e] - 0.5 * (vertex[k] + vertex[l]));
+        double offset = EDGE_OFFSET * (edge[e] - 0.5 * (vertex[k] + vertex[l]));
         add_scaled(dim, offset, grad_N + l * dim, variation + k * dim);
         add_scaled(dim, offset, grad_N + k * dim, variation + l * dim);
     }
@@ -116,7 +118,7 @@ void smoothed_cells_variation(int dim, const double *grad_N, const double *edge,
         add_scaled(dim, 1.0 / (dim + 1), variation + k * dim, mean);
     }
     for (int i = 0; i < (dim + 1) * dim; i++) {
-        variation[i] = dim == 2 ? mean[i % dim] : variation[i] - mean[i % dim];
+        variation[i] -= mean[i % dim];
     }
 }
 
@@ -148,15 +150,26 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][0] * dim, gradient + e * dim);
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][1] * dim, gradient + e * dim);
     }
+    for (int k = 0; k <= dim && dim == 2; k++) {
+        row[count] = (int32_t)(averages->row_count - body->node_count) + smoothed_cells_node(body, q, k);
+        memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
+        add_scaled(dim, VERTEX_GRADIENT(dim), grad_N + k * dim, gradient + dim * count++);
+    }
     for (int64_t f = field_averages_face(averages, q);
          f < averages->face_count && averages->face_cell[f] == q; f++) {
         int k = averages->face_vertex[f];
-        for (int e = 0; e < 3; e++) {
-            add_scaled(3, 1.0, grad_N + 3 * k, gradient + 3 * cell_face_edges[k][e]);
+        for (int e = 0; e < FACE_EDGES(dim); e++) {
+            add_scaled(dim, dim * EDGE_IN_FACE(dim), grad_N + dim * k,
+                       gradient + dim * cell_face_edge(dim, k, e));
         }
-        memset(gradient + 3 * count, 0, 3 * sizeof *gradient);
-        add_scaled(3, -3.0, grad_N + 3 * k, gradient + 3 * count);
-        row[count++] = averages->of_use[field_averages_faces(averages, 3) + f] / VECTOR_STRIDE(3);
+        for (int v = 0; v <= dim && dim == 2; v++) {
+            if (v != k) {
+                add_scaled(dim, dim * VERTEX_IN_FACE(dim), grad_N + dim * k, gradient + dim * (3 + v));
+            }
+        }
+        memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
+        add_scaled(dim, -dim, grad_N + dim * k, gradient + dim * count);
+        row[count++] = averages->of_use[field_averages_faces(averages, dim) + f] / VECTOR_STRIDE(dim);
     }
     return count;
 }

@@ -1,19 +1,20 @@
 /* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md).
  *
  * In each cell the field is interpolated by the quadratic polynomial that has its values v_k at the vertices
- * and, on each edge, its mean m_e (2D) or its value m_e at the midpoint (3D). The gradient of this
- * interpolant is linear. With the linear shape functions N_k of the vertices and the offsets
+ * and m_e at the midpoints of the edges. The gradient of this interpolant is linear. With the linear shape
+ * functions N_k of the vertices and the offsets
  *
- *   s_e = 6 (m_e - (v_i + v_j) / 2) in 2D,  4 (m_e - (v_i + v_j) / 2) in 3D,  e the edge from i to j,
+ *   s_e = 4 (m_e - (v_i + v_j) / 2),  e the edge from i to j,
  *
  * it is F_h + R_k at vertex k, F_h = I + sum_k v_k (x) grad N_k the gradient of the linear interpolant and
  * R_k the sum of s_e (x) grad N_j over the edges e from k to other vertices j. Its mean over the cell is
  *
- *   F = I + c sum_e m_e (x) (grad N_i + grad N_j),  c = 2 in 2D, 1 in 3D.
+ *   F = F_h + R,  R = sum_k R_k / (dim + 1),
  *
- * By the divergence theorem this is the gradient smoothed over the cell: it depends on the means over the
- * faces alone. In 3D the mean over a face on the boundary is that of its own row (approx/cells/face_edges.h)
- * in place of the mean of its midpoints, so that gradients agree with integrals over the boundary.
+ * in 3D I + sum_e m_e (x) (grad N_i + grad N_j), in 2D a third of F_h and 4/3 of that sum. By the divergence
+ * theorem F is the gradient smoothed over the cell: it depends on the means over the faces alone. The mean
+ * over a face on the boundary is that of its own row (approx/cells/face_edges.h) in place of the
+ * interpolant's, so that gradients agree with integrals over the boundary.
  *
  * F is not the gradient of a continuous piecewise linear map, so that sum V det F is not the volume within
  * the boundary: under pressure the field could buckle within the cells without a change of volume. The volume
@@ -28,28 +29,31 @@
  * exact for linear fields stays so.
  *
  * The mean of the gradient alone misses the energy of what varies within the cell, and resists no pattern
- * that has the mean zero. In 3D the variance of the interpolant's gradient has the energy
+ * that has the mean zero. The variance of the interpolant's gradient has the energy
  *
- *   mu / 2 times the mean over the cell of |grad - F|^2 = mu / 40 sum_k |R_k - R|^2,  R the mean of the R_k,
+ *   mu / 2 times the mean over the cell of |grad - F|^2
+ *     = mu / 2 sum_k |R_k - R|^2 / ((dim + 1) (dim + 2)),
  *
  * which stabilises (compare Puso, Chen, Zywicz and Elmer 2008). It has no constant: at rest it is the energy
- * of a quadratic field in cells of any shape. In 2D the energy is
- *
- *   mu / 2 |F_h - F|^2 = mu / 2 |R|^2,
- *
- * which is that of the variance for trace-free second derivatives on regular triangles: the whole variance
- * bends thin bodies better, but is stiffer near corners where the field is singular. Both energies are of
- * second order in the size of the cells, at any strain. What was tried: pipelines/convergence/DEFAULTS.md. */
+ * of a quadratic field in cells of any shape. It is of second order in the size of the cells, at any strain.
+ * What was tried: pipelines/convergence/DEFAULTS.md. */
 #pragma once
 
 #include "solid/operators/field_averages.h"
 
-/* s_e by m_e, and c. */
-#define EDGE_OFFSET(dim) ((dim) == 2 ? 6.0 : 4.0)
-#define EDGE_GRADIENT(dim) ((dim) == 2 ? 2.0 : 1.0)
+/* s_e by m_e. */
+#define EDGE_OFFSET 4.0
 
-/* The energy within a cell by mu / 2 times the sum over k of |R_k - R|^2, in 2D of |R|^2, per volume. */
-#define VARIANCE_FACTOR(dim) ((dim) == 2 ? 1.0 / 3.0 : 1.0 / 20.0)
+/* F = I + VERTEX_GRADIENT (F_h - I) + EDGE_GRADIENT sum_e m_e (x) (grad N_i + grad N_j) */
+#define EDGE_GRADIENT(dim) ((dim) == 2 ? 4.0 / 3.0 : 1.0)
+#define VERTEX_GRADIENT(dim) ((dim) == 2 ? 1.0 / 3.0 : 0.0)
+
+/* The mean of the interpolant over a face by the values on each of its edges and at each of its vertices. */
+#define EDGE_IN_FACE(dim) ((dim) == 2 ? 2.0 / 3.0 : 1.0 / 3.0)
+#define VERTEX_IN_FACE(dim) ((dim) == 2 ? 1.0 / 6.0 : 0.0)
+
+/* The energy within a cell by mu / 2 times the sum over k of |R_k - R|^2, per volume. */
+#define VARIANCE_FACTOR(dim) (1.0 / (((dim) + 1) * ((dim) + 2)))
 
 struct body;
 
@@ -110,7 +114,7 @@ double smoothed_cells_share(const struct body *body, int64_t q);
 /* The row of edge e of cell q in the averages' matrix. */
 int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e);
 
-/* variation[(dim + 1) * dim]: R_k - R at each vertex, in 2D R, of one component of a field with the values
+/* variation[(dim + 1) * dim]: R_k - R at each vertex, of one component of a field with the values
  * edge[CELL_EDGES(dim)] and vertex[dim + 1] in a cell of these gradients grad_N, 1/m times its unit. */
 void smoothed_cells_variation(int dim, const double *grad_N, const double *edge, const double *vertex,
                               double *variation);

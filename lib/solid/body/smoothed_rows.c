@@ -56,7 +56,7 @@ static enum status match_edges(const struct smoothed_cells_input *input, const s
     return STATUS_OK;
 }
 
-/* x[face_row_count(faces) * dim]: the midpoints of the edges, and the centres of boundary faces in 3D. */
+/* x[face_row_count(faces) * dim]: the midpoints of the edges, and the centres of boundary faces. */
 static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
     int dim = faces->dim;
@@ -72,15 +72,16 @@ static enum status place_rows(const struct faces *faces, const double *nodes, do
     return STATUS_OK;
 }
 
-/* The boundary faces of a body in 3D by their cells in the body's order: see field_averages.h. */
+/* The boundary faces of a body by their cells in the body's order: see field_averages.h. */
 static enum status list_faces(const struct smoothed_cells_input *input, const struct body *body,
                               const int32_t *place, struct field_averages_input *tables, int32_t **face_row,
                               struct error *error)
 {
     const struct faces *faces = input->faces;
+    int dim = body->dim;
     SCRATCH int32_t *cell = NULL, *face = NULL;
     SCRATCH int64_t *ptr = NULL;
-    tables->face_count = body->dim == 3 ? faces->boundary_count : 0;
+    tables->face_count = faces->boundary_count;
     RETURN_IF_ERROR(NEW_ARRAY(&cell, tables->face_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&tables->face_cell, tables->face_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&tables->face_vertex, tables->face_count, error));
@@ -91,10 +92,10 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
     RETURN_IF_ERROR(lists_by_row(tables->face_count, 1, cell, body->point_count, &ptr, &face, error));
     for (int64_t i = 0; i < tables->face_count; i++) {
         int64_t f = face[i];
-        const int32_t *vertex = input->cell_node + (int64_t)faces->cell[2 * f] * 4;
-        const int32_t *node = faces->node + f * 3;
+        const int32_t *vertex = input->cell_node + (int64_t)faces->cell[2 * f] * (dim + 1);
+        const int32_t *node = faces->node + f * dim;
         int32_t k = 0;
-        while (k < 3 && (vertex[k] == node[0] || vertex[k] == node[1] || vertex[k] == node[2])) {
+        while (k < dim && (vertex[k] == node[0] || vertex[k] == node[1] || vertex[k] == node[dim - 1])) {
             k++;
         }
         tables->face_cell[i] = cell[f];

@@ -55,7 +55,7 @@ void stress_points(const struct body *body, const struct block *block, block_row
     }
 }
 
-/* |R_k - R|^2, in 2D |R|^2, summed over the vertices and components of cell q. */
+/* |R_k - R|^2, summed over the vertices and components of cell q. */
 static double squares_of_variation(const struct body *body, int64_t q)
 {
     const struct field_averages *averages = &body->cells.averages;

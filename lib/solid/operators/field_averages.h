@@ -1,4 +1,4 @@
-/* Values of the displacement field from which smoothed cells are computed: the rows of edges and, in 3D, of
+/* Values of the displacement field from which smoothed cells are computed: the rows of edges and of
  * boundary faces (approx/cells/face_edges.h), then the values at the vertices.
  *
  * An evaluation computes the values (apply), evaluates the cells, sums the forces of the cells on each value,
@@ -37,10 +37,10 @@ struct field_averages {
     double *use_force; /* with that stride: the force of each use on its row */
     int64_t *use_ptr;  /* row_count + 1: the uses of each row, */
     int32_t *use;      /* use_count, ascending in each row */
-    int64_t face_count;    /* 3D: boundary faces, by their cells: */
+    int64_t face_count;    /* boundary faces, by their cells: */
     int64_t *face_cell;    /* the cell of each, ascending, */
     int32_t *face_vertex;  /* which of its vertices is opposite, */
-    double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m */
+    double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m (2D: the last 0) */
     struct average_table given[2]; /* with several processes: the caller's tables, edges and nodes, */
     int64_t *edge_order;           /* and the order of their rows; */
     struct sparse fetched;         /* where none has read all rows of edges: those that this process needs */

@@ -219,7 +219,7 @@ static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, in
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         int k = cell_edge_ends[e][0], l = cell_edge_ends[e][1];
         double force =
-            EDGE_OFFSET(dim) * modulus *
+            EDGE_OFFSET * modulus *
             (vector_dot(dim, R + k * dim, grad_N + l * dim) + vector_dot(dim, R + l * dim, grad_N + k * dim));
         put(force, smoothed_cells_edge(body, q, e), i, row, touched);
         put(-0.5 * force, nodes + smoothed_cells_node(body, q, k), i, row, touched);

@@ -28,8 +28,8 @@ static int64_t find_face(const struct rejoin *rejoin, const struct rejoin_part *
               part->file, (long long)local);
 }
 
-/* An edge, with its points, belongs to the part that owns the first of its faces. to[]: rows of edges, and in
- * 3D of boundary faces. */
+/* An edge, with its points, belongs to the part that owns the first of its faces. to[]: rows of edges, and
+ * of boundary faces. */
 static void map_edges(const struct rejoin *rejoin, const struct rejoin_part *part, const int32_t *first_face,
                       int32_t *to)
 {
