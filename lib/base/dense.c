@@ -1,5 +1,6 @@
 #include "base/dense.h"
 
+#include "base/chunks.h"
 #include "base/processor.h"
 
 #include <math.h>
@@ -11,17 +12,109 @@ ALL_SETS void dense_add_row(int64_t count, double a, const double *x, double *re
     }
 }
 
+/* Rows of L that are computed at a time, and then subtracted from the rest; tiles of the rest. */
+enum { PANEL = 64, TILE_ROWS = 4, TILE_COLUMNS = 8, COLUMNS_AT_ONCE = 128 };
+enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
+
+/* Four numbers, which fit into one register of processors with AVX2. */
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+
+/* rest, TILE_ROWS by TILE_COLUMNS of a matrix of n columns, -= left[TILE_ROWS][count]
+ * above[count][TILE_COLUMNS], parts of the same matrix. */
+KERNEL_INLINE void subtract_tile(int64_t n, int64_t count, const double *left, const double *above,
+                                 double *rest)
+{
+    four sum[TILE_ROWS][2];
+    for (int i = 0; i < TILE_ROWS; i++) {
+        sum[i][0] = *(const four *)(rest + i * n);
+        sum[i][1] = *(const four *)(rest + i * n + 4);
+    }
+    for (int64_t k = 0; k < count; k++) {
+        four first = *(const four *)(above + k * n), second = *(const four *)(above + k * n + 4);
+        for (int i = 0; i < TILE_ROWS; i++) {
+            sum[i][0] -= left[i * n + k] * first;
+            sum[i][1] -= left[i * n + k] * second;
+        }
+    }
+    for (int i = 0; i < TILE_ROWS; i++) {
+        *(four *)(rest + i * n) = sum[i][0];
+        *(four *)(rest + i * n + 4) = sum[i][1];
+    }
+}
+
+/* The same of any part. */
+KERNEL_INLINE void subtract_part(int64_t n, int64_t count, int64_t rows, int64_t columns, const double *left,
+                                 const double *above, double *rest)
+{
+    for (int64_t i = 0; i < rows; i++) {
+        for (int64_t k = 0; k < count; k++) {
+            for (int64_t j = 0; j < columns; j++) {
+                rest[i * n + j] -= left[i * n + k] * above[k * n + j];
+            }
+        }
+    }
+}
+
+/* Subtract the columns of L from k on, `count`, from the rows i to i + rows behind them up to the diagonal.
+ * Each entry is summed in the order of the columns, as without panels. */
+ALL_SETS static void subtract_panel(int64_t n, int64_t k, int64_t count, int64_t begin, int64_t end,
+                                    double *matrix)
+{
+    for (int64_t from = k + count; from < end; from += COLUMNS_AT_ONCE) {
+        for (int64_t i = begin; i < end; i += TILE_ROWS) {
+            int64_t rows = end - i < TILE_ROWS ? end - i : TILE_ROWS;
+            int64_t last = i + rows < from + COLUMNS_AT_ONCE ? i + rows : from + COLUMNS_AT_ONCE;
+            for (int64_t j = from; j < last; j += TILE_COLUMNS) {
+                const double *left = matrix + i * n + k, *above = matrix + k * n + j;
+                double *rest = matrix + i * n + j;
+                if (rows == TILE_ROWS && last - j >= TILE_COLUMNS) {
+                    subtract_tile(n, count, left, above, rest);
+                } else {
+                    int64_t columns = last - j < TILE_COLUMNS ? last - j : TILE_COLUMNS;
+                    subtract_part(n, count, rows, columns, left, above, rest);
+                }
+            }
+        }
+    }
+}
+
+/* The columns of L from k to before `last` in row i, and row k of L^T below. */
+static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *matrix)
+{
+    double *row = matrix + i * n;
+    for (int64_t c = k; c < last && c < i; c++) {
+        const double *above = matrix + c * n;
+        row[c] /= above[c];
+        matrix[c * n + i] = row[c];
+        dense_add_row((i < last ? i + 1 : last) - c - 1, -row[c], above + c + 1, row + c + 1);
+    }
+}
+
 bool dense_factorise(int64_t n, double *matrix)
 {
-    for (int64_t k = 0; k < n; k++) {
-        double *above = matrix + k * n, pivot = above[k]; /* row k of L^T: the column of L below the pivot */
-        if (!(pivot > 0.0 && isfinite(pivot))) {
-            return false;
+    for (int64_t k = 0; k < n; k += PANEL) {
+        int64_t last = n - k < PANEL ? n : k + PANEL, rows = n - last;
+        for (int64_t i = k; i < last; i++) {
+            solve_row(n, k, last, i, matrix);
+            double pivot = matrix[i * n + i];
+            if (!(pivot > 0.0 && isfinite(pivot))) {
+                return false;
+            }
+            matrix[i * n + i] = sqrt(pivot);
         }
-        above[k] = sqrt(pivot);
-        for (int64_t i = k + 1; i < n; i++) {
-            above[i] = matrix[i * n + k] /= above[k];
-            dense_add_row(i - k, -above[i], above + k + 1, matrix + i * n + k + 1);
+        struct chunks chunks = chunks_of(rows * rows * (last - k) / 64, ENTRIES_FOR_THREAD);
+        int64_t tiles = (rows + PANEL - 1) / PANEL;
+#pragma omp parallel num_threads(chunks.threads)
+        {
+#pragma omp for schedule(static)
+            for (int64_t i = last; i < n; i++) {
+                solve_row(n, k, last, i, matrix);
+            }
+#pragma omp for schedule(dynamic, 1)
+            for (int64_t t = 0; t < tiles; t++) {
+                int64_t begin = n - (t + 1) * PANEL, end = n - t * PANEL;
+                subtract_panel(n, k, last - k, begin < last ? last : begin, end, matrix);
+            }
         }
     }
     return true;

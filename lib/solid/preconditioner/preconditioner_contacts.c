@@ -21,29 +21,52 @@ static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, 
     return false;
 }
 
-/* field[coarse.count]: the coarse fields' means at contact node a, less what is opposite: opposite[corners *
- * coarse.count]. */
+/* The coarse fields' means at contact node a, less what is opposite; the contact's corners are those from
+ * `corners` on. */
 static void take_fields(const struct preconditioner *p, const struct contact *contact, int64_t a,
-                        const double *opposite, double *field)
+                        int64_t corners, struct coarse_mean *mean)
 {
     struct average average = average_of_boundary(contact_nodes(contact), a);
-    int64_t count = p->coarse.count, corner;
+    const struct sparse *opposite = &p->opposite;
+    int64_t corner;
     double weight;
-    memset(field, 0, (size_t)count * sizeof *field);
-    preconditioner_add_fields(p, &average, field);
+    coarse_mean_take(&p->coarse, &average, mean);
     for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        for (int64_t k = 0; k < count; k++) {
-            field[k] -= weight * opposite[corner * count + k];
+        for (int64_t k = opposite->ptr[corners + corner]; k < opposite->ptr[corners + corner + 1]; k++) {
+            coarse_mean_add(&p->coarse, opposite->idx[k], -weight * opposite->value[k], mean);
         }
     }
 }
 
-void preconditioner_add_contacts(const struct preconditioner *p, const struct solid_system *system,
+/* The lower triangle of matrix += stiffness row^T row, with row = the mean's fields along a direction. */
+static void add_square(const struct preconditioner *p, double stiffness, const double *direction,
+                       const struct coarse_mean *mean, double *matrix)
+{
+    int64_t dim = p->dim, fields = dim + 1, numbers = fields * dim;
+    double *row = p->amount;
+    for (int64_t i = 0; i < mean->count * numbers; i++) {
+        row[i] = mean->field[mean->centre[i / numbers] * fields + i % numbers / dim] * direction[i % dim];
+    }
+    for (int64_t s = 0; s < mean->count; s++) {
+        for (int64_t t = 0; t < mean->count; t++) {
+            if (mean->centre[t] > mean->centre[s]) {
+                continue;
+            }
+            for (int64_t i = 0; i < numbers; i++) {
+                double *to = matrix + (mean->centre[s] * numbers + i) * p->size + mean->centre[t] * numbers;
+                double factor = stiffness * row[s * numbers + i];
+                for (int64_t k = 0; k < numbers; k++) {
+                    to[k] += factor * row[t * numbers + k];
+                }
+            }
+        }
+    }
+}
+
+void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system,
                                  const bool *only, double *matrix)
 {
-    double *row = p->amount, *field = p->amount + p->size;
-    const double *opposite = p->opposite;
-    int64_t dim = p->dim, at = 0;
+    int64_t dim = p->dim, at = 0, corners = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
@@ -53,17 +76,13 @@ void preconditioner_add_contacts(const struct preconditioner *p, const struct so
             }
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
             bool creased = p->creased[at];
-            take_fields(p, contact, a, opposite, field);
+            take_fields(p, contact, a, corners, &p->mean);
             for (int64_t d = 0; d < (creased ? dim : 1); d++) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
-                const double *direction = creased ? axis : p->normal + at * dim;
-                for (int64_t i = 0; i < p->size; i++) {
-                    row[i] = field[i / dim] * direction[i % dim];
-                }
-                preconditioner_add_square(p->size, stiffness, row, matrix);
+                add_square(p, stiffness, creased ? axis : p->normal + at * dim, &p->mean, matrix);
             }
         }
-        opposite += contact_between_corners(contact) * p->coarse.count;
+        corners += contact_between_corners(contact);
     }
 }
 
@@ -212,7 +231,8 @@ static bool follow_nodes(struct preconditioner *p, const struct solid_system *sy
 static void keep_momentum(struct preconditioner *p, const struct solid_system *system, double *velocity,
                           double *field)
 {
-    double *matrix = p->impact, *amount = matrix + p->size * p->size, *change = amount + p->size;
+    double *matrix = p->stiffness_factor; /* which is factorised anew below */
+    double *amount = p->amount + 2 * p->size, *change = amount + p->size;
     preconditioner_momentum(p, velocity, amount, change);
     preconditioner_add_contacts(p, system, p->pushed, p->contacts);
     if (preconditioner_factorise(p, matrix) == 0.0) {
