@@ -2,6 +2,7 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
+#include "base/vector.h"
 #include "solid/preconditioner/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */
@@ -146,6 +147,38 @@ static double share_at(const struct coarse_space *coarse, int64_t node, int32_t 
         share += coarse->shares.idx[i] == centre ? coarse->shares.value[i] : 0.0;
     }
     return share;
+}
+
+/* Centres are farther from each other than any node is from the nearest of them; a node has shares of those
+ * within the radius only, however many there are. */
+TEST(shares_are_few)
+{
+    struct cloud cloud = make_cloud(3, 20000, 400);
+    const struct coarse_space *coarse = &cloud.coarse;
+    double farthest = 0.0, nearest = INFINITY;
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double least = INFINITY;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            least = fmin(least, vector_distance(3, coarse->X + n * 3, coarse->centre + c * 3));
+        }
+        farthest = fmax(farthest, least);
+        for (int64_t i = coarse->shares.ptr[n]; i < coarse->shares.ptr[n + 1]; i++) {
+            const double *centre = coarse->centre + (int64_t)coarse->shares.idx[i] * 3;
+            AT_MOST(vector_distance(3, coarse->X + n * 3, centre), coarse->radius);
+        }
+    }
+    for (int64_t i = 0; i < coarse->centre_count; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            double distance = vector_distance(3, coarse->centre + i * 3, coarse->centre + k * 3);
+            nearest = fmin(nearest, distance);
+        }
+    }
+    double few = (double)coarse->shares.ptr[coarse->node_count] / (double)coarse->node_count;
+    print_message("%g shares at a node\n", few);
+    AT_MOST(few, 16.0);
+    AT_MOST(farthest, nearest);
+    NEAR_TO(coarse->radius, 1.5 * farthest, 1e-14);
+    release(&cloud);
 }
 
 /* A ring of nodes with a slit, each with its neighbours, and `alone` nodes behind it without any. */

@@ -167,8 +167,7 @@ void block_row_make(const struct body *body, int32_t node, struct block_row *row
     }
 }
 
-/* Neighbours of a node at most, each as often as it is in a cell. */
-static int64_t most_neighbours(const struct body *body)
+int64_t block_row_most(const struct body *body)
 {
     const struct field_averages *averages = &body->cells.averages;
     int64_t most = 0;
@@ -184,9 +183,8 @@ static int64_t most_neighbours(const struct body *body)
     return most;
 }
 
-enum status block_row_begin(const struct body *body, struct block_row *row, struct error *error)
+enum status block_row_begin(const struct body *body, int64_t most, struct block_row *row, struct error *error)
 {
-    int64_t most = most_neighbours(body);
     *row = (struct block_row){0};
     RETURN_IF_ERROR(NEW_ARRAY(&row->node, most, error));
     return NEW_ARRAY(&row->block, most * (body->dim + 1) * body->dim, error);

@@ -20,7 +20,10 @@ struct block_row {
     double volume; /* V_n, m3 (2D: m2) */
 };
 
-MUST_CHECK enum status block_row_begin(const struct body *body, struct block_row *row, struct error *error);
+/* The neighbours of a node at most, each as often as it is in a cell. */
+int64_t block_row_most(const struct body *body);
+MUST_CHECK enum status block_row_begin(const struct body *body, int64_t most, struct block_row *row,
+                                       struct error *error);
 void block_row_free(struct block_row *row);
 
 /* The row of a node, in the body's order. */

@@ -13,8 +13,8 @@
 
 /* Nodes for each field at least. */
 static const int64_t nodes_per_coarse_field = 8;
-/* Unknowns of the coarse space of small bodies at most: up to 16 centres in two dimensions and 8 in three. */
-static const int64_t most_unknowns = 96;
+/* Centres of small bodies at most. */
+static const int64_t small_centres = 16;
 /* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
  * steps follow the distance of the centres by that of the nodes. */
 static const int64_t nodes_per_centre = 1000;
@@ -23,10 +23,9 @@ static const int64_t most_centres = 384;
 
 static int64_t centre_count(const struct solid_system *system)
 {
-    int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
-    int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    int64_t count = system->node_count / (nodes_per_coarse_field * (system->dim + 1));
     int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
-    most = of_large > most ? of_large : most;
+    int64_t most = of_large > small_centres ? of_large : small_centres;
     most = most < most_centres ? most : most_centres;
     return count < most ? count : most;
 }

@@ -33,8 +33,8 @@ struct part {
     struct error error;
 };
 
-static enum status part_begin(const struct preconditioner *p, const struct body *body, struct part *part,
-                              struct error *error)
+static enum status part_begin(const struct preconditioner *p, const struct body *body, int64_t most,
+                              struct part *part, struct error *error)
 {
     int64_t centres = p->coarse.centre_count;
     RETURN_IF_ERROR(NEW_ARRAY(&part->local, centres, error));
@@ -44,7 +44,7 @@ static enum status part_begin(const struct preconditioner *p, const struct body 
     RETURN_IF_ERROR(NEW_ARRAY(&part->taken, centres, error));
     memset(part->local, -1, (size_t)centres * sizeof *part->local);
     memset(part->slot, -1, (size_t)centres * sizeof *part->slot);
-    return block_row_begin(body, &part->row, error);
+    return block_row_begin(body, most, &part->row, error);
 }
 
 /* All but the sums. */
@@ -251,11 +251,11 @@ ALL_SETS static void add(const struct moved_fields *fields, const struct solid_s
 
 /* The sums of the nodes and penalties of a chunk. */
 static enum status sum_chunk(const struct moved_fields *fields, const struct solid_system *system,
-                             const struct chunks *nodes, int64_t c, struct part *part)
+                             const struct chunks *nodes, int64_t most, int64_t c, struct part *part)
 {
     struct chunks penalties = *nodes;
     penalties.items = system->penalties.count;
-    part->status = part_begin(fields->p, &system->body, part, &part->error);
+    part->status = part_begin(fields->p, &system->body, most, part, &part->error);
     for (int way = 0; way < 2; way++) {
         const struct chunks *items = way == 0 ? nodes : &penalties;
         int64_t end = chunks_begin(items, c + 1);
@@ -347,11 +347,12 @@ static enum status sum_all(const struct moved_fields *fields, const struct solid
     struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
     struct part part[CHUNKS_MOST] = {{0}};
     SCRATCH int64_t *first = NULL;
+    int64_t most = block_row_most(&system->body);
     enum status status;
     TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(nodes.threads)
     for (int64_t c = first[ranks_rank(ranks)]; c < first[ranks_rank(ranks) + 1]; c++) {
-        (void)sum_chunk(fields, system, &nodes, c, &part[c]);
+        (void)sum_chunk(fields, system, &nodes, most, c, &part[c]);
     }
     for (int64_t c = 0; c < nodes.count && status == STATUS_OK; c++) {
         if (part[c].status != STATUS_OK) {
