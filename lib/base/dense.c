@@ -90,10 +90,29 @@ static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *mat
     }
 }
 
+/* The columns of L from k to before `last` in the rows from there on, and these less what they take. */
+static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
+{
+    int64_t rows = n - last, tiles = (rows + PANEL - 1) / PANEL;
+    struct chunks chunks = chunks_of(rows * rows * (last - k) / PANEL, ENTRIES_FOR_THREAD);
+#pragma omp parallel num_threads(chunks.threads)
+    {
+#pragma omp for schedule(static)
+        for (int64_t i = last; i < n; i++) {
+            solve_row(n, k, last, i, matrix);
+        }
+#pragma omp for schedule(dynamic, 1)
+        for (int64_t t = 0; t < tiles; t++) {
+            int64_t begin = n - (t + 1) * PANEL, end = n - t * PANEL;
+            subtract_panel(n, k, last - k, begin < last ? last : begin, end, matrix);
+        }
+    }
+}
+
 bool dense_factorise(int64_t n, double *matrix)
 {
     for (int64_t k = 0; k < n; k += PANEL) {
-        int64_t last = n - k < PANEL ? n : k + PANEL, rows = n - last;
+        int64_t last = n - k < PANEL ? n : k + PANEL;
         for (int64_t i = k; i < last; i++) {
             solve_row(n, k, last, i, matrix);
             double pivot = matrix[i * n + i];
@@ -102,19 +121,8 @@ bool dense_factorise(int64_t n, double *matrix)
             }
             matrix[i * n + i] = sqrt(pivot);
         }
-        struct chunks chunks = chunks_of(rows * rows * (last - k) / 64, ENTRIES_FOR_THREAD);
-        int64_t tiles = (rows + PANEL - 1) / PANEL;
-#pragma omp parallel num_threads(chunks.threads)
-        {
-#pragma omp for schedule(static)
-            for (int64_t i = last; i < n; i++) {
-                solve_row(n, k, last, i, matrix);
-            }
-#pragma omp for schedule(dynamic, 1)
-            for (int64_t t = 0; t < tiles; t++) {
-                int64_t begin = n - (t + 1) * PANEL, end = n - t * PANEL;
-                subtract_panel(n, k, last - k, begin < last ? last : begin, end, matrix);
-            }
+        if (last < n) {
+            reduce(n, k, last, matrix);
         }
     }
     return true;
