@@ -94,8 +94,7 @@ static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *mat
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
 {
     int64_t rows = n - last, tiles = (rows + PANEL - 1) / PANEL;
-    struct chunks chunks = chunks_of(rows * rows * (last - k) / PANEL, ENTRIES_FOR_THREAD);
-#pragma omp parallel num_threads(chunks.threads)
+#pragma omp parallel num_threads(chunks_of(rows *rows *(last - k) / PANEL, ENTRIES_FOR_THREAD).threads)
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {

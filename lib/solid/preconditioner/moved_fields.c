@@ -13,9 +13,14 @@ static const double least_move = 1e-4;
 
 /* Entries in the order of their centres. */
 struct entries {
-    int64_t count, room, move_room;
+    int64_t count, room;
     int32_t *place; /* near node */
 };
+
+static void entries_free(struct entries *entries)
+{
+    free(entries->place);
+}
 
 /* field = B G^T amount */
 static void spread(const struct preconditioner *p, const double *amount, double *field)
@@ -131,8 +136,7 @@ enum status moved_fields_build(const struct preconditioner *p, struct moved_fiel
 {
     int64_t values = p->node_count * p->dim, numbers = p->dim * (p->dim + 1) * p->dim;
     SCRATCH double *amount = NULL, *field = NULL, *move = NULL;
-    SCRATCH int32_t *place = NULL;
-    struct entries entries = {0};
+    FREED_BY(entries_free) struct entries entries = {0};
     *fields = (struct moved_fields){.p = p};
     RETURN_IF_ERROR(NEW_ARRAY(&fields->near, p->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&amount, p->constraint.rows->count, error));
@@ -143,9 +147,7 @@ enum status moved_fields_build(const struct preconditioner *p, struct moved_fiel
         memset(move, 0, (size_t)(count * numbers) * sizeof *move);
         take_fields(p, fields->near, c, move);
         subtract_held(p, fields->near, c, amount, field, move);
-        enum status status = keep(count, numbers, c, move, fields, &entries, error);
-        place = entries.place;
-        RETURN_IF_ERROR(status);
+        RETURN_IF_ERROR(keep(count, numbers, c, move, fields, &entries, error));
     }
     return sort(count, &entries, fields, error);
 }

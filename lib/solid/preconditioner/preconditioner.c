@@ -15,32 +15,20 @@
 static const int64_t nodes_per_coarse_field = 8;
 /* Unknowns of small bodies at most: 16 centres in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
-/* Of smoothed cells, whose coarse stiffness costs no evaluations, centres of bodies that are not so small,
- * and nodes for each of these; then nodes for each centre of large ones: the steps follow the distance of the
- * centres by that of the nodes. */
-static const int64_t small_centres = 16, nodes_per_small_centre = 64, nodes_per_centre = 1000;
+/* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
+ * steps follow the distance of the centres by that of the nodes. */
+static const int64_t nodes_per_centre = 1000;
 /* Centres at most: their matrices are dense. */
 static const int64_t most_centres = 384;
 
-static int64_t least_of(int64_t a, int64_t b)
-{
-    return a < b ? a : b;
-}
-
-static int64_t most_of(int64_t a, int64_t b)
-{
-    return a > b ? a : b;
-}
-
 static int64_t centre_count(const struct solid_system *system)
 {
-    int64_t nodes = system->node_count, fields = system->dim + 1;
-    int64_t count = most_unknowns / (fields * system->dim);
-    if (system->body.smoothed) {
-        count = most_of(count, least_of(nodes / nodes_per_small_centre, small_centres));
-        count = least_of(most_of(count, nodes / nodes_per_centre), most_centres);
-    }
-    return least_of(count, nodes / (nodes_per_coarse_field * fields));
+    int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
+    int64_t count = system->node_count / (nodes_per_coarse_field * fields);
+    int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
+    most = of_large > most ? of_large : most;
+    most = most < most_centres ? most : most_centres;
+    return count < most ? count : most;
 }
 
 static enum status build_inverse(struct solid_system *system, struct preconditioner *p, struct error *error)

@@ -35,8 +35,7 @@ static double free_part(const struct preconditioner *p)
 static void sum_stiffness(const struct preconditioner *p, double keep, const double *more, double *matrix)
 {
     int64_t size = p->size, dim = p->dim;
-    int threads = chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
-#pragma omp parallel for schedule(static, 16) num_threads(threads)
+#pragma omp parallel for schedule(static, 16) num_threads(chunks_of(size *size, ENTRIES_FOR_THREAD).threads)
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
             matrix[k] = (p->body[k] + p->contacts[k]) / share + (more != NULL ? more[k] : 0.0);
