@@ -78,23 +78,44 @@ ALL_SETS static void subtract_panel(int64_t n, int64_t k, int64_t count, int64_t
     }
 }
 
-/* The columns of L from k to before `last` in row i, and row k of L^T below. */
+/* Rows and columns of L from k to before `last`. */
+static bool factorise_block(int64_t n, int64_t k, int64_t last, double *matrix)
+{
+    for (int64_t c = k; c < last; c++) {
+        double *above = matrix + c * n, pivot = above[c]; /* row c of L^T: the column of L below the pivot */
+        if (!(pivot > 0.0 && isfinite(pivot))) {
+            return false;
+        }
+        above[c] = sqrt(pivot);
+        for (int64_t i = c + 1; i < last; i++) {
+            above[i] = matrix[i * n + c] /= above[c];
+            dense_add_row(i - c, -above[i], above + c + 1, matrix + i * n + c + 1);
+        }
+    }
+    return true;
+}
+
+/* The columns of L from k to before `last` in row i below, and in L^T. */
 static void solve_row(int64_t n, int64_t k, int64_t last, int64_t i, double *matrix)
 {
     double *row = matrix + i * n;
-    for (int64_t c = k; c < last && c < i; c++) {
-        const double *above = matrix + c * n;
-        row[c] /= above[c];
-        matrix[c * n + i] = row[c];
-        dense_add_row((i < last ? i + 1 : last) - c - 1, -row[c], above + c + 1, row + c + 1);
+    for (int64_t c = k; c < last; c++) {
+        double *above = matrix + c * n;
+        above[i] = row[c] /= above[c];
+        dense_add_row(last - c - 1, -row[c], above + c + 1, row + c + 1);
     }
+}
+
+static int threads_for(int64_t rows)
+{
+    return chunks_of(rows * rows, ENTRIES_FOR_THREAD).threads;
 }
 
 /* The columns of L from k to before `last` in the rows from there on, and these less what they take. */
 static void reduce(int64_t n, int64_t k, int64_t last, double *matrix)
 {
     int64_t rows = n - last, tiles = (rows + PANEL - 1) / PANEL;
-#pragma omp parallel num_threads(chunks_of(rows *rows *(last - k) / PANEL, ENTRIES_FOR_THREAD).threads)
+#pragma omp parallel num_threads(threads_for(rows))
     {
 #pragma omp for schedule(static)
         for (int64_t i = last; i < n; i++) {
@@ -112,13 +133,8 @@ bool dense_factorise(int64_t n, double *matrix)
 {
     for (int64_t k = 0; k < n; k += PANEL) {
         int64_t last = n - k < PANEL ? n : k + PANEL;
-        for (int64_t i = k; i < last; i++) {
-            solve_row(n, k, last, i, matrix);
-            double pivot = matrix[i * n + i];
-            if (!(pivot > 0.0 && isfinite(pivot))) {
-                return false;
-            }
-            matrix[i * n + i] = sqrt(pivot);
+        if (!factorise_block(n, k, last, matrix)) {
+            return false;
         }
         if (last < n) {
             reduce(n, k, last, matrix);

@@ -31,11 +31,16 @@ static double free_part(const struct preconditioner *p)
     return part / all;
 }
 
+static int threads_for(int64_t size)
+{
+    return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
+}
+
 /* The lower triangle of matrix = (body + contacts) / share + keep weight, and `more`, or NULL. */
 static void sum_stiffness(const struct preconditioner *p, double keep, const double *more, double *matrix)
 {
     int64_t size = p->size, dim = p->dim;
-#pragma omp parallel for schedule(static, 16) num_threads(chunks_of(size *size, ENTRIES_FOR_THREAD).threads)
+#pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
             matrix[k] = (p->body[k] + p->contacts[k]) / share + (more != NULL ? more[k] : 0.0);
