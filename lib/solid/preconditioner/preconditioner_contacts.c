@@ -204,43 +204,62 @@ static bool follow_node(struct preconditioner *p, const struct contact *contact,
     return true;
 }
 
-/* Count all contact nodes in or out, and set which ones A counts in anew or with another normal. `pushes`:
- * whether there are such. Returns whether A changes. */
-static bool follow_nodes(struct preconditioner *p, const struct solid_system *system, bool leave,
-                         bool *pushes)
+/* How A changes with the contacts. */
+struct change {
+    bool any, pushes; /* at all; by nodes that are counted in anew, */
+    bool drops;       /* or no longer as they were */
+};
+
+/* Count all contact nodes in or out, and set which ones A counts in anew or with another normal. */
+static struct change follow_nodes(struct preconditioner *p, const struct solid_system *system, bool leave)
 {
-    bool changed = false;
+    struct change change = {0};
     int64_t at = 0;
-    *pushes = false;
     for (int64_t c = 0; c < system->contact_count; c++) {
         for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++, at++) {
+            bool counted = p->active[at];
             bool changes = follow_node(p, &system->contacts[c], a, at, leave);
             p->pushed[at] = changes && p->active[at];
-            *pushes = *pushes || p->pushed[at];
-            changed = changed || changes;
+            change.any = change.any || changes;
+            change.pushes = change.pushes || p->pushed[at];
+            change.drops = change.drops || (changes && counted);
         }
     }
-    for (int64_t c = 0; c < system->contact_count && changed; c++) {
+    for (int64_t c = 0; c < system->contact_count && change.any; c++) {
         contact_between_take(&system->contacts[c]);
     }
-    return changed;
+    return change;
+}
+
+/* amount[size] := A'^-1 amount, where that is known. */
+static void solve_if(bool known, const struct preconditioner *p, double *amount)
+{
+    if (known) {
+        dense_solve_large(p->size, p->stiffness_factor, amount);
+    }
 }
 
 /* The momentum A a of the velocity along the coarse fields with the A that counts in both what it did and
- * what it does now: y + P Z (A'^-1 A a - a). Where A' falls to what A becomes, the velocity stays. */
-static void keep_momentum(struct preconditioner *p, const struct solid_system *system, double *velocity,
-                          double *field)
+ * what it does now: y + P Z (A'^-1 A a - a). Where A' falls to what A becomes, the velocity stays. The
+ * factors become those of what A does now, which is A' unless it drops something. */
+static void keep_momentum(struct preconditioner *p, const struct solid_system *system, bool drops,
+                          double *velocity, double *field)
 {
-    double *matrix = p->stiffness_factor; /* which is factorised anew below */
     double *amount = p->amount + 2 * p->size, *change = amount + p->size;
+    bool known = false;
     preconditioner_momentum(p, velocity, amount, change);
-    preconditioner_add_contacts(p, system, p->pushed, p->contacts);
-    if (preconditioner_factorise(p, matrix) == 0.0) {
-        return;
+    if (drops) {
+        preconditioner_add_contacts(p, system, p->pushed, p->contacts);
+        known = preconditioner_factorise(p, p->stiffness_factor) > 0.0;
+        solve_if(known, p, change);
     }
-    dense_solve_large(p->size, matrix, change);
+    preconditioner_factorise_both(p, system);
+    if (!drops) {
+        known = p->uses_coarse;
+        solve_if(known, p, change);
+    }
     for (int64_t k = 0; k < p->size; k++) {
-        change[k] -= amount[k];
+        change[k] = known ? change[k] - amount[k] : 0.0;
     }
     preconditioner_prolongate(p, change, field);
     for (int64_t i = 0; i < p->node_count * p->dim; i++) {
@@ -251,13 +270,14 @@ static void keep_momentum(struct preconditioner *p, const struct solid_system *s
 bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave,
                            double *velocity, double *field)
 {
-    bool pushes;
-    if (!follow_nodes(p, system, leave, &pushes) || p->size == 0) {
+    struct change change = follow_nodes(p, system, leave);
+    if (!change.any || p->size == 0) {
         return false;
     }
-    if (pushes && velocity != NULL && p->uses_coarse) {
-        keep_momentum(p, system, velocity, field);
+    if (change.pushes && velocity != NULL && p->uses_coarse) {
+        keep_momentum(p, system, change.drops, velocity, field);
+    } else {
+        preconditioner_factorise_both(p, system);
     }
-    preconditioner_factorise_both(p, system);
     return true;
 }
