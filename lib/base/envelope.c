@@ -313,7 +313,14 @@ void envelope_free(struct envelope *factor)
 /* Solve for one block, y[begin .. end). */
 static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end, const double *x, double *y)
 {
-    for (int64_t i = begin; i < end; i++) {
+    int64_t some = begin; /* the first row with a right-hand side */
+    while (some < end && x[factor->order[some]] == 0.0) {
+        y[some++] = 0.0;
+    }
+    if (some == end) {
+        return;
+    }
+    for (int64_t i = some; i < end; i++) {
         const double *row = factor->value + factor->start[i];
         int64_t first = factor->first[i];
         y[i] = (x[factor->order[i]] - product(i - first, row, y + first)) / row[i - first];

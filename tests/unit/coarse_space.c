@@ -2,9 +2,11 @@
  * sums and with themselves, whatever the threads. */
 #include "unit.h"
 
+#include "base/vector.h"
 #include "solid/preconditioner/coarse_space.h"
 
 enum { NODES = 34000 }; /* worth three threads */
+enum { MOST_CENTRES = 64 };
 
 struct cloud {
     struct coarse_space coarse;
@@ -49,14 +51,16 @@ static void release(struct cloud *cloud)
 static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
 {
     const struct coarse_space *coarse = &cloud->coarse;
-    int dim = coarse->dim, field[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
+    int dim = coarse->dim;
+    double value[4];
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        int count = coarse_space_at_node(coarse, n, field, value);
-        for (int k = 0; k < count; k++) {
-            for (int a = 0; a < dim; a++) {
-                amount[field[k] * dim + a] += value[k] * cloud->v[n * dim + a];
-                u[n * dim + a] += value[k] * cloud->amount[field[k] * dim + a];
+        for (int64_t i = coarse->shares.ptr[n]; i < coarse->shares.ptr[n + 1]; i++) {
+            int32_t centre = coarse->shares.idx[i];
+            coarse_space_values(coarse, n, centre, coarse->shares.value[i], value);
+            for (int64_t k = 0; k < (dim + 1) * dim; k++) {
+                int64_t at = centre * (dim + 1) * dim + k;
+                amount[at] += value[k / dim] * cloud->v[n * dim + k % dim];
+                u[n * dim + k % dim] += value[k / dim] * cloud->amount[at];
             }
         }
     }
@@ -64,7 +68,7 @@ static void sum_plainly(const struct cloud *cloud, double *amount, double *u)
 
 TEST_IN_EACH_DIM(plain_sums)
 {
-    for (int64_t centres = 1; centres <= COARSE_MOST_CENTRES; centres += 7) {
+    for (int64_t centres = 1; centres <= MOST_CENTRES; centres += 7) {
         struct cloud cloud = make_cloud(dim, NODES, centres);
         int64_t size = cloud.coarse.count * dim;
         double *amount = array_new(size, sizeof *amount), *expected = array_new(size, sizeof *expected);
@@ -88,7 +92,7 @@ TEST(same_bits)
 {
     int before = omp_get_max_threads();
     for (int dim = 2; dim <= 3; dim++) {
-        struct cloud cloud = make_cloud(dim, NODES, COARSE_MOST_CENTRES);
+        struct cloud cloud = make_cloud(dim, NODES, MOST_CENTRES);
         int64_t size = cloud.coarse.count * dim;
         double *amounts[2], *coarse[2]; /* the first ones, and others */
         for (int k = 0; k < 2; k++) {
@@ -125,7 +129,7 @@ TEST_IN_EACH_DIM(linear_fields)
     for (int c = 0; c < coarse->centre_count; c++) {
         for (int a = 0; a < dim; a++) {
             int64_t first = (int64_t)c * (dim + 1);
-            cloud.amount[first * dim + a] = 1.0 + coarse->centre[a][c];
+            cloud.amount[first * dim + a] = 1.0 + coarse->centre[c * dim + a];
             cloud.amount[(first + 1 + a) * dim + a] = coarse->radius;
         }
     }
@@ -133,6 +137,47 @@ TEST_IN_EACH_DIM(linear_fields)
     for (int64_t i = 0; i < cloud.size; i++) {
         NEAR_TO(u[i], 1.0 + cloud.X[i], 1e-14);
     }
+    release(&cloud);
+}
+
+static double share_at(const struct coarse_space *coarse, int64_t node, int32_t centre)
+{
+    double share = 0.0;
+    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
+        share += coarse->shares.idx[i] == centre ? coarse->shares.value[i] : 0.0;
+    }
+    return share;
+}
+
+/* Centres are farther from each other than any node is from the nearest of them; a node has shares of those
+ * within the radius only, however many there are. */
+TEST(shares_are_few)
+{
+    struct cloud cloud = make_cloud(3, 20000, 400);
+    const struct coarse_space *coarse = &cloud.coarse;
+    double farthest = 0.0, nearest = INFINITY;
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        double least = INFINITY;
+        for (int64_t c = 0; c < coarse->centre_count; c++) {
+            least = fmin(least, vector_distance(3, coarse->X + n * 3, coarse->centre + c * 3));
+        }
+        farthest = fmax(farthest, least);
+        for (int64_t i = coarse->shares.ptr[n]; i < coarse->shares.ptr[n + 1]; i++) {
+            const double *centre = coarse->centre + (int64_t)coarse->shares.idx[i] * 3;
+            AT_MOST(vector_distance(3, coarse->X + n * 3, centre), coarse->radius);
+        }
+    }
+    for (int64_t i = 0; i < coarse->centre_count; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            double distance = vector_distance(3, coarse->centre + i * 3, coarse->centre + k * 3);
+            nearest = fmin(nearest, distance);
+        }
+    }
+    double few = (double)coarse->shares.ptr[coarse->node_count] / (double)coarse->node_count;
+    print_message("%g shares at a node\n", few);
+    AT_MOST(few, 16.0);
+    AT_MOST(farthest, nearest);
+    NEAR_TO(coarse->radius, 1.5 * farthest, 1e-14);
     release(&cloud);
 }
 
@@ -166,17 +211,16 @@ TEST(ways)
     make_ring(RING, ALONE, X, ptr, idx);
     for (int with_ways = 0; with_ways < 2; with_ways++) {
         FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
-        GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, COARSE_MOST_CENTRES, &coarse,
-                                &error));
+        GOOD(coarse_space_build(2, ALL, X, with_ways ? &neighbours : NULL, MOST_CENTRES, &coarse, &error));
         double both = 0.0;
-        for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-            both += coarse.share[c] * coarse.share[(RING - 1) * coarse.stride + c];
+        for (int c = 0; c < MOST_CENTRES; c++) {
+            both += share_at(&coarse, 0, c) * share_at(&coarse, RING - 1, c);
         }
         assert_true(with_ways ? both < 0.01 : both > 0.1);
         for (int64_t n = 0; n < ALL; n++) {
             double sum = 0.0;
-            for (int c = 0; c < COARSE_MOST_CENTRES; c++) {
-                sum += coarse.share[n * coarse.stride + c];
+            for (int c = 0; c < MOST_CENTRES; c++) {
+                sum += share_at(&coarse, n, c);
             }
             NEAR_TO(sum, 1.0, 1e-14);
         }

@@ -39,7 +39,7 @@ static void build(struct cube *cube, bool bonded)
     for (int64_t p = 0; p < cube->n; p++) {
         place[p] = (int32_t)p;
     }
-    GOOD(scalar_row_prepare(&stiffness, place, cube->n, &row, &error));
+    GOOD(scalar_stiffness_prepare(&stiffness, place, cube->n, &error));
     for (int64_t i = 0; i < cube->n; i++) {
         scalar_stiffness_row(&stiffness, i, &row);
         assert_int_equal(row.node[row.count - 1], i);

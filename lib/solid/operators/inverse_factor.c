@@ -1,6 +1,7 @@
 #include "solid/operators/inverse_factor.h"
 
 #include "base/memory.h"
+#include "base/processor.h"
 
 #include <stdlib.h>
 
@@ -44,7 +45,7 @@ static inline __attribute__((always_inline)) void solve_node(const struct sparse
                                                              int64_t n, int64_t first, int64_t last,
                                                              int64_t diagonal, double *x)
 {
-    double sum[3] = {0.0, 0.0, 0.0};
+    double sum[8] = {0.0};
     for (int a = 0; a < width; a++) {
         sum[a] = x[n * width + a];
     }
@@ -76,20 +77,24 @@ static inline __attribute__((always_inline)) void solve_transposed(const struct 
     }
 }
 
-void inverse_factor_solve(const struct inverse_factor *factor, int dim, double *x)
+ALL_SETS void inverse_factor_solve(const struct inverse_factor *factor, int width, double *x)
 {
-    if (dim == 2) {
+    if (width == 2) {
         solve(&factor->rows, 2, x);
-    } else {
+    } else if (width == 3) {
         solve(&factor->rows, 3, x);
+    } else {
+        solve(&factor->rows, 8, x);
     }
 }
 
-void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x)
+ALL_SETS void inverse_factor_solve_transposed(const struct inverse_factor *factor, int width, double *x)
 {
-    if (dim == 2) {
+    if (width == 2) {
         solve_transposed(&factor->transposed, 2, x);
-    } else {
+    } else if (width == 3) {
         solve_transposed(&factor->transposed, 3, x);
+    } else {
+        solve_transposed(&factor->transposed, 8, x);
     }
 }

@@ -29,6 +29,6 @@ void inverse_factor_apply(const struct inverse_factor *factor, int dim, const do
 void inverse_factor_apply_transposed(const struct inverse_factor *factor, int dim, const double *x,
                                      double *y);
 
-/* x := L^-1 x, and L^-T x, by one thread. */
-void inverse_factor_solve(const struct inverse_factor *factor, int dim, double *x);
-void inverse_factor_solve_transposed(const struct inverse_factor *factor, int dim, double *x);
+/* x := L^-1 x, and L^-T x, by one thread, for vectors of node_count * width, width 2, 3 or 8. */
+void inverse_factor_solve(const struct inverse_factor *factor, int width, double *x);
+void inverse_factor_solve_transposed(const struct inverse_factor *factor, int width, double *x);

@@ -46,7 +46,6 @@ static enum status make_piece(const int32_t *place, int64_t count, int number, s
                               struct lower *lower, struct error *error)
 {
     const struct body *body = &lower->stiffness.system->body;
-    RETURN_IF_ERROR(scalar_row_prepare(&lower->stiffness, place, count, row, error));
     for (int64_t k = 0; k < count; k++) {
         int64_t i = body->node_order[place[k]];
         scalar_stiffness_row(&lower->stiffness, i, row);
@@ -56,22 +55,25 @@ static enum status make_piece(const int32_t *place, int64_t count, int number, s
     return STATUS_OK;
 }
 
-/* Make the rows of nodes as further pieces, each by one thread. */
-static enum status make_pieces(const int32_t *place, int64_t count, struct lower *lower, struct error *error)
+/* Make some chunks of the rows of nodes as further pieces, each by one thread. */
+static enum status make_some(const int32_t *place, const struct chunks *chunks, int64_t begin, int64_t end,
+                             struct lower *lower, struct error *error)
 {
     enum status status = STATUS_OK;
-    const struct chunks chunks = chunks_of(count, worthwhile);
-#pragma omp parallel num_threads(chunks.threads)
+    int64_t at = chunks_begin(chunks, begin);
+    RETURN_IF_ERROR(
+        scalar_stiffness_prepare(&lower->stiffness, place + at, chunks_begin(chunks, end) - at, error));
+#pragma omp parallel num_threads(chunks->threads)
     {
         struct scalar_row row;
         struct error own;
         enum status made = scalar_row_make(&lower->stiffness, &row, &own);
 #pragma omp for schedule(static, 1)
-        for (int64_t c = 0; c < chunks.count; c++) {
-            int64_t first = chunks_begin(&chunks, c);
+        for (int64_t c = begin; c < end; c++) {
+            int64_t first = chunks_begin(chunks, c);
             if (made == STATUS_OK) {
-                made = make_piece(place + first, chunks_begin(&chunks, c + 1) - first,
-                                  lower->piece_count + (int)c, &row, lower, &own);
+                made = make_piece(place + first, chunks_begin(chunks, c + 1) - first,
+                                  lower->piece_count + (int)(c - begin), &row, lower, &own);
             }
         }
         scalar_row_free(&row);
@@ -81,8 +83,21 @@ static enum status make_pieces(const int32_t *place, int64_t count, struct lower
             *error = own;
         }
     }
-    lower->piece_count += (int)chunks.count;
+    lower->piece_count += (int)(end - begin);
     return status;
+}
+
+/* Make the rows of nodes as further pieces. The nodes are prepared some chunks at a time: it takes a pass
+ * over the operator, and memory. */
+static enum status make_pieces(const int32_t *place, int64_t count, struct lower *lower, struct error *error)
+{
+    enum { CHUNKS_AT_ONCE = 16 };
+    const struct chunks chunks = chunks_of(count, worthwhile);
+    for (int64_t c = 0; c < chunks.count; c += CHUNKS_AT_ONCE) {
+        int64_t end = chunks.count - c < CHUNKS_AT_ONCE ? chunks.count : c + CHUNKS_AT_ONCE;
+        RETURN_IF_ERROR(make_some(place, &chunks, c, end, lower, error));
+    }
+    return STATUS_OK;
 }
 
 enum status lower_begin(const struct solid_system *system, struct lower *lower, struct error *error)

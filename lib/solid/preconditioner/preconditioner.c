@@ -13,26 +13,21 @@
 
 /* Nodes for each field at least. */
 static const int64_t nodes_per_coarse_field = 8;
-/* Unknowns of the coarse space of small bodies at most: up to 16 centres in two dimensions and 8 in three. */
+/* Unknowns of small bodies at most: 16 centres in two dimensions and 8 in three. */
 static const int64_t most_unknowns = 96;
 /* Nodes for each centre of large bodies of smoothed cells, whose coarse stiffness costs no evaluations: the
  * steps follow the distance of the centres by that of the nodes. */
 static const int64_t nodes_per_centre = 1000;
-/* Rows of conditions times unknowns of large bodies at most: 8 bytes each, and some more for a while. */
-static const int64_t most_held = 1 << 24;
-
-enum { HELD_AT_ONCE = 8 };
-enum { ENTRIES_FOR_THREAD = 50000 }; /* of a matrix that is multiplied with; see chunks_of */
+/* Centres at most: their matrices are dense. */
+static const int64_t most_centres = 384;
 
 static int64_t centre_count(const struct solid_system *system)
 {
     int64_t fields = system->dim + 1, most = most_unknowns / (fields * system->dim);
     int64_t count = system->node_count / (nodes_per_coarse_field * fields);
     int64_t of_large = system->body.smoothed ? system->node_count / nodes_per_centre : 0;
-    int64_t held = system->rows.count * fields * system->dim;
-    of_large = held > 0 && most_held / held < of_large ? most_held / held : of_large;
     most = of_large > most ? of_large : most;
-    most = most < COARSE_MOST_CENTRES ? most : COARSE_MOST_CENTRES;
+    most = most < most_centres ? most : most_centres;
     return count < most ? count : most;
 }
 
@@ -45,22 +40,28 @@ static enum status build_inverse(struct solid_system *system, struct preconditio
     return STATUS_OK;
 }
 
-/* The coarse fields at the corners opposite to points of contacts. */
-static enum status take_fields_opposite(const struct solid_system *system, struct preconditioner *p,
-                                        struct error *error)
+/* Corner i of those opposite to points of contacts. */
+static struct average corner_at(const void *system, int64_t i)
 {
-    int64_t corners = 0, at = 0, count = p->coarse.count;
+    const struct solid_system *of = system;
+    int64_t c = 0;
+    for (; i >= contact_between_corners(&of->contacts[c]); c++) {
+        i -= contact_between_corners(&of->contacts[c]);
+    }
+    return contact_between_corner(&of->contacts[c], i);
+}
+
+/* What conditions and opposite corners see of the coarse fields. */
+static enum status take_means(const struct solid_system *system, struct preconditioner *p,
+                              struct error *error)
+{
+    int64_t corners = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         corners += contact_between_corners(&system->contacts[c]);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&p->opposite, corners * count, error));
-    for (int64_t c = 0; c < system->contact_count && count > 0; c++) {
-        for (int64_t v = 0; v < contact_between_corners(&system->contacts[c]); v++, at++) {
-            struct average average = contact_between_corner(&system->contacts[c], v);
-            preconditioner_add_fields(p, &average, p->opposite + at * count);
-        }
-    }
-    return STATUS_OK;
+    RETURN_IF_ERROR(coarse_mean_begin(&p->coarse, &p->mean, error));
+    RETURN_IF_ERROR(preconditioner_take_conditions(system, p, error));
+    return coarse_mean_table(&p->coarse, corners, corner_at, system, &p->mean, &p->opposite, error);
 }
 
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
@@ -86,16 +87,16 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->idle, 2 * p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->patience, 2 * p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->free_weight, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->held, system->rows.count * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_factor, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 2 * p->size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 4 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->impact, cells + 2 * p->size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
-    RETURN_IF_ERROR(take_fields_opposite(system, p, error));
+    if (p->size > 0) {
+        RETURN_IF_ERROR(take_means(system, p, error));
+    }
     if (coarse && system_has_inverse(system)) {
         RETURN_IF_ERROR(build_inverse(system, p, error));
     }
@@ -108,10 +109,13 @@ void preconditioner_free(struct preconditioner *p)
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     constraint_rows_free(&p->factor_rows);
+    sparse_free(&p->opposite);
+    sparse_free(&p->conditions);
+    sparse_free(&p->of_field);
+    coarse_mean_free(&p->mean);
     FREE_ALL(p->column_first, p->vector, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal,
-             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->held,
-             p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->impact, p->pushed,
-             p->opposite);
+             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->on_list, p->value,
+             p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->pushed);
     *p = (struct preconditioner){0};
 }
 
@@ -161,97 +165,48 @@ void preconditioner_smooth(struct preconditioner *p, const double *force, double
     inverse_factor_apply_transposed(inverse, p->dim, within, result);
 }
 
-/* amount[k] -= column k of S^-1 G Z times values, for `count` columns from k on. */
-static void release_columns(const struct preconditioner *p, int64_t k, int64_t count, const double *values,
-                            double *amount)
-{
-    int64_t rows = p->constraint.rows->count;
-    const double *held = p->held + k * rows;
-    double sum[HELD_AT_ONCE];
-    memcpy(sum, amount + k, (size_t)count * sizeof *sum);
-    for (int64_t r = 0; r < rows; r++) {
-        if (count == HELD_AT_ONCE) {
-            for (int c = 0; c < HELD_AT_ONCE; c++) {
-                sum[c] -= held[c * rows + r] * values[r];
-            }
-        } else {
-            for (int c = 0; c < count; c++) {
-                sum[c] -= held[c * rows + r] * values[r];
-            }
-        }
-    }
-    memcpy(amount + k, sum, (size_t)count * sizeof *sum);
-}
-
-/* amount -= (S^-1 G Z)^T values, of the rows of the conditions: P^T of what `values` are the rows' share of.
- */
-static void release_rows(const struct preconditioner *p, const double *values, double *amount)
-{
-    const struct constraint_rows *rows = p->constraint.rows;
-    const struct ranks *ranks = p->factor.ranks;
-    const int64_t *first = p->column_first + ranks_rank(ranks);
-    int64_t columns = first[1] - first[0];
-    struct chunks chunks = chunks_for_threads(columns, columns * rows->count, ENTRIES_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t end = first[0] + chunks_begin(&chunks, c + 1);
-        for (int64_t k = first[0] + chunks_begin(&chunks, c); k < end; k += HELD_AT_ONCE) {
-            release_columns(p, k, end - k < HELD_AT_ONCE ? end - k : HELD_AT_ONCE, values, amount);
-        }
-    }
-    ranks_gather(ranks, amount, sizeof *amount, p->column_first);
-}
-
 void preconditioner_restrict_force(struct preconditioner *p, const double *force, double *acceleration,
                                    double *amount)
 {
     const struct constraint_rows *rows = p->constraint.rows;
-    double *seen = p->constraint.multiplier;
+    double *multiplier = p->constraint.multiplier;
     preconditioner_smooth(p, force, acceleration);
     if (p->size > 0) {
         coarse_space_restrict(&p->coarse, force, amount);
     }
-    if (rows == NULL) {
+    if (rows == NULL || rows->count == 0) {
         return;
     }
-    constraint_values(&p->constraint, acceleration, seen);
-    release_rows(p, seen, amount);
-}
-
-/* y += a x */
-ALL_SETS static void add_held(int64_t count, double a, const double *x, double *restrict y)
-{
-    for (int64_t i = 0; i < count; i++) {
-        y[i] += a * x[i];
+    constraint_values(&p->constraint, acceleration, multiplier);
+    constraint_solve(&p->constraint, multiplier);
+    if (p->size > 0) {
+        preconditioner_release(p, multiplier, amount);
     }
 }
 
 void preconditioner_apply(struct preconditioner *p, const double *force, double *acceleration)
 {
     struct constraint *constraint = &p->constraint;
-    const struct constraint_rows *rows = constraint->rows;
     double *multiplier = constraint->multiplier, *amount = p->amount;
+    int64_t rows = constraint->rows != NULL ? constraint->rows->count : 0;
     preconditioner_restrict_force(p, force, acceleration, amount);
+    for (int64_t r = 0; r < rows; r++) {
+        multiplier[r] = -multiplier[r];
+    }
     if (p->size > 0) {
         solve(p, p->stiffness_factor, amount);
         coarse_space_prolongate(&p->coarse, amount, acceleration);
     }
-    if (rows == NULL || rows->count == 0) {
-        return;
-    }
-    constraint_solve(constraint, multiplier);
-    struct chunks chunks = chunks_for_threads(rows->count, rows->count * p->size, ENTRIES_FOR_THREAD);
-#pragma omp parallel for schedule(static) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
-        for (int64_t k = 0; k < p->size; k++) {
-            add_held(end - begin, amount[k], p->held + k * rows->count + begin, multiplier + begin);
-        }
-        for (int64_t r = begin; r < end; r++) {
-            multiplier[r] = -multiplier[r];
+    if (p->size > 0 && rows > 0) {
+        preconditioner_see(p, amount, p->value);
+        constraint_solve(constraint, p->value);
+        for (int64_t r = 0; r < rows; r++) {
+            multiplier[r] -= p->value[r];
         }
     }
-    constraint_spread(constraint, multiplier, acceleration);
+    if (rows > 0) {
+        constraint_spread(constraint, multiplier, acceleration);
+    }
 }
 
 /* y = D x */
@@ -332,9 +287,10 @@ void preconditioner_momentum(struct preconditioner *p, const double *velocity, d
 {
     preconditioner_unsmooth(p, velocity, p->vector);
     coarse_space_restrict(&p->coarse, p->vector, momentum);
-    if (p->constraint.rows != NULL) {
+    if (p->constraint.rows != NULL && p->constraint.rows->count > 0) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
-        release_rows(p, p->constraint.multiplier, momentum);
+        constraint_solve(&p->constraint, p->constraint.multiplier);
+        preconditioner_release(p, p->constraint.multiplier, momentum);
     }
     memcpy(amount, momentum, (size_t)p->size * sizeof *momentum);
     solve(p, p->capacitance_factor, amount);

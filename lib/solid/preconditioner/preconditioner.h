@@ -28,6 +28,14 @@
 #include "solid/preconditioner/inverse_stiffness.h"
 #include "solid/system/system.h"
 
+/* Means of the coarse fields, which are not zero for a few centres. */
+struct coarse_mean {
+    int64_t count;
+    int32_t *centre; /* centre_count: these centres, */
+    bool *seen;      /* centre_count: whether a centre is one of them */
+    double *field;   /* coarse.count */
+};
+
 struct preconditioner {
     int dim;
     int64_t node_count;
@@ -53,18 +61,21 @@ struct preconditioner {
                       which the node could have been left out, */
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
-    double *opposite;    /* coarse.count for each corner opposite to points, contact by contact: the fields */
-    double *weight;      /* Z^T B^-1 Z */
+    struct sparse
+        opposite; /* a row for each corner opposite to points, contact by contact: the coarse fields */
+    struct sparse conditions, of_field; /* a row for each list of the conditions' rows: the coarse fields'
+                                           means there, G Z but for the rows' directions; and the transpose */
+    struct coarse_mean mean;            /* scratch */
+    double *on_list, *value;            /* of the conditions' lists times dim, and of their rows: scratch */
+    double *weight;      /* coarse.count * coarse.count: Z^T B^-1 Z, the same in each direction */
     double *free_weight; /* Z^T B^-1 P Z */
-    double
-        *held; /* size columns of the conditions' rows: (G B G^T)^-1 G Z, what they put against each field */
-    double *contacts;           /* stiffness along the coarse fields of the contact nodes that A counts in */
-    bool *pushed;               /* contact_node_count: those that A counts in anew; scratch */
-    double *impact;             /* size * size + 2 * size: scratch */
+    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in; of this and
+                         the factors' matrices the lower triangle */
+    bool *pushed;     /* contact_node_count: those that A counts in anew; scratch */
     double *stiffness_factor;   /* Cholesky factor of A, */
     double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
     bool uses_coarse;           /* they exist; else M = B^-1 */
-    double *amount;             /* 2 * size: scratch */
+    double *amount;             /* 4 * size: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */

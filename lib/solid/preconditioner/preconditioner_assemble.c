@@ -1,382 +1,372 @@
 /* The stiffness along the coarse fields of a body of smoothed cells, assembled in one pass over the nodes.
  *
- * With W = P Z, whose rows W_n[dim][size] are what the fields move node n by, the matrix is sum_nm W_n^T K_nm
- * W_m. The blocks K_nm are those of the linear interpolant in the cells around n, with the tangent of the
- * neo-Hookean law for all materials (as in body_diagonal) and its nodal pressures without projection: a bulk
- * modulus k of these adds sum_n E_n^T E_n / V_n, V_n the nodal volume and E_n the sum of sqrt(k) times the
- * changes of volume of its parts along the fields. The coarse fields are smooth, and P changes them near
- * conditions only, where it is kept by nodes. Then each node takes some hundreds of additions for each
- * neighbour and field, where an evaluation for each column takes thousands. */
+ * With W = P Z, whose rows W_n are what the fields move node n by, the matrix is sum_nm W_n^T K_nm W_m, with
+ * the blocks of block_row.h, and sum_n E_n^T E_n / V_n for nodal pressures. A node adds to the blocks between
+ * the centres near it only: some thousands of additions, however many centres there are. Nodes are summed by
+ * chunks in the body's order, each of which has few centres near it. */
+#include "solid/preconditioner/block_row.h"
+#include "solid/preconditioner/moved_fields.h"
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
-#include "base/dense.h"
 #include "base/memory.h"
 #include "base/processor.h"
-#include "base/vector.h"
-#include "solid/body/merged_cells.h"
-#include "solid/body/nodal_volume.h"
-#include "solid/body/stress.h"
 
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ENTRIES = 1 << 23 }; /* of the chunks' matrices */
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
+enum { MOST_NUMBERS = 12 };      /* fields of a centre times directions */
 
-struct assembly {
-    const struct preconditioner *p;
-    const struct solid_system *system;
-    int64_t most;  /* neighbours of a node at most */
-    int32_t *near; /* node_count: which node that P moves it is, or -1 */
-    float *bent;   /* dim * size for each of these: P Z - Z there; in large bodies there are many */
+/* What some nodes add, between the centres near them. */
+struct part {
+    int32_t *local;      /* centre_count: place in `centre`, or -1 */
+    int64_t count, room; /* centres */
+    int32_t *centre;     /* centre_count */
+    double *block;       /* of each pair of these: its rows are the fields of the higher centre */
+    struct block_row row;
+    int32_t *slot; /* centre_count: place in `taken`, or -1 */
+    int64_t taken_count;
+    int32_t *taken_centre;            /* centre_count */
+    double (*taken)[4][MOST_NUMBERS]; /* centre_count: K_nm W_m for these, and below it E_n */
+    enum status status;
+    struct error error;
 };
 
-/* The functions of the cells that are one domain. */
-struct domain {
-    int count;
-    int32_t node[4 * MERGED_MOST_CELLS];       /* in the body's order */
-    double gradient[4 * MERGED_MOST_CELLS][3]; /* 1/m, */
-    double along[4 * MERGED_MOST_CELLS][3];    /* F times that, */
-    double normal[4 * MERGED_MOST_CELLS][3];   /* and cof F times that: by how much J changes */
-    double weight;
-};
-
-/* A row of blocks, and its products with the fields. */
-struct block_row {
-    int64_t count;
-    int32_t *node; /* most, in the body's order */
-    double *block; /* for each (dim + 1) * dim: K_nm, and below it what E_n is made of */
-    double *taken; /* (dim + 1) * size */
-    double volume;
-};
-
-/* y += a x */
-ALL_SETS static void add_floats(int64_t count, double a, const float *x, double *restrict y)
+static enum status part_begin(const struct preconditioner *p, const struct body *body, int64_t most,
+                              struct part *part, struct error *error)
 {
-    for (int64_t i = 0; i < count; i++) {
-        y[i] += a * (double)x[i];
-    }
+    int64_t centres = p->coarse.centre_count;
+    RETURN_IF_ERROR(NEW_ARRAY(&part->local, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part->centre, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part->slot, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part->taken_centre, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&part->taken, centres, error));
+    memset(part->local, -1, (size_t)centres * sizeof *part->local);
+    memset(part->slot, -1, (size_t)centres * sizeof *part->slot);
+    return block_row_begin(body, most, &part->row, error);
 }
 
-/* to[rows][size] += block[rows][dim] W_n */
-static void take(const struct assembly *s, int64_t node, int rows, const double *block, double *to)
+/* All but the sums. */
+static void part_end(struct part *part)
 {
-    const struct preconditioner *p = s->p;
-    int dim = p->dim, field[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
-    int count = coarse_space_at_node(&p->coarse, node, field, value);
-    for (int i = 0; i < count; i++) {
-        for (int k = 0; k < rows * dim; k++) {
-            to[k / dim * p->size + field[i] * dim + k % dim] += block[k] * value[i];
-        }
-    }
-    for (int k = 0; k < rows * dim && s->near[node] >= 0; k++) {
-        add_floats(p->size, block[k], s->bent + (s->near[node] * dim + k % dim) * p->size,
-                   to + k / dim * p->size);
-    }
+    block_row_free(&part->row);
+    FREE_ALL(part->local, part->slot, part->taken_centre, part->taken);
+    part->local = part->slot = part->taken_centre = NULL;
+    part->taken = NULL;
 }
 
-/* matrix += W_n^T force[dim][size] */
-static void put(const struct assembly *s, int64_t node, const double *force, double *matrix)
+/* Where a centre is in `taken`, zero at first. */
+static double (*slot_of(struct part *part, int32_t centre))[MOST_NUMBERS]
 {
-    const struct preconditioner *p = s->p;
-    int64_t dim = p->dim, size = p->size;
-    int field[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
-    int count = coarse_space_at_node(&p->coarse, node, field, value);
-    for (int64_t i = 0; i < count * dim; i++) {
-        dense_add_row(size, value[i / dim], force + i % dim * size,
-                      matrix + (field[i / dim] * dim + i % dim) * size);
+    if (part->slot[centre] < 0) {
+        part->slot[centre] = (int32_t)part->taken_count;
+        part->taken_centre[part->taken_count] = centre;
+        memset(part->taken[part->taken_count++], 0, sizeof *part->taken);
     }
-    for (int64_t i = 0; i < dim * size && s->near[node] >= 0; i++) {
-        dense_add_row(size, (double)s->bent[s->near[node] * dim * size + i], force + i / size * size,
-                      matrix + i % size * size);
-    }
+    return part->taken[part->slot[centre]];
 }
 
-void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix)
+static void forget(struct part *part)
 {
-    for (int64_t k = 0; k < size; k++) {
-        if (row[k] != 0.0) {
-            dense_add_row(size, stiffness * row[k], row, matrix + k * size);
-        }
+    for (int64_t i = 0; i < part->taken_count; i++) {
+        part->slot[part->taken_centre[i]] = -1;
     }
+    part->taken_count = 0;
 }
 
-static void list_domain(const struct body *body, int64_t first, int64_t end, struct domain *domain)
+/* taken[rows] += block[rows][dim] W_n. The dimension is known when compiling, here and below. */
+KERNEL_INLINE void take(const struct moved_fields *fields, int dim, int64_t node, int rows,
+                        const double *block, struct part *part)
 {
-    int dim = body->dim;
-    double gradient[12];
-    domain->count = 0;
-    domain->weight = 0.0;
-    for (int64_t q = first; q < end; q++) {
-        domain->weight += body->weight[q];
-    }
-    for (int64_t q = first; q < end; q++) {
-        double share = body->weight[q] / domain->weight;
-        smoothed_cells_linear_gradients(body, q, gradient);
-        for (int k = 0; k <= dim; k++) {
-            int32_t node = smoothed_cells_node(body, q, k);
-            int at = 0;
-            while (at < domain->count && domain->node[at] != node) {
-                at++;
+    const struct coarse_space *coarse = &fields->p->coarse;
+    int32_t near = fields->near[node];
+    int numbers = (dim + 1) * dim;
+    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1] && near < 0; i++) {
+        double(*to)[MOST_NUMBERS] = slot_of(part, coarse->shares.idx[i]), value[4];
+        coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
+        for (int r = 0; r < rows; r++) {
+            for (int k = 0; k < numbers; k++) {
+                to[r][k] += block[r * dim + k % dim] * value[k / dim];
             }
-            if (at == domain->count) {
-                domain->node[domain->count++] = node;
-                memset(domain->gradient[at], 0, sizeof domain->gradient[at]);
+        }
+    }
+    for (int64_t e = near < 0 ? 0 : fields->ptr[near]; near >= 0 && e < fields->ptr[near + 1]; e++) {
+        const float *move = fields->move + fields->at[e] * dim * numbers;
+        double(*to)[MOST_NUMBERS] = slot_of(part, fields->centre[fields->at[e]]);
+        for (int r = 0; r < rows; r++) {
+            for (int a = 0; a < dim; a++) {
+                for (int k = 0; k < numbers; k++) {
+                    to[r][k] += block[r * dim + a] * (double)move[a * numbers + k];
+                }
             }
-            add_scaled(dim, share, gradient + k * dim, domain->gradient[at]);
         }
     }
 }
 
-/* y = A x */
-static void transform(const double A[9], const double x[3], double y[3])
+/* The place of a centre in a part's sums; there must be room (make_room). */
+static int64_t place_of(struct part *part, int32_t centre)
 {
-    for (int i = 0; i < 3; i++) {
-        y[i] = A[3 * i] * x[0] + A[3 * i + 1] * x[1] + A[3 * i + 2] * x[2];
+    if (part->local[centre] < 0) {
+        part->local[centre] = (int32_t)part->count;
+        part->centre[part->count++] = centre;
     }
+    return part->local[centre];
 }
 
-static double *block_of(struct block_row *row, int dim, int32_t node)
+static int64_t pair(int64_t i, int64_t k)
 {
-    int64_t at = 0;
-    while (at < row->count && row->node[at] != node) {
-        at++;
-    }
-    double *block = row->block + at * (dim + 1) * dim;
-    if (at == row->count) {
-        row->node[row->count++] = node;
-        memset(block, 0, (size_t)((dim + 1) * dim) * sizeof *block);
-    }
-    return block;
+    return i > k ? i * (i + 1) / 2 + k : k * (k + 1) / 2 + i;
 }
 
-/* Of a domain: with the gradients g, f = F g and c = cof F g of two of its functions, the block between these
- * is shear g . g' I + mixed (c f' + f c') + square c c' + turned (c c' - c' c). */
-struct tangent {
-    double shear, mixed, square, turned;
-    double content, share; /* of each nodal volume, and that times the root of k */
-};
-
-/* The tangent of the domain that cell q is in, and F g and cof F g of its functions. */
-static struct tangent find_tangent(const struct body *body, int64_t q, struct domain *domain)
+/* Room for the pairs of `more` further centres. */
+static enum status make_room(struct part *part, int64_t more, int64_t block, struct error *error)
 {
-    static const double at_rest[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-    const struct material *material = &body->materials[body->material[q]];
-    double F[9], C[9], mu = material->shear_modulus, pressure = 0.0;
-    double rest = body->averaged ? nodal_pressure_modulus(material) : 0.0;
-    stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, F);
-    double J = determinant(F);
-    if (J > 0.0 && isfinite(J)) {
-        pressure = body->averaged ? nodal_volume_pressure(body, q) : material_pressure(material, body->J[q]);
-    } else {
-        memcpy(F, at_rest, sizeof F);
-        J = 1.0;
+    int64_t wanted = part->count + more, before = pair(part->room, 0);
+    if (wanted <= part->room) {
+        return STATUS_OK;
     }
-    cofactor(F, C);
-    for (int k = 0; k < domain->count; k++) {
-        transform(F, domain->gradient[k], domain->along[k]);
-        transform(C, domain->gradient[k], domain->normal[k]);
-    }
-    double I1 = vector_dot(9, F, F), shear = domain->weight * mu / cbrt(J * J);
-    double content = domain->weight / domain->count;
-    return (struct tangent){.shear = shear,
-                            .mixed = -2.0 / 3.0 * shear / J,
-                            .square = 5.0 / 9.0 * shear * I1 / (J * J) +
-                                      domain->weight * (material->bulk_modulus - rest),
-                            .turned = (-shear * I1 / (3.0 * J) + domain->weight * pressure) / J,
-                            .content = content,
-                            .share = content * sqrt(fmin(rest, body->volumes.pressures.most * mu))};
+    part->room = wanted + wanted / 4;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&part->block, pair(part->room, 0) * block, error));
+    memset(part->block + before * block, 0,
+           (size_t)((pair(part->room, 0) - before) * block) * sizeof *part->block);
+    return STATUS_OK;
 }
 
-/* Add the domain that cell q is in to the row of its function n. */
-static void add_domain(const struct body *body, int64_t q, int n, struct domain *domain,
-                       struct block_row *row)
+/* The blocks between a centre and those in `taken` that are not above it += W_n^T taken. */
+KERNEL_INLINE void put_centre(int dim, int32_t centre, const double *value, const float *move,
+                              struct part *part)
 {
-    int dim = body->dim;
-    struct tangent t = find_tangent(body, q, domain);
-    const double *g = domain->gradient[n], *f = domain->along[n], *c = domain->normal[n];
-    row->volume += t.content;
-    for (int m = 0; m < domain->count; m++) {
-        double *block = block_of(row, dim, domain->node[m]);
-        const double *fm = domain->along[m], *cm = domain->normal[m];
-        double common = t.shear * vector_dot(3, g, domain->gradient[m]);
-        for (int a = 0; a < dim; a++) {
-            block[a * dim + a] += common;
-            for (int b = 0; b < dim; b++) {
-                block[a * dim + b] += t.mixed * (c[a] * fm[b] + f[a] * cm[b]) + t.square * c[a] * cm[b] +
-                                      t.turned * (c[a] * cm[b] - cm[a] * c[b]);
-            }
-            block[dim * dim + a] += t.share * cm[a];
-        }
-    }
-}
-
-static bool cell_has(const struct body *body, int64_t q, int32_t node)
-{
-    bool has = false;
-    for (int k = 0; k <= body->dim; k++) {
-        has = has || smoothed_cells_node(body, q, k) == node;
-    }
-    return has;
-}
-
-/* The row of a node, in the body's order. */
-static void make_row(const struct body *body, int32_t node, struct block_row *row)
-{
-    const struct field_averages *averages = &body->cells.averages;
-    int64_t r = averages->row_count - body->node_count + node;
-    struct domain domain = {0};
-    row->count = 0;
-    row->volume = 0.0;
-    for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
-        int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
-        int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
-        bool seen = false;
-        for (int64_t other = first; other < q; other++) {
-            seen = seen || cell_has(body, other, node);
-        }
-        if (seen) {
+    int numbers = (dim + 1) * dim;
+    int64_t place = place_of(part, centre);
+    for (int64_t t = 0; t < part->taken_count; t++) {
+        if (part->taken_centre[t] > centre) {
             continue;
         }
-        list_domain(body, first, end, &domain);
-        int n = 0;
-        while (domain.node[n] != node) {
-            n++;
+        double *block = part->block + pair(place, place_of(part, part->taken_centre[t])) * numbers * numbers;
+        const double(*taken)[MOST_NUMBERS] = (const double(*)[MOST_NUMBERS])part->taken[t];
+        for (int i = 0; i < numbers; i++) {
+            if (move == NULL) {
+                for (int k = 0; k < numbers; k++) {
+                    block[i * numbers + k] += value[i / dim] * taken[i % dim][k];
+                }
+                continue;
+            }
+            for (int a = 0; a < dim; a++) {
+                for (int k = 0; k < numbers; k++) {
+                    block[i * numbers + k] += (double)move[a * numbers + i] * taken[a][k];
+                }
+            }
         }
-        add_domain(body, q, n, &domain, row);
     }
 }
 
-static void add_node(const struct assembly *s, int32_t node, struct block_row *row, double *matrix)
+KERNEL_INLINE void put(const struct moved_fields *fields, int dim, int64_t node, struct part *part)
 {
-    const struct body *body = &s->system->body;
-    int dim = body->dim;
-    make_row(body, node, row);
-    memset(row->taken, 0, (size_t)((dim + 1) * s->p->size) * sizeof *row->taken);
+    const struct coarse_space *coarse = &fields->p->coarse;
+    int32_t near = fields->near[node];
+    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1] && near < 0; i++) {
+        double value[4];
+        coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
+        put_centre(dim, coarse->shares.idx[i], value, NULL, part);
+    }
+    for (int64_t e = near < 0 ? 0 : fields->ptr[near]; near >= 0 && e < fields->ptr[near + 1]; e++) {
+        const float *move = fields->move + fields->at[e] * dim * (dim + 1) * dim;
+        put_centre(dim, fields->centre[fields->at[e]], NULL, move, part);
+    }
+}
+
+/* The blocks += factor row^T row, of row `r` of `taken`. */
+KERNEL_INLINE void put_square(int dim, int r, double factor, struct part *part)
+{
+    int numbers = (dim + 1) * dim;
+    for (int64_t s = 0; s < part->taken_count; s++) {
+        int64_t place = place_of(part, part->taken_centre[s]);
+        const double *upper = part->taken[s][r];
+        for (int64_t t = 0; t < part->taken_count; t++) {
+            if (part->taken_centre[t] > part->taken_centre[s]) {
+                continue;
+            }
+            const double *lower = part->taken[t][r];
+            double *block =
+                part->block + pair(place, place_of(part, part->taken_centre[t])) * numbers * numbers;
+            for (int i = 0; i < numbers; i++) {
+                double scaled = factor * upper[i];
+                for (int k = 0; k < numbers; k++) {
+                    block[i * numbers + k] += scaled * lower[k];
+                }
+            }
+        }
+    }
+}
+
+KERNEL_INLINE void add_node(const struct moved_fields *fields, const struct body *body, int dim, int32_t node,
+                            struct part *part)
+{
+    const struct block_row *row = &part->row;
+    block_row_make(body, node, &part->row);
+    forget(part);
     for (int64_t m = 0; m < row->count; m++) {
-        take(s, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim, row->taken);
+        take(fields, dim, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim, part);
     }
-    put(s, body->node_order[node], row->taken, matrix);
-    preconditioner_add_square(s->p->size, 1.0 / row->volume, row->taken + dim * s->p->size, matrix);
+    part->status = make_room(part, part->taken_count, (dim + 1) * dim * (dim + 1) * dim, &part->error);
+    if (part->status == STATUS_OK) {
+        put(fields, dim, body->node_order[node], part);
+        put_square(dim, dim, 1.0 / row->volume, part);
+    }
 }
 
-static void add_penalty(const struct assembly *s, int64_t r, double *taken, double *matrix)
+KERNEL_INLINE void add_penalty(const struct moved_fields *fields, const struct solid_system *system, int dim,
+                               int64_t r, struct part *part)
 {
-    const struct constraint_rows *penalties = &s->system->penalties;
+    const struct constraint_rows *penalties = &system->penalties;
     struct average average = constraint_rows_average(penalties, r);
-    int dim = s->p->dim;
-    memset(taken, 0, (size_t)s->p->size * sizeof *taken);
+    forget(part);
     for (int64_t i = 0; i < average.length; i++) {
         double block[3];
         for (int a = 0; a < dim; a++) {
             block[a] = average.phi[i] * penalties->direction[r * dim + a];
         }
-        take(s, average.idx[i], 1, block, taken);
+        take(fields, dim, average.idx[i], 1, block, part);
     }
-    preconditioner_add_square(s->p->size, s->system->penalty_stiffness[r], taken, matrix);
-}
-
-/* field = B G^T amount */
-static void spread(const struct preconditioner *p, int64_t rows, const double *amount, double *field)
-{
-    memset(field, 0, (size_t)(p->node_count * p->dim) * sizeof *field);
-    if (rows > 0) {
-        constraint_spread(&p->constraint, amount, field);
+    part->status = make_room(part, part->taken_count, (dim + 1) * dim * (dim + 1) * dim, &part->error);
+    if (part->status == STATUS_OK) {
+        put_square(dim, 0, system->penalty_stiffness[r], part);
     }
 }
 
-/* Where the conditions bend the fields, and by how much. */
-static enum status find_bent(struct assembly *s, struct error *error)
+ALL_SETS static void add(const struct moved_fields *fields, const struct solid_system *system, bool penalty,
+                         int64_t item, struct part *part)
 {
-    const struct preconditioner *p = s->p;
-    int64_t nodes = p->node_count, dim = p->dim, size = p->size, count = 0;
-    int64_t rows = s->system->rows.count;
-    SCRATCH double *amount = NULL, *field = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&s->near, nodes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&amount, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&field, nodes * dim, error));
-    for (int64_t r = 0; r < rows; r++) {
-        amount[r] = 1.0 + fmod(0.6180339887 * (double)r, 1.0); /* any */
+    if (penalty && system->dim == 2) {
+        add_penalty(fields, system, 2, item, part);
+    } else if (penalty) {
+        add_penalty(fields, system, 3, item, part);
+    } else if (system->dim == 2) {
+        add_node(fields, &system->body, 2, (int32_t)item, part);
+    } else {
+        add_node(fields, &system->body, 3, (int32_t)item, part);
     }
-    spread(p, rows, amount, field);
-    for (int64_t n = 0; n < nodes; n++) {
-        bool bent = vector_dot((int)dim, field + n * dim, field + n * dim) > 0.0;
-        s->near[n] = bent ? (int32_t)count++ : -1;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&s->bent, count * dim * size, error));
-    for (int64_t k = 0; k < size && count > 0; k++) {
-        for (int64_t r = 0; r < rows; r++) {
-            amount[r] = -p->held[k * rows + r];
+}
+
+/* The sums of the nodes and penalties of a chunk. */
+static enum status sum_chunk(const struct moved_fields *fields, const struct solid_system *system,
+                             const struct chunks *nodes, int64_t most, int64_t c, struct part *part)
+{
+    struct chunks penalties = *nodes;
+    penalties.items = system->penalties.count;
+    part->status = part_begin(fields->p, &system->body, most, part, &part->error);
+    for (int way = 0; way < 2; way++) {
+        const struct chunks *items = way == 0 ? nodes : &penalties;
+        int64_t end = chunks_begin(items, c + 1);
+        for (int64_t i = chunks_begin(items, c); i < end && part->status == STATUS_OK; i++) {
+            add(fields, system, way == 1, i, part);
         }
-        spread(p, rows, amount, field);
-        for (int64_t i = 0; i < nodes * dim; i++) {
-            if (s->near[i / dim] >= 0) {
-                s->bent[(s->near[i / dim] * dim + i % dim) * size + k] = (float)field[i];
+    }
+    part_end(part);
+    return part->status;
+}
+
+/* Add the sums of a chunk to the matrix, in its lower triangle of blocks. */
+static void add_part(const struct preconditioner *p, int64_t count, const int32_t *centre,
+                     const double *block, double *matrix)
+{
+    int64_t numbers = (p->dim + 1) * p->dim;
+    for (int64_t i = 0; i < count; i++) {
+        for (int64_t k = 0; k <= i; k++, block += numbers * numbers) {
+            int64_t above = centre[i] > centre[k] ? centre[i] : centre[k];
+            int64_t below = centre[i] + centre[k] - above;
+            double *to = matrix + above * numbers * p->size + below * numbers;
+            for (int64_t j = 0; j < numbers * numbers; j++) {
+                to[j / numbers * p->size + j % numbers] += block[j];
             }
         }
     }
-    return STATUS_OK;
 }
 
-static enum status make_rows(struct assembly *s, int64_t count, struct block_row *rows, struct error *error)
+/* The parts of all chunks, some of each process, into the matrix. */
+static enum status join(const struct preconditioner *p, const struct ranks *ranks, int64_t chunks,
+                        const int64_t *first, struct part *part, double *matrix, struct error *error)
 {
-    const struct body *body = &s->system->body;
-    const struct field_averages *averages = &body->cells.averages;
-    int dim = body->dim;
-    for (int64_t r = averages->row_count - body->node_count; r < averages->row_count; r++) {
-        int64_t neighbours = 0;
-        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {
-            int64_t q = field_averages_cell(averages, dim, averages->use[i]);
-            neighbours += (smoothed_cells_group_end(body, q) - smoothed_cells_group(body, q)) * (dim + 1);
-        }
-        s->most = neighbours > s->most ? neighbours : s->most;
+    int64_t block = p->dim * (p->dim + 1) * p->dim * (p->dim + 1);
+    SCRATCH int64_t *count = NULL, *at = NULL, *centre_first = NULL, *block_first = NULL;
+    SCRATCH int32_t *centre = NULL;
+    SCRATCH double *sums = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&count, chunks, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&at, 2 * (chunks + 1), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&centre_first, ranks_count(ranks) + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&block_first, ranks_count(ranks) + 1, error));
+    for (int64_t c = 0; c < chunks; c++) {
+        count[c] = part[c].count;
     }
-    for (int64_t c = 0; c < count; c++) {
-        RETURN_IF_ERROR(NEW_ARRAY(&rows[c].node, s->most, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&rows[c].block, s->most * (dim + 1) * dim, error));
-        RETURN_IF_ERROR(NEW_ARRAY(&rows[c].taken, (dim + 1) * s->p->size, error));
+    ranks_gather(ranks, count, sizeof *count, first);
+    for (int64_t c = 0; c < chunks; c++) {
+        at[2 * c + 2] = at[2 * c] + count[c];
+        at[2 * c + 3] = at[2 * c + 1] + pair(count[c], 0) * block;
     }
-    return STATUS_OK;
-}
-
-/* Nodes and penalties by chunks, each into a matrix of its own; each process some chunks. */
-static enum status sum_chunks(struct assembly *s, double *matrix, struct error *error)
-{
-    const struct solid_system *system = s->system;
-    const struct ranks *ranks = system->body.share.ranks;
-    int64_t cells = s->p->size * s->p->size;
-    struct chunks nodes = chunks_of(s->p->node_count, NODES_FOR_THREAD), penalties;
-    struct block_row rows[CHUNKS_MOST] = {{0}};
-    SCRATCH int64_t *first = NULL;
-    SCRATCH double *part = NULL;
-    enum status status;
-    int64_t most = MOST_ENTRIES / cells > 8 ? MOST_ENTRIES / cells : 8;
-    nodes.count = nodes.count < most ? nodes.count : most;
-    penalties = nodes;
-    penalties.items = system->penalties.count;
-    TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
-    TRY(NEW_ARRAY(&part, nodes.count * cells, error));
-    TRY(make_rows(s, nodes.count, rows, error));
-#pragma omp parallel for schedule(dynamic) num_threads(nodes.threads)
+    for (int r = 0; r <= ranks_count(ranks); r++) {
+        centre_first[r] = at[2 * first[r]];
+        block_first[r] = at[2 * first[r] + 1];
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&centre, at[2 * chunks], error));
+    RETURN_IF_ERROR(NEW_ARRAY(&sums, at[2 * chunks + 1], error));
     for (int64_t c = first[ranks_rank(ranks)]; c < first[ranks_rank(ranks) + 1]; c++) {
-        for (int64_t n = chunks_begin(&nodes, c); n < chunks_begin(&nodes, c + 1); n++) {
-            add_node(s, (int32_t)n, &rows[c], part + c * cells);
+        if (count[c] > 0) {
+            memcpy(centre + at[2 * c], part[c].centre, (size_t)count[c] * sizeof *centre);
+            memcpy(sums + at[2 * c + 1], part[c].block, (size_t)(pair(count[c], 0) * block) * sizeof *sums);
         }
-        for (int64_t r = chunks_begin(&penalties, c); r < chunks_begin(&penalties, c + 1); r++) {
-            add_penalty(s, r, rows[c].taken, part + c * cells);
+        FREE_ALL(part[c].centre, part[c].block);
+        part[c] = (struct part){0};
+    }
+    ranks_gather(ranks, centre, sizeof *centre, centre_first);
+    ranks_gather(ranks, sums, sizeof *sums, block_first);
+    for (int64_t c = 0; c < chunks; c++) {
+        add_part(p, count[c], centre + at[2 * c], sums + at[2 * c + 1], matrix);
+    }
+    return STATUS_OK;
+}
+
+/* The lower triangle of blocks is known; within the blocks on the diagonal both. */
+static void mirror(const struct preconditioner *p, double *matrix)
+{
+    int64_t numbers = (p->dim + 1) * p->dim;
+    for (int64_t i = 0; i < p->size; i++) {
+        for (int64_t k = 0; k < i; k++) {
+            double *here = &matrix[i * p->size + k], *across = &matrix[k * p->size + i];
+            *here = i / numbers == k / numbers ? 0.5 * (*here + *across) : *here;
+            *across = *here;
         }
     }
-    ranks_gather(ranks, part, (size_t)cells * sizeof *part, first);
-    memset(matrix, 0, (size_t)cells * sizeof *matrix);
-    for (int64_t c = 0; c < nodes.count; c++) {
-        dense_add_row(cells, 1.0, part + c * cells, matrix);
+}
+
+static enum status sum_all(const struct moved_fields *fields, const struct solid_system *system,
+                           double *matrix, struct error *error)
+{
+    const struct ranks *ranks = system->body.share.ranks;
+    const struct preconditioner *p = fields->p;
+    struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
+    struct part part[CHUNKS_MOST] = {{0}};
+    SCRATCH int64_t *first = NULL;
+    int64_t most = block_row_most(&system->body);
+    enum status status;
+    TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(nodes.threads)
+    for (int64_t c = first[ranks_rank(ranks)]; c < first[ranks_rank(ranks) + 1]; c++) {
+        (void)sum_chunk(fields, system, &nodes, most, c, &part[c]);
     }
+    for (int64_t c = 0; c < nodes.count && status == STATUS_OK; c++) {
+        if (part[c].status != STATUS_OK) {
+            status = part[c].status;
+            *error = part[c].error;
+        }
+    }
+    TRY(ranks_agree(ranks, status, error));
+    memset(matrix, 0, (size_t)(p->size * p->size) * sizeof *matrix);
+    TRY(join(p, ranks, nodes.count, first, part, matrix, error));
+    mirror(p, matrix);
 done:
     for (int64_t c = 0; c < nodes.count; c++) {
-        FREE_ALL(rows[c].node, rows[c].block, rows[c].taken);
+        FREE_ALL(part[c].centre, part[c].block);
     }
     return status;
 }
@@ -384,12 +374,12 @@ done:
 enum status preconditioner_assemble(struct preconditioner *p, struct solid_system *system,
                                     struct error *error)
 {
-    struct assembly s = {.p = p, .system = system};
+    struct moved_fields fields = {0};
     body_share_collect(&system->body);
-    enum status status = find_bent(&s, error);
+    enum status status = moved_fields_build(p, &fields, error);
     if (status == STATUS_OK) {
-        status = sum_chunks(&s, p->body, error);
+        status = sum_all(&fields, system, p->body, error);
     }
-    FREE_ALL(s.near, s.bent);
+    moved_fields_free(&fields);
     return status;
 }

@@ -21,29 +21,52 @@ static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, 
     return false;
 }
 
-/* field[coarse.count]: the coarse fields' means at contact node a, less what is opposite: opposite[corners *
- * coarse.count]. */
+/* The coarse fields' means at contact node a, less what is opposite; the contact's corners are those from
+ * `corners` on. */
 static void take_fields(const struct preconditioner *p, const struct contact *contact, int64_t a,
-                        const double *opposite, double *field)
+                        int64_t corners, struct coarse_mean *mean)
 {
     struct average average = average_of_boundary(contact_nodes(contact), a);
-    int64_t count = p->coarse.count, corner;
+    const struct sparse *opposite = &p->opposite;
+    int64_t corner;
     double weight;
-    memset(field, 0, (size_t)count * sizeof *field);
-    preconditioner_add_fields(p, &average, field);
+    coarse_mean_take(&p->coarse, &average, mean);
     for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
-        for (int64_t k = 0; k < count; k++) {
-            field[k] -= weight * opposite[corner * count + k];
+        for (int64_t k = opposite->ptr[corners + corner]; k < opposite->ptr[corners + corner + 1]; k++) {
+            coarse_mean_add(&p->coarse, opposite->idx[k], -weight * opposite->value[k], mean);
         }
     }
 }
 
-void preconditioner_add_contacts(const struct preconditioner *p, const struct solid_system *system,
+/* The lower triangle of matrix += stiffness row^T row, with row = the mean's fields along a direction. */
+static void add_square(const struct preconditioner *p, double stiffness, const double *direction,
+                       const struct coarse_mean *mean, double *matrix)
+{
+    int64_t dim = p->dim, fields = dim + 1, numbers = fields * dim;
+    double *row = p->amount;
+    for (int64_t i = 0; i < mean->count * numbers; i++) {
+        row[i] = mean->field[mean->centre[i / numbers] * fields + i % numbers / dim] * direction[i % dim];
+    }
+    for (int64_t s = 0; s < mean->count; s++) {
+        for (int64_t t = 0; t < mean->count; t++) {
+            if (mean->centre[t] > mean->centre[s]) {
+                continue;
+            }
+            for (int64_t i = 0; i < numbers; i++) {
+                double *to = matrix + (mean->centre[s] * numbers + i) * p->size + mean->centre[t] * numbers;
+                double factor = stiffness * row[s * numbers + i];
+                for (int64_t k = 0; k < numbers; k++) {
+                    to[k] += factor * row[t * numbers + k];
+                }
+            }
+        }
+    }
+}
+
+void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system,
                                  const bool *only, double *matrix)
 {
-    double *row = p->amount, *field = p->amount + p->size;
-    const double *opposite = p->opposite;
-    int64_t dim = p->dim, at = 0;
+    int64_t dim = p->dim, at = 0, corners = 0;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
@@ -53,17 +76,13 @@ void preconditioner_add_contacts(const struct preconditioner *p, const struct so
             }
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
             bool creased = p->creased[at];
-            take_fields(p, contact, a, opposite, field);
+            take_fields(p, contact, a, corners, &p->mean);
             for (int64_t d = 0; d < (creased ? dim : 1); d++) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
-                const double *direction = creased ? axis : p->normal + at * dim;
-                for (int64_t i = 0; i < p->size; i++) {
-                    row[i] = field[i / dim] * direction[i % dim];
-                }
-                preconditioner_add_square(p->size, stiffness, row, matrix);
+                add_square(p, stiffness, creased ? axis : p->normal + at * dim, &p->mean, matrix);
             }
         }
-        opposite += contact_between_corners(contact) * p->coarse.count;
+        corners += contact_between_corners(contact);
     }
 }
 
@@ -185,42 +204,62 @@ static bool follow_node(struct preconditioner *p, const struct contact *contact,
     return true;
 }
 
-/* Count all contact nodes in or out, and set which ones A counts in anew or with another normal. `pushes`:
- * whether there are such. Returns whether A changes. */
-static bool follow_nodes(struct preconditioner *p, const struct solid_system *system, bool leave,
-                         bool *pushes)
+/* How A changes with the contacts. */
+struct change {
+    bool any, pushes; /* at all; by nodes that are counted in anew, */
+    bool drops;       /* or no longer as they were */
+};
+
+/* Count all contact nodes in or out, and set which ones A counts in anew or with another normal. */
+static struct change follow_nodes(struct preconditioner *p, const struct solid_system *system, bool leave)
 {
-    bool changed = false;
+    struct change change = {0};
     int64_t at = 0;
-    *pushes = false;
     for (int64_t c = 0; c < system->contact_count; c++) {
         for (int64_t a = 0; a < contact_nodes(&system->contacts[c])->count; a++, at++) {
+            bool counted = p->active[at];
             bool changes = follow_node(p, &system->contacts[c], a, at, leave);
             p->pushed[at] = changes && p->active[at];
-            *pushes = *pushes || p->pushed[at];
-            changed = changed || changes;
+            change.any = change.any || changes;
+            change.pushes = change.pushes || p->pushed[at];
+            change.drops = change.drops || (changes && counted);
         }
     }
-    for (int64_t c = 0; c < system->contact_count && changed; c++) {
+    for (int64_t c = 0; c < system->contact_count && change.any; c++) {
         contact_between_take(&system->contacts[c]);
     }
-    return changed;
+    return change;
+}
+
+/* amount[size] := A'^-1 amount, where that is known. */
+static void solve_if(bool known, const struct preconditioner *p, double *amount)
+{
+    if (known) {
+        dense_solve_large(p->size, p->stiffness_factor, amount);
+    }
 }
 
 /* The momentum A a of the velocity along the coarse fields with the A that counts in both what it did and
- * what it does now: y + P Z (A'^-1 A a - a). Where A' falls to what A becomes, the velocity stays. */
-static void keep_momentum(struct preconditioner *p, const struct solid_system *system, double *velocity,
-                          double *field)
+ * what it does now: y + P Z (A'^-1 A a - a). Where A' falls to what A becomes, the velocity stays. The
+ * factors become those of what A does now, which is A' unless it drops something. */
+static void keep_momentum(struct preconditioner *p, const struct solid_system *system, bool drops,
+                          double *velocity, double *field)
 {
-    double *matrix = p->impact, *amount = matrix + p->size * p->size, *change = amount + p->size;
+    double *amount = p->amount + 2 * p->size, *change = amount + p->size;
+    bool known = false;
     preconditioner_momentum(p, velocity, amount, change);
-    preconditioner_add_contacts(p, system, p->pushed, p->contacts);
-    if (preconditioner_factorise(p, matrix) == 0.0) {
-        return;
+    if (drops) {
+        preconditioner_add_contacts(p, system, p->pushed, p->contacts);
+        known = preconditioner_factorise(p, p->stiffness_factor) > 0.0;
+        solve_if(known, p, change);
     }
-    dense_solve_large(p->size, matrix, change);
+    preconditioner_factorise_both(p, system);
+    if (!drops) {
+        known = p->uses_coarse;
+        solve_if(known, p, change);
+    }
     for (int64_t k = 0; k < p->size; k++) {
-        change[k] -= amount[k];
+        change[k] = known ? change[k] - amount[k] : 0.0;
     }
     preconditioner_prolongate(p, change, field);
     for (int64_t i = 0; i < p->node_count * p->dim; i++) {
@@ -231,13 +270,14 @@ static void keep_momentum(struct preconditioner *p, const struct solid_system *s
 bool preconditioner_follow(struct preconditioner *p, const struct solid_system *system, bool leave,
                            double *velocity, double *field)
 {
-    bool pushes;
-    if (!follow_nodes(p, system, leave, &pushes) || p->size == 0) {
+    struct change change = follow_nodes(p, system, leave);
+    if (!change.any || p->size == 0) {
         return false;
     }
-    if (pushes && velocity != NULL && p->uses_coarse) {
-        keep_momentum(p, system, velocity, field);
+    if (change.pushes && velocity != NULL && p->uses_coarse) {
+        keep_momentum(p, system, change.drops, velocity, field);
+    } else {
+        preconditioner_factorise_both(p, system);
     }
-    preconditioner_factorise_both(p, system);
     return true;
 }

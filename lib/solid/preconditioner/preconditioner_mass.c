@@ -3,128 +3,123 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
-#include "base/sparse.h"
+#include "base/processor.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { NODES_FOR_THREAD = 1000 };      /* see chunks_of */
+enum { NODES_FOR_THREAD = 1000 }; /* see chunks_of */
+enum { FIELDS_AT_ONCE = 8 };
 static const double most_change = 1.5; /* of the mass, before the coarse fields are measured again */
 
-/* rows[count * dim]: for each field k what L^-1 D L^-T makes of field `first` + a along it, in direction a.
- * The fields stand for the directions of moves, field[node_count * dim] and force, as many. */
-static void weigh_fields(const struct preconditioner *p, int64_t first, double *field, double *force,
-                         double *rows)
+/* vector[node_count * FIELDS_AT_ONCE] = the fields from `first` on. */
+static void take_fields(const struct coarse_space *coarse, int64_t first, double *vector)
 {
-    int64_t dim = p->dim, count = p->coarse.count;
-    memset(field, 0, (size_t)(p->node_count * dim) * sizeof *field);
-    memset(rows, 0, (size_t)(count * dim) * sizeof *rows);
-    for (int64_t a = 0; a < dim && first + a < count; a++) {
-        rows[(first + a) * dim + a] = 1.0;
+    int fields = coarse->dim + 1;
+    double value[4];
+    memset(vector, 0, (size_t)(coarse->node_count * FIELDS_AT_ONCE) * sizeof *vector);
+    for (int64_t c = first / fields; c < coarse->centre_count && c * fields < first + FIELDS_AT_ONCE; c++) {
+        for (int64_t i = coarse->of_centre.ptr[c]; i < coarse->of_centre.ptr[c + 1]; i++) {
+            int32_t node = coarse->of_centre.idx[i];
+            coarse_space_values(coarse, node, c, coarse->of_centre.value[i], value);
+            for (int64_t m = 0; m < fields; m++) {
+                int64_t at = c * fields + m - first;
+                if (at >= 0 && at < FIELDS_AT_ONCE) {
+                    vector[(int64_t)node * FIELDS_AT_ONCE + at] = value[m];
+                }
+            }
+        }
     }
-    coarse_space_prolongate(&p->coarse, rows, field);
-    preconditioner_unsmooth(p, field, force);
-    coarse_space_restrict(&p->coarse, force, rows);
 }
 
-/* weight = Z^T B^-1 Z, `dim` fields at a time, each process and each thread some of these. */
+/* rows[count * FIELDS_AT_ONCE] = Z^T vector, of the centres up to that of field `last`. */
+ALL_SETS static void see_fields(const struct coarse_space *coarse, int64_t last, const double *vector,
+                                double *rows)
+{
+    int fields = coarse->dim + 1;
+    double value[4];
+    for (int64_t c = 0; c < coarse->centre_count && c * fields <= last; c++) {
+        double sum[4][FIELDS_AT_ONCE] = {{0.0}};
+        for (int64_t i = coarse->of_centre.ptr[c]; i < coarse->of_centre.ptr[c + 1]; i++) {
+            int32_t node = coarse->of_centre.idx[i];
+            const double *at = vector + (int64_t)node * FIELDS_AT_ONCE;
+            coarse_space_values(coarse, node, c, coarse->of_centre.value[i], value);
+            for (int m = 0; m < fields; m++) {
+                for (int k = 0; k < FIELDS_AT_ONCE; k++) {
+                    sum[m][k] += value[m] * at[k];
+                }
+            }
+        }
+        memcpy(rows + c * fields * FIELDS_AT_ONCE, sum, (size_t)(fields * FIELDS_AT_ONCE) * sizeof *rows);
+    }
+}
+
+/* rows = Z^T L^-1 D L^-T times some fields from `first` on. */
+static void weigh_fields(const struct preconditioner *p, int64_t first, double *vector, double *rows)
+{
+    take_fields(&p->coarse, first, vector);
+    inverse_factor_solve_transposed(&p->factor, FIELDS_AT_ONCE, vector);
+    for (int64_t n = 0; n < p->node_count; n++) {
+        for (int64_t i = n * FIELDS_AT_ONCE; i < (n + 1) * FIELDS_AT_ONCE; i++) {
+            vector[i] *= p->mass[n];
+        }
+    }
+    inverse_factor_solve(&p->factor, FIELDS_AT_ONCE, vector);
+    see_fields(&p->coarse, first + FIELDS_AT_ONCE - 1, vector, rows);
+}
+
+/* weight = Z^T B^-1 Z, some fields at a time, each process and each thread some of these. */
 static enum status weigh_inverse_fields(struct preconditioner *p, struct error *error)
 {
     const struct ranks *ranks = p->factor.ranks;
-    int64_t dim = p->dim, count = p->coarse.count, values = p->node_count * dim;
-    int64_t times = (count + dim - 1) / dim;
+    int64_t count = p->coarse.count, values = p->node_count * FIELDS_AT_ONCE;
+    int64_t times = (count + FIELDS_AT_ONCE - 1) / FIELDS_AT_ONCE;
     SCRATCH int64_t *firsts = NULL;
     SCRATCH double *rows = NULL, *vectors = NULL;
     RETURN_IF_ERROR(ranks_share(ranks, times, NULL, &firsts, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows, times * count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&rows, times * count * FIELDS_AT_ONCE, error));
     const int64_t *first = firsts + ranks_rank(ranks);
     struct chunks chunks = chunks_for_threads(first[1] - first[0], values, NODES_FOR_THREAD);
-    RETURN_IF_ERROR(NEW_ARRAY(&vectors, 2 * chunks.count * values, error));
-#pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
-    for (int64_t c = 0; c < chunks.count; c++) {
-        double *own = vectors + 2 * c * values;
-        for (int64_t t = first[0] + chunks_begin(&chunks, c); t < first[0] + chunks_begin(&chunks, c + 1);
-             t++) {
-            weigh_fields(p, t * dim, own, own + values, rows + t * count * dim);
-        }
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&vectors, chunks.threads * values, error));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(chunks.threads)
+    for (int64_t t = first[0]; t < first[1]; t++) {
+        weigh_fields(p, t * FIELDS_AT_ONCE, vectors + omp_get_thread_num() * values,
+                     rows + t * count * FIELDS_AT_ONCE);
     }
-    ranks_gather(ranks, rows, (size_t)(count * dim) * sizeof *rows, firsts);
+    ranks_gather(ranks, rows, (size_t)(count * FIELDS_AT_ONCE) * sizeof *rows, firsts);
     for (int64_t i = 0; i < count; i++) {
         for (int64_t k = 0; k <= i; k++) {
-            double weight = rows[(i / dim * count + k) * dim + i % dim];
-            for (int64_t a = 0; a < dim; a++) {
-                p->weight[(i * dim + a) * p->size + k * dim + a] = weight;
-                p->weight[(k * dim + a) * p->size + i * dim + a] = weight;
-            }
+            double weight = rows[(i / FIELDS_AT_ONCE * count + k) * FIELDS_AT_ONCE + i % FIELDS_AT_ONCE];
+            p->weight[i * count + k] = p->weight[k * count + i] = weight;
         }
     }
     return STATUS_OK;
 }
 
-/* weight = Z^T B^-1 Z: directions do not couple. */
+/* weight = Z^T B^-1 Z */
 static enum status weigh_coarse_space(struct preconditioner *p, struct error *error)
 {
-    int64_t dim = p->dim, size = p->size;
-    double *weight = p->weight, value[COARSE_MOST_AT_NODE];
-    int field[COARSE_MOST_AT_NODE];
-    memset(weight, 0, (size_t)(size * size) * sizeof *weight);
+    const struct coarse_space *coarse = &p->coarse;
+    const struct sparse *shares = &coarse->shares;
+    int64_t fields = p->dim + 1;
+    double one[4], other[4];
     if (p->factor.rows.row_count > 0) {
         return weigh_inverse_fields(p, error);
     }
+    memset(p->weight, 0, (size_t)(coarse->count * coarse->count) * sizeof *p->weight);
     for (int64_t n = 0; n < p->node_count; n++) {
-        int count = coarse_space_at_node(&p->coarse, n, field, value);
-        for (int i = 0; i < count; i++) {
-            for (int k = 0; k < count; k++) {
-                weight[field[i] * dim * size + field[k] * dim] += p->mass[n] * value[i] * value[k];
+        for (int64_t i = shares->ptr[n]; i < shares->ptr[n + 1]; i++) {
+            coarse_space_values(coarse, n, shares->idx[i], shares->value[i], one);
+            for (int64_t k = shares->ptr[n]; k < shares->ptr[n + 1]; k++) {
+                double *to = p->weight + shares->idx[i] * fields * coarse->count + shares->idx[k] * fields;
+                coarse_space_values(coarse, n, shares->idx[k], shares->value[k], other);
+                for (int64_t m = 0; m < fields * fields; m++) {
+                    to[m / fields * coarse->count + m % fields] +=
+                        p->mass[n] * one[m / fields] * other[m % fields];
+                }
             }
         }
-    }
-    for (int64_t i = 0; i < size; i += dim) {
-        for (int64_t a = 1; a < dim; a++) {
-            for (int64_t k = 0; k < size; k += dim) {
-                weight[(i + a) * size + k + a] = weight[i * size + k];
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-void preconditioner_add_fields(const struct preconditioner *p, const struct average *average, double *field)
-{
-    int number[COARSE_MOST_AT_NODE];
-    double value[COARSE_MOST_AT_NODE];
-    for (int64_t i = 0; i < average->length; i++) {
-        int count = coarse_space_at_node(&p->coarse, average->idx[i], number, value);
-        for (int k = 0; k < count; k++) {
-            field[number[k]] += average->phi[i] * value[k];
-        }
-    }
-}
-
-/* The coarse fields' means in the rows of the conditions, but for the rows' directions, as a sparse matrix.
- */
-static enum status take_conditions(const struct preconditioner *p, struct sparse *conditions,
-                                   struct error *error)
-{
-    const struct constraint_rows *rows = p->constraint.rows;
-    int64_t count = p->coarse.count, most = 0;
-    double *field = p->amount;
-    for (int64_t r = 0; r < rows->count; r++) {
-        int64_t entries = COARSE_MOST_AT_NODE * constraint_rows_average(rows, r).length;
-        most += entries < count ? entries : count;
-    }
-    RETURN_IF_ERROR(sparse_new(rows->count, count, most, conditions, error));
-    for (int64_t r = 0, at = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        memset(field, 0, (size_t)count * sizeof *field);
-        preconditioner_add_fields(p, &average, field);
-        for (int64_t k = 0; k < count; k++) {
-            if (field[k] != 0.0) {
-                conditions->idx[at] = (int32_t)k;
-                conditions->value[at++] = field[k];
-            }
-        }
-        conditions->ptr[r + 1] = at;
     }
     return STATUS_OK;
 }
@@ -134,32 +129,21 @@ static enum status take_conditions(const struct preconditioner *p, struct sparse
 static enum status weigh_conditions(struct preconditioner *p, struct error *error)
 {
     const struct ranks *ranks = p->factor.ranks;
-    const struct constraint_rows *rows = p->constraint.rows;
     const int64_t *first = p->column_first;
-    int64_t size = p->size, dim = p->dim;
-    FREED_BY(sparse_free) struct sparse conditions = {0};
-    RETURN_IF_ERROR(take_conditions(p, &conditions, error));
-    memcpy(p->free_weight, p->weight, (size_t)(size * size) * sizeof *p->weight);
-    memset(p->held, 0, (size_t)(size * rows->count) * sizeof *p->held);
-    for (int64_t r = 0; r < rows->count; r++) {
-        for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
-            p->held[(conditions.idx[i / dim] * dim + i % dim) * rows->count + r] =
-                conditions.value[i / dim] * rows->direction[r * dim + i % dim];
-        }
-    }
+    int64_t dim = p->dim;
+    SCRATCH double *column = NULL;
+    RETURN_IF_ERROR(NEW_ARRAY(&column, p->constraint.rows->count, error));
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
-        double *weight = p->free_weight + k * size; /* or row: symmetric */
-        double *column = p->held + k * rows->count;
-        envelope_solve(&p->constraint.factor, column);
-        for (int64_t r = 0; r < rows->count; r++) {
-            for (int64_t i = conditions.ptr[r] * dim; i < conditions.ptr[r + 1] * dim; i++) {
-                weight[conditions.idx[i / dim] * dim + i % dim] -=
-                    column[r] * (conditions.value[i / dim] * rows->direction[r * dim + i % dim]);
-            }
+        double *weight = p->free_weight + k * p->size; /* or row: symmetric */
+        memset(weight, 0, (size_t)p->size * sizeof *weight);
+        for (int64_t i = 0; i < p->coarse.count; i++) {
+            weight[i * dim + k % dim] = p->weight[k / dim * p->coarse.count + i];
+        }
+        if (preconditioner_hold(p, k, column)) {
+            preconditioner_release(p, column, weight);
         }
     }
-    ranks_gather(ranks, p->free_weight, (size_t)size * sizeof(double), first);
-    ranks_gather(ranks, p->held, (size_t)rows->count * sizeof(double), first);
+    ranks_gather(ranks, p->free_weight, (size_t)p->size * sizeof(double), first);
     return STATUS_OK;
 }
 

@@ -3,17 +3,40 @@
 
 #include "solid/preconditioner/preconditioner.h"
 
-/* amount[size] = Z^T P^T force, and acceleration = B force, whose values by the rows of the conditions are
- * left in their multipliers. */
+/* amount[size] = Z^T P^T force, and acceleration = B force; S^-1 G times that is left in the multipliers of
+ * the conditions. */
 void preconditioner_restrict_force(struct preconditioner *preconditioner, const double *force,
                                    double *acceleration, double *amount);
 
 /* force = B^-1 move = L^-1 D L^-T move; not the same array. */
 void preconditioner_unsmooth(const struct preconditioner *preconditioner, const double *move, double *force);
 
-/* field[coarse.count] += the mean of each coarse field: Z^T phi, for one component of the displacement. */
-void preconditioner_add_fields(const struct preconditioner *preconditioner, const struct average *average,
-                               double *field);
+MUST_CHECK enum status coarse_mean_begin(const struct coarse_space *coarse, struct coarse_mean *mean,
+                                         struct error *error);
+void coarse_mean_free(struct coarse_mean *mean);
+
+/* Set the mean to zero; add factor times that of one coarse field; take those of an average, Z^T phi, for one
+ * component of the displacement. */
+void coarse_mean_clear(const struct coarse_space *coarse, struct coarse_mean *mean);
+void coarse_mean_add(const struct coarse_space *coarse, int64_t field, double value,
+                     struct coarse_mean *mean);
+void coarse_mean_take(const struct coarse_space *coarse, const struct average *average,
+                      struct coarse_mean *mean);
+
+/* The coarse fields' means of averages: a row for each. */
+MUST_CHECK enum status coarse_mean_table(const struct coarse_space *coarse, int64_t count,
+                                         struct average (*average)(const void *context, int64_t i),
+                                         const void *context, struct coarse_mean *mean, struct sparse *table,
+                                         struct error *error);
+
+/* The coarse fields' means in the conditions. */
+MUST_CHECK enum status preconditioner_take_conditions(const struct solid_system *system,
+                                                      struct preconditioner *preconditioner,
+                                                      struct error *error);
+
+/* value[rows of the conditions] = G Z amount, and amount[size] -= (G Z)^T value. */
+void preconditioner_see(const struct preconditioner *preconditioner, const double *amount, double *value);
+void preconditioner_release(const struct preconditioner *preconditioner, const double *value, double *amount);
 
 /* sum of D */
 double preconditioner_sum_of_mass(const struct preconditioner *preconditioner);
@@ -29,10 +52,10 @@ void preconditioner_momentum(struct preconditioner *preconditioner, const double
 /* field[node_count * dim] = P Z amount */
 void preconditioner_prolongate(struct preconditioner *preconditioner, const double *amount, double *field);
 
-/* matrix[size * size] += the stiffness along the coarse fields of the contact nodes that A counts in; `only`
- * those of these, or NULL: all. */
-void preconditioner_add_contacts(const struct preconditioner *preconditioner,
-                                 const struct solid_system *system, const bool *only, double *matrix);
+/* matrix[size * size], its lower triangle, += the stiffness along the coarse fields of the contact nodes that
+ * A counts in; `only` those of these, or NULL: all. */
+void preconditioner_add_contacts(struct preconditioner *preconditioner, const struct solid_system *system,
+                                 const bool *only, double *matrix);
 
 /* matrix[size * size] = the Cholesky factor of A that belongs to body + contacts. Returns the part of D that
  * it has, so that it is positive definite; 0: none makes it so. */
@@ -41,8 +64,8 @@ double preconditioner_factorise(const struct preconditioner *preconditioner, dou
 /* The Cholesky factors, from what body, contacts and mass are. */
 void preconditioner_factorise_both(struct preconditioner *preconditioner, const struct solid_system *system);
 
-/* matrix[size * size] += stiffness row^T row */
-void preconditioner_add_square(int64_t size, double stiffness, const double *row, double *matrix);
+/* column[rows of the conditions] = S^-1 G Z e_k, what they put against field k; false: it is zero. */
+bool preconditioner_hold(const struct preconditioner *preconditioner, int64_t k, double *column);
 
 /* Set the stiffness of body and penalties along the coarse fields, as it is at the last evaluation of a body
  * of smoothed cells. */

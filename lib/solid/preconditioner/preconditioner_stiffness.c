@@ -1,6 +1,7 @@
 /* The stiffness of the coarse space: that of the body, by differences; and the factors. */
 #include "solid/preconditioner/preconditioner_private.h"
 
+#include "base/chunks.h"
 #include "base/dense.h"
 #include "base/memory.h"
 
@@ -16,17 +17,38 @@ static const double kept = 1e-4;
 enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
 /* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
 static const double least_free = 0.01;
-static const double strain = 1e-6; /* of the differences that stiffness is measured with */
+enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
+static const double strain = 1e-6;   /* of the differences that stiffness is measured with */
 
 /* Part of the coarse fields' mass that the conditions leave free. */
 static double free_part(const struct preconditioner *p)
 {
     double all = 0.0, part = 0.0;
-    for (int64_t k = 0; k < p->size * p->size; k += p->size + 1) {
-        all += p->weight[k];
-        part += p->free_weight[k];
+    for (int64_t k = 0; k < p->size; k++) {
+        all += p->weight[k / p->dim * (p->coarse.count + 1)];
+        part += p->free_weight[k * (p->size + 1)];
     }
     return part / all;
+}
+
+static int threads_for(int64_t size)
+{
+    return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
+}
+
+/* The lower triangle of matrix = (body + contacts) / share + keep weight, and `more`, or NULL. */
+static void sum_stiffness(const struct preconditioner *p, double keep, const double *more, double *matrix)
+{
+    int64_t size = p->size, dim = p->dim;
+#pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
+    for (int64_t i = 0; i < size; i++) {
+        for (int64_t k = i * size; k <= i * size + i; k++) {
+            matrix[k] = (p->body[k] + p->contacts[k]) / share + (more != NULL ? more[k] : 0.0);
+        }
+        for (int64_t k = i % dim; k <= i; k += dim) {
+            matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
+        }
+    }
 }
 
 double preconditioner_factorise(const struct preconditioner *p, double *matrix)
@@ -34,9 +56,7 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
     double keep = kept;
     /* Of an unstable body the stiffness is indefinite. */
     for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
-        for (int64_t i = 0; i < p->size * p->size; i++) {
-            matrix[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i];
-        }
+        sum_stiffness(p, keep, NULL, matrix);
         if (dense_factorise(p->size, matrix)) {
             return keep;
         }
@@ -47,15 +67,13 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
 
 void preconditioner_factorise_both(struct preconditioner *p, const struct solid_system *system)
 {
-    int64_t cells = p->size * p->size;
-    double *capacitance = p->capacitance_factor;
-    memset(p->contacts, 0, (size_t)cells * sizeof *p->contacts);
+    memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
     preconditioner_add_contacts(p, system, NULL, p->contacts);
     double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->stiffness_factor) : 0.0;
-    for (int64_t i = 0; i < cells; i++) {
-        capacitance[i] = (p->body[i] + p->contacts[i]) / share + keep * p->weight[i] + p->free_weight[i];
+    if (keep > 0.0) {
+        sum_stiffness(p, keep, p->free_weight, p->capacitance_factor);
     }
-    p->uses_coarse = keep > 0.0 && dense_factorise(p->size, capacitance);
+    p->uses_coarse = keep > 0.0 && dense_factorise(p->size, p->capacitance_factor);
 }
 
 static void make_symmetric(int64_t n, double *matrix)
@@ -106,9 +124,9 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
         RETURN_IF_ERROR(preconditioner_assemble(p, system, error));
     } else {
         RETURN_IF_ERROR(measure_by_differences(p, system, u, at_u, error));
+        make_symmetric(p->size, p->body);
         *evaluations += p->size;
     }
-    make_symmetric(p->size, p->body);
     p->measured_mass = preconditioner_sum_of_mass(p);
     preconditioner_factorise_both(p, system);
     return STATUS_OK;

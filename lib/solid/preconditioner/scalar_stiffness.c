@@ -69,11 +69,10 @@ static struct average field_at(const struct scalar_stiffness *stiffness, int64_t
 }
 
 /* The fields that contain node i, and its weights there. */
-static struct average fields_of(const struct scalar_stiffness *stiffness, const struct scalar_row *row,
-                                int64_t i)
+static struct average fields_of(const struct scalar_stiffness *stiffness, int64_t i)
 {
-    const struct sparse *fields = &row->fields;
-    int64_t r = row->slot[stiffness->system->body.node_place[i]], at = fields->ptr[r];
+    const struct sparse *fields = &stiffness->fields;
+    int64_t r = stiffness->slot[stiffness->system->body.node_place[i]], at = fields->ptr[r];
     return (struct average){fields->ptr[r + 1] - at, fields->idx + at, fields->value + at};
 }
 
@@ -108,6 +107,7 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
         return fail(error, STATUS_SYSTEM, "preconditioner: more than 2^31 edges, nodes and conditions");
     }
     RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->slot, system->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
     return list_bonds(stiffness, error);
 }
@@ -115,7 +115,8 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
 void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
-    FREE_ALL(stiffness->bond_stiffness, stiffness->range);
+    sparse_free(&stiffness->fields);
+    FREE_ALL(stiffness->bond_stiffness, stiffness->range, stiffness->slot);
     *stiffness = (struct scalar_stiffness){0};
 }
 
@@ -124,7 +125,6 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
 {
     int64_t nodes = stiffness->system->node_count, fields = stiffness->field_count + stiffness->bond_count;
     *row = (struct scalar_row){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&row->slot, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->node, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->value, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->at_field, fields, error));
@@ -135,19 +135,18 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
     return NEW_ARRAY(&row->field_seen, fields, error);
 }
 
-enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
-                               struct scalar_row *row, struct error *error)
+enum status scalar_stiffness_prepare(struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
+                                     struct error *error)
 {
-    sparse_free(&row->fields);
-    return row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count, row->slot,
-                                  &row->fields, error);
+    sparse_free(&stiffness->fields);
+    return row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count,
+                                  stiffness->slot, &stiffness->fields, error);
 }
 
 void scalar_row_free(struct scalar_row *row)
 {
-    sparse_free(&row->fields);
-    FREE_ALL(row->slot, row->node, row->value, row->at_field, row->on_field, row->sum, row->touched,
-             row->cell_seen, row->field_seen);
+    FREE_ALL(row->node, row->value, row->at_field, row->on_field, row->sum, row->touched, row->cell_seen,
+             row->field_seen);
     *row = (struct scalar_row){0};
 }
 
@@ -286,7 +285,7 @@ static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
     const struct sparse *bonds = &stiffness->bonds;
-    struct average fields = fields_of(stiffness, row, i);
+    struct average fields = fields_of(stiffness, i);
     int64_t touched = 0;
     for (int64_t k = 0; k < fields.length; k++) {
         row->at_field[fields.idx[k]] = fields.phi[k];

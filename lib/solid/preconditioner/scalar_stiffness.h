@@ -15,6 +15,8 @@ struct scalar_stiffness {
     int32_t *range;         /* of the fields' rows, see row_operator_ranges */
     struct sparse bonds;    /* a row for each node: the bonds that contain it, and its weights there */
     double *bond_stiffness; /* N/m (2D: N/m2) */
+    struct sparse fields;   /* a row for each prepared node: the fields that contain it, and its weights */
+    int32_t *slot;          /* of nodes in the body's order: the number of that row */
 };
 
 /* A sum at a node for the row number `row` - 1. */
@@ -30,8 +32,6 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness);
 
 /* A row, and scratch for it, which is zero between calls unless stated otherwise. */
 struct scalar_row {
-    struct sparse fields; /* a row for each prepared node: the fields that contain it, and its weights */
-    int32_t *slot;        /* of nodes in the body's order: the number of that row */
     int64_t count;
     int32_t *node; /* columns of the entries, ascending, */
     double *value; /* and values, N/m (2D: N/m2) */
@@ -45,8 +45,8 @@ MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness,
 void scalar_row_free(struct scalar_row *row);
 
 /* Prepare for the rows of the nodes place[count] in the body's order, ascending. */
-MUST_CHECK enum status scalar_row_prepare(const struct scalar_stiffness *stiffness, const int32_t *place,
-                                          int64_t count, struct scalar_row *row, struct error *error);
+MUST_CHECK enum status scalar_stiffness_prepare(struct scalar_stiffness *stiffness, const int32_t *place,
+                                                int64_t count, struct error *error);
 
 /* Compute row i of a prepared node, up to the diagonal, which is its last entry. */
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row);
