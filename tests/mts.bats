@@ -211,7 +211,7 @@ violates() {
     printf '# faces i4 2 2\n0 1\n0 2\n\n\n# faces.cell i4 2 2\n0 -1\n0 1\n\n\n' >> damaged
     printf '# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 19\n' >> damaged
     run -1 mts check damaged
-    [[ $output == *"facepoints.x: 3 rows, but the faces ask for 4"* ]]
+    [[ $output == *"facepoints.x: 3 rows, but the faces ask for 2"* ]]
     sed '/^# faces.cell/,/^$/ { s/^0 -1$/0 1 /; /^0 1$/ s/1/-1/; }' damaged > swapped
     run -1 mts check swapped
     [[ $output == *"faces.cell: row 1: on the boundary, after faces between cells"* ]]

@@ -70,8 +70,8 @@ void tool_note_thin(const struct tool *tool, const struct cells *cells)
         point_text(cells->dim, thin.place, place);
         tool_note(tool,
                   "%.0f %% of the boundary is on parts about one cell thick, the thinnest %.2g of a cell at "
-                  "%s m: they bend too stiffly, up to several times where thinner than their cells are long; "
-                  "by about a tenth with cells half as long as they are thick",
+                  "%s m: they bend too stiffly, by half or more, where thinner than their cells are long; "
+                  "else by up to a tenth too stiffly or too softly",
                   100.0 * thin.share, thin.least, place);
     }
 }
