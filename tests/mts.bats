@@ -222,7 +222,7 @@ violates() {
     [[ $output == *"boundary.ptr: 16 rows, but the faces ask for 17"* ]]
     shortened edge.ptr whole > damaged
     run -1 mts check damaged
-    [[ $output == *"edge.ptr: 16 rows, but the faces ask for 17"* ]]
+    [[ $output == *"edge.ptr: 24 rows, but the faces ask for 25"* ]]
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | ipoints | mts text > box
     mts check box
     shapefn <(ipoints box) 2> note | mts text > whole
