@@ -120,7 +120,7 @@ END
 }
 
 @test "inversion, dynamic: the state one step before it" {
-    scene dynamic 0.3 'components = 0.07, 0.07\ncurve = step' 'end_time = 1\ntime_step_margin = 0.5' > run.scene
+    scene dynamic 0.3 'components = 0.09, 0.09\ncurve = step' 'end_time = 1\ntime_step_margin = 0.5' > run.scene
     stops "is inverted (J = -"
     [ "$(frames)" -ge 2 ]
     # It is good: F of the linear interpolants of the cells is not inverted there.
@@ -130,7 +130,7 @@ END
 }
 
 @test "energy drift: the fastest node; the frames before it" {
-    scene dynamic 0.49 'components = 0.1, 0.1' 'end_time = 0.5\ntime_step_margin = 0.96' > run.scene
+    scene dynamic 0.49 'components = 0.06, 0.06' 'end_time = 0.5\ntime_step_margin = 0.96' > run.scene
     stops "the energy balance is off by "
     [ "$(frames)" -ge 4 ]
     grep -q '^energy	f8' list

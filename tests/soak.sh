@@ -27,7 +27,7 @@ components = 0, 0
 energy = yes
 [solver]
 end_time = $1
-time_step_margin = 0.7
+time_step_margin = 0.5
 SCENE
 }
 

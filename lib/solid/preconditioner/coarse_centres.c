@@ -7,6 +7,7 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/queue.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -24,9 +25,10 @@ enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 /* What is known of all nodes. */
 struct ways {
     const struct neighbours *neighbours; /* NULL: all distances are straight */
-    int32_t *part; /* which connected part each node is in; there are no ways between parts */
-    int32_t part_count;
-    double *least;    /* distance from the nearest centre so far, m, */
+    int32_t *part;  /* the first node of the connected part that each node is in; no ways lead between parts,
+                       and few within one that neighbours join in one direction only */
+    bool has_parts; /* more than one */
+    double *least;  /* distance from the nearest centre so far, m, */
     int32_t *nearest; /* and which one it is */
 };
 
@@ -57,28 +59,21 @@ static enum status search_begin(int64_t node_count, struct search *search, struc
     return STATUS_OK;
 }
 
-/* Number the connected parts. */
 static enum status find_parts(const struct coarse_space *coarse, struct ways *ways, struct error *error)
 {
-    SCRATCH int32_t *list = NULL;
+    const struct neighbours *neighbours = ways->neighbours;
     RETURN_IF_ERROR(NEW_ARRAY(&ways->part, coarse->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&list, coarse->node_count, error));
-    memset(ways->part, -1, (size_t)coarse->node_count * sizeof *ways->part);
     for (int64_t n = 0; n < coarse->node_count; n++) {
-        int64_t count = 0;
-        if (ways->part[n] < 0) {
-            ways->part[n] = ways->part_count++;
-            list[count++] = (int32_t)n;
+        ways->part[n] = (int32_t)n;
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        for (int64_t k = neighbours->ptr[n]; k < neighbours->ptr[n + 1]; k++) {
+            set_join(ways->part, (int32_t)n, neighbours->idx[k]);
         }
-        for (int64_t i = 0; i < count; i++) {
-            for (int64_t k = ways->neighbours->ptr[list[i]]; k < ways->neighbours->ptr[list[i] + 1]; k++) {
-                int32_t next = ways->neighbours->idx[k];
-                if (ways->part[next] < 0) {
-                    ways->part[next] = ways->part[n];
-                    list[count++] = next;
-                }
-            }
-        }
+    }
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        ways->part[n] = set_first(ways->part, (int32_t)n);
+        ways->has_parts = ways->has_parts || ways->part[n] > 0;
     }
     return STATUS_OK;
 }
@@ -130,7 +125,7 @@ static enum status find_near(const struct coarse_space *coarse, const struct way
 {
     int dim = coarse->dim;
     search->count = search->touched_count = 0;
-    if (ways->neighbours == NULL || ways->part_count > 1) {
+    if (ways->neighbours == NULL || ways->has_parts) {
         search_straight(coarse, ways, from, within, search);
     }
     if (ways->neighbours == NULL) {
@@ -157,6 +152,22 @@ static enum status find_near(const struct coarse_space *coarse, const struct way
     return STATUS_OK;
 }
 
+/* Nodes that no way from a centre leads to have the straight distance from the nearest one. */
+static void reach_all(const struct coarse_space *coarse, struct ways *ways)
+{
+    int dim = coarse->dim;
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        bool reached = isfinite(ways->least[n]);
+        for (int64_t c = 0; c < coarse->centre_count && !reached; c++) {
+            double straight = vector_distance(dim, coarse->X + n * dim, coarse->centre + c * dim);
+            if (straight < ways->least[n]) {
+                ways->least[n] = straight;
+                ways->nearest[n] = (int32_t)c;
+            }
+        }
+    }
+}
+
 static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_t *from, struct error *error)
 {
     FREED_BY(search_free) struct search search = {0};
@@ -177,6 +188,10 @@ static enum status choose(struct coarse_space *coarse, struct ways *ways, int64_
         for (int64_t n = 0; n < coarse->node_count; n++) {
             next = ways->least[n] > ways->least[next] ? n : next;
         }
+    }
+    reach_all(coarse, ways);
+    for (int64_t n = 0; n < coarse->node_count; n++) {
+        next = ways->least[n] > ways->least[next] ? n : next;
     }
     coarse->radius = radius_factor * ways->least[next];
     return STATUS_OK;
