@@ -227,4 +227,32 @@ TEST(ways)
     }
 }
 
+/* Nodes on a line, of which each has only those behind it as neighbours, as at interfaces: no way leads from
+ * the first one to any other. */
+TEST(ways_in_one_direction)
+{
+    enum { ALL = 50 };
+    double X[2 * ALL] = {0.0};
+    int64_t ptr[ALL + 1] = {0};
+    int32_t idx[ALL];
+    struct neighbours neighbours = {.count = ALL, .ptr = ptr, .idx = idx};
+    for (int n = 0; n < ALL; n++) {
+        X[2 * n] = 0.1 * n;
+        idx[n] = n > 0 ? n - 1 : 0;
+        ptr[n + 1] = n + 1;
+    }
+    for (int centres = 1; centres < 8; centres += 3) {
+        FREED_BY(coarse_space_free) struct coarse_space coarse = {0};
+        GOOD(coarse_space_build(2, ALL, X, &neighbours, centres, &coarse, &error));
+        assert_true(coarse.radius < 15.0);
+        for (int64_t n = 0; n < ALL; n++) {
+            double sum = 0.0;
+            for (int c = 0; c < centres; c++) {
+                sum += share_at(&coarse, n, c);
+            }
+            NEAR_TO(sum, 1.0, 1e-14);
+        }
+    }
+}
+
 RUN_TESTS(NULL, NULL)
