@@ -137,11 +137,37 @@ int32_t smoothed_cells_edge(const struct body *body, int64_t q, int e)
     return body->cells.averages.of_use[q * CELL_EDGES(body->dim) + e] / VECTOR_STRIDE(body->dim);
 }
 
+/* The rows of boundary faces of cell q, after `count` of its edges and vertices, whose gradients change by
+ * them. Returns the number of all. */
+static int add_boundary_rows(const struct body *body, int64_t q, const double *grad_N, int count,
+                             int32_t *row, double *gradient)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    int dim = body->dim;
+    for (int64_t f = field_averages_face(averages, q);
+         f < averages->face_count && averages->face_cell[f] == q; f++) {
+        int k = averages->face_vertex[f];
+        const double *along = grad_N + dim * k;
+        for (int e = 0; e < FACE_EDGES(dim); e++) {
+            add_scaled(dim, dim * EDGE_IN_FACE(dim), along, gradient + dim * cell_face_edge(dim, k, e));
+        }
+        for (int v = 0; v <= dim && dim == 2; v++) {
+            if (v != k) {
+                add_scaled(dim, dim * VERTEX_IN_FACE(dim), along, gradient + dim * (3 + v));
+            }
+        }
+        memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
+        add_scaled(dim, -dim, along, gradient + dim * count);
+        row[count++] = averages->of_use[field_averages_faces(averages, dim) + f] / VECTOR_STRIDE(dim);
+    }
+    return count;
+}
+
 int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED_MOST_ROWS],
                         double gradient[SMOOTHED_MOST_ROWS * 3])
 {
-    const struct field_averages *averages = &body->cells.averages;
     int dim = body->dim, count = CELL_EDGES(dim);
+    int32_t first_vertex = (int32_t)(body->cells.averages.row_count - body->node_count);
     double grad_N[12];
     smoothed_cells_linear_gradients(body, q, grad_N);
     memset(gradient, 0, (size_t)(count * dim) * sizeof *gradient);
@@ -151,27 +177,11 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][1] * dim, gradient + e * dim);
     }
     for (int k = 0; k <= dim && dim == 2; k++) {
-        row[count] = (int32_t)(averages->row_count - body->node_count) + smoothed_cells_node(body, q, k);
+        row[count] = first_vertex + smoothed_cells_node(body, q, k);
         memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
         add_scaled(dim, VERTEX_GRADIENT(dim), grad_N + k * dim, gradient + dim * count++);
     }
-    for (int64_t f = field_averages_face(averages, q);
-         f < averages->face_count && averages->face_cell[f] == q; f++) {
-        int k = averages->face_vertex[f];
-        for (int e = 0; e < FACE_EDGES(dim); e++) {
-            add_scaled(dim, dim * EDGE_IN_FACE(dim), grad_N + dim * k,
-                       gradient + dim * cell_face_edge(dim, k, e));
-        }
-        for (int v = 0; v <= dim && dim == 2; v++) {
-            if (v != k) {
-                add_scaled(dim, dim * VERTEX_IN_FACE(dim), grad_N + dim * k, gradient + dim * (3 + v));
-            }
-        }
-        memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
-        add_scaled(dim, -dim, grad_N + dim * k, gradient + dim * count);
-        row[count++] = averages->of_use[field_averages_faces(averages, dim) + f] / VECTOR_STRIDE(dim);
-    }
-    return count;
+    return add_boundary_rows(body, q, grad_N, count, row, gradient);
 }
 
 int32_t smoothed_cells_node(const struct body *body, int64_t q, int k)
