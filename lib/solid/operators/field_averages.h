@@ -40,7 +40,8 @@ struct field_averages {
     int64_t face_count;    /* boundary faces, by their cells: */
     int64_t *face_cell;    /* the cell of each, ascending, */
     int32_t *face_vertex;  /* which of its vertices is opposite, */
-    double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m (2D: the last 0) */
+    double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m (2D: the
+                              last 0) */
     struct average_table given[2]; /* with several processes: the caller's tables, edges and nodes, */
     int64_t *edge_order;           /* and the order of their rows; */
     struct sparse fetched;         /* where none has read all rows of edges: those that this process needs */
