@@ -1,7 +1,7 @@
 #!/bin/bash
 # soak.sh STEPS: a small block swings without damping for about so many steps; prints the steps done, the memory (kB) that
 # mtled held after a quarter of the time and at its end, and the largest error of the energy balance relative to the
-# largest energy. The programs are those on PATH.
+# largest energy, which is of second order in the time step. The programs are those on PATH.
 set -eu -o pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

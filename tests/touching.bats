@@ -312,6 +312,7 @@ END
     stack
     stack_scene | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.05/' > half.scene
     { cat half.scene; printf '[displacement right]\nfacets = xmax\nnormal = 0.0912291335\n[solver]\ntolerance = 1e-6\n'; } > held.scene
+    # Meshes that do not match cost .11 % with cells of 14 and 9 mm, half of that with these.
     gmsh_body 2 finer < <(sed 's/, 14}/, 7}/g; s/, 9}/, 4.5}/g' stack.geo)
     mtled held.scene finer.mts > u.dat
     rows reactions u.dat | awk 'NR == 1 { d = $2 / 706.76168 - 1; print $2; exit !(d < 1e-3 && -d < 1e-3) }'

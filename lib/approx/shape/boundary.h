@@ -93,13 +93,17 @@ MUST_CHECK enum status boundary_points_build(const struct face_table *table, con
 /* Edges of the boundary (2D: nodes) at which the stress is singular. Junctions of the prescribed and the free
  * boundary: smooth, where it turns by less than 45 degrees; sharp, where it turns by more. Re-entrant edges,
  * such as the tip of a slit: it turns inwards by more. */
-enum boundary_junction { BOUNDARY_JUNCTION_SMOOTH, BOUNDARY_JUNCTION_SHARP, BOUNDARY_REENTRANT };
+enum boundary_junction {
+    BOUNDARY_JUNCTION_SMOOTH = 1,
+    BOUNDARY_JUNCTION_SHARP = 2,
+    BOUNDARY_REENTRANT = 4,
+};
 
-/* Set junction[table->node_count] at the nodes of these edges; others are left as they are.
+/* Set junction[table->node_count] at the nodes of edges of these kinds, one or the sum of several; others are
+ * left as they are.
  * held[table->faces->count]: the prescribed faces; constrained[table->faces->count]: these and all others
  * that are not free. */
-MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
-                                               const bool *held, const bool *constrained, bool *junction,
-                                               struct error *error);
+MUST_CHECK enum status boundary_find_junctions(const struct face_table *table, int kinds, const bool *held,
+                                               const bool *constrained, bool *junction, struct error *error);
 
 void boundary_averages_free(struct boundary_averages *averages);

@@ -196,23 +196,24 @@ static bool turns_inwards(const struct face_table *table, const struct ridge *a,
     return vector_dot(dim, normal, into_b) > -least_angle * vector_length(dim, into_b);
 }
 
-static bool is_junction(const struct face_table *table, enum boundary_junction kind, const bool *held,
-                        const bool *constrained, const struct ridge *a, const struct ridge *b)
+static bool is_junction(const struct face_table *table, int kinds, const bool *held, const bool *constrained,
+                        const struct ridge *a, const struct ridge *b)
 {
     const int32_t *node = table->faces->node;
     int32_t f = a->facet, g = b->facet;
     bool meets = (held[f] && !constrained[g]) || (held[g] && !constrained[f]);
-    if (!meets && kind != BOUNDARY_REENTRANT) {
+    if (!meets && !(kinds & BOUNDARY_REENTRANT)) {
         return false;
     }
-    bool smooth = of_one_side(table, node + (int64_t)f * table->dim, node + (int64_t)g * table->dim);
-    return kind == BOUNDARY_REENTRANT ? !smooth && turns_inwards(table, a, b)
-                                      : smooth == (kind == BOUNDARY_JUNCTION_SMOOTH);
+    if (of_one_side(table, node + (int64_t)f * table->dim, node + (int64_t)g * table->dim)) {
+        return meets && (kinds & BOUNDARY_JUNCTION_SMOOTH);
+    }
+    return (meets && (kinds & BOUNDARY_JUNCTION_SHARP)) ||
+           ((kinds & BOUNDARY_REENTRANT) && turns_inwards(table, a, b));
 }
 
-enum status boundary_find_junctions(const struct face_table *table, enum boundary_junction kind,
-                                    const bool *held, const bool *constrained, bool *junction,
-                                    struct error *error)
+enum status boundary_find_junctions(const struct face_table *table, int kinds, const bool *held,
+                                    const bool *constrained, bool *junction, struct error *error)
 {
     int dim = table->dim;
     int64_t facets = table->faces->boundary_count, count = facets * dim;
@@ -222,7 +223,7 @@ enum status boundary_find_junctions(const struct face_table *table, enum boundar
     for (int64_t begin = 0, i = 0; i < count; i++) {
         begin = memcmp(ridge[i].node, ridge[begin].node, sizeof ridge->node) == 0 ? begin : i;
         for (int64_t k = begin; k < i; k++) {
-            if (is_junction(table, kind, held, constrained, &ridge[i], &ridge[k])) {
+            if (is_junction(table, kinds, held, constrained, &ridge[i], &ridge[k])) {
                 for (int j = 0; j < dim - 1; j++) {
                     junction[ridge[i].node[j]] = true;
                 }

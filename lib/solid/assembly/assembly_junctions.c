@@ -17,15 +17,16 @@
  * 707 nodes of the calibration set. */
 static const double junction_stiffness = 0.85;
 
-/* junction[node_count]: set at nodes of such edges, where faces with at least `least` prescribed directions
- * are held. */
-static enum status find_junctions(const struct assembly *input, enum boundary_junction kind, int least,
-                                  bool *junction, struct error *error)
+/* (*junction)[node_count], to be freed: nodes of edges of these kinds, where faces with at least `least`
+ * prescribed directions are held. */
+static enum status find_junctions(const struct assembly *input, int kinds, int least, bool **junction,
+                                  struct error *error)
 {
     SCRATCH bool *held = NULL, *constrained = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, least, false, &held, error));
     RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &constrained, error));
-    return boundary_find_junctions(&input->face_table, kind, held, constrained, junction, error);
+    RETURN_IF_ERROR(NEW_ARRAY(junction, input->cells.node_count, error));
+    return boundary_find_junctions(&input->face_table, kinds, held, constrained, *junction, error);
 }
 
 /* softer[cells.count]: cells that have a node on a smooth junction, and no prescribed facet. */
@@ -34,8 +35,7 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
     int corners = input->cells.dim + 1;
     SCRATCH bool *held = NULL, *junction = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &held, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&junction, input->cells.node_count, error));
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, junction, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
     for (int64_t i = 0; i < input->cells.count * corners; i++) {
         softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];
     }
@@ -89,9 +89,8 @@ enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, st
 {
     bool found = false;
     *at_edge = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(at_edge, input->cells.node_count, error));
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP, input->cells.dim, *at_edge, error));
-    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_REENTRANT, input->cells.dim, *at_edge, error));
+    RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SHARP | BOUNDARY_REENTRANT, input->cells.dim,
+                                   at_edge, error));
     for (int64_t n = 0; n < input->cells.node_count; n++) {
         found = found || (*at_edge)[n];
     }

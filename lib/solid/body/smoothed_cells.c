@@ -151,9 +151,9 @@ static int add_boundary_rows(const struct body *body, int64_t q, const double *g
         for (int e = 0; e < FACE_EDGES(dim); e++) {
             add_scaled(dim, dim * EDGE_IN_FACE(dim), along, gradient + dim * cell_face_edge(dim, k, e));
         }
-        for (int v = 0; v <= dim && dim == 2; v++) {
+        for (int v = 0; v <= dim && VERTEX_IN_FACE(dim) > 0.0; v++) {
             if (v != k) {
-                add_scaled(dim, dim * VERTEX_IN_FACE(dim), along, gradient + dim * (3 + v));
+                add_scaled(dim, dim * VERTEX_IN_FACE(dim), along, gradient + dim * (CELL_EDGES(dim) + v));
             }
         }
         memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
@@ -176,7 +176,7 @@ int smoothed_cells_rows(const struct body *body, int64_t q, int32_t row[SMOOTHED
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][0] * dim, gradient + e * dim);
         add_scaled(dim, EDGE_GRADIENT(dim), grad_N + cell_edge_ends[e][1] * dim, gradient + e * dim);
     }
-    for (int k = 0; k <= dim && dim == 2; k++) {
+    for (int k = 0; k <= dim && VERTEX_GRADIENT(dim) > 0.0; k++) {
         row[count] = first_vertex + smoothed_cells_node(body, q, k);
         memset(gradient + dim * count, 0, (size_t)dim * sizeof *gradient);
         add_scaled(dim, VERTEX_GRADIENT(dim), grad_N + k * dim, gradient + dim * count++);
