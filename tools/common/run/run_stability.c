@@ -17,8 +17,10 @@
 static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
 /* A plane side creases when it is compressed to this stretch (Hong, Zhao and Suo 2009). An instability of a
- * body that is compressed by less is that of its shape, whose length the mesh resolves. */
-static const double crease_stretch = 0.65;
+ * body that is compressed by less is that of its shape, whose length the mesh resolves. So is one whose move
+ * changes by less than this share of its largest over a cell there, for it falls off over three cells or more.
+ */
+static const double crease_stretch = 0.65, most_change = 1.0 / 3.0;
 
 static int64_t parameter_count(const struct run *run)
 {
@@ -153,20 +155,34 @@ static double least_stretch(const struct cells *cells, int64_t c, const double *
     return sqrt(fmax(least, 0.0));
 }
 
-/* Whether the cells at a node were compressed by less than what makes a side crease, in the state that was
- * left. */
+/* Whether the body left a state by an instability of its shape: at `node`, which moved most, the cells were
+ * compressed by less than what makes a side crease, or what it moved by varies little over them. */
 static bool is_of_shape(const struct run *run, int64_t node)
 {
     const struct cells *cells = &run->model->assembly.cells;
-    double *field = run_new_values(run, parameter_count(run)), least = INFINITY;
-    assembly_nodal_field(&run->model->assembly, run->stability.near, field);
-    for (int64_t i = 0; i < cells->count * (cells->dim + 1); i++) {
-        if (cells->node[i] == node) {
-            least = fmin(least, least_stretch(cells, i / (cells->dim + 1), field));
+    int dim = cells->dim;
+    double *near = run_new_values(run, parameter_count(run)), *move = run_new_values(run, parameter_count(run));
+    double stretch = INFINITY, change = 0.0;
+    assembly_nodal_field(&run->model->assembly, run->stability.near, near);
+    assembly_nodal_field(&run->model->assembly, run->u, move);
+    for (int64_t i = 0; i < parameter_count(run); i++) {
+        move[i] -= near[i];
+    }
+    for (int64_t i = 0; i < cells->count * (dim + 1); i++) {
+        int64_t c = i / (dim + 1);
+        if (cells->node[i] != node) {
+            continue;
+        }
+        stretch = fmin(stretch, least_stretch(cells, c, near));
+        for (int k = 0; k <= dim; k++) {
+            int64_t other = cells->node[c * (dim + 1) + k];
+            change = fmax(change, vector_distance(dim, move + node * dim, move + other * dim));
         }
     }
-    free(field);
-    return least > crease_stretch;
+    bool is_long = change < most_change * sqrt(vector_dot(dim, move + node * dim, move + node * dim));
+    free(near);
+    free(move);
+    return stretch > crease_stretch || is_long;
 }
 
 bool run_stability_describe(const struct run *run, char *text, size_t size)
