@@ -42,7 +42,7 @@ void coarse_mean_add(const struct coarse_space *coarse, int64_t field, double va
     mean->field[field] += value;
 }
 
-void coarse_mean_take(const struct coarse_space *coarse, const struct average *average,
+void coarse_mean_take(const struct coarse_space *coarse, const struct average *average, const bool *held,
                       struct coarse_mean *mean)
 {
     const struct sparse *shares = &coarse->shares;
@@ -50,7 +50,8 @@ void coarse_mean_take(const struct coarse_space *coarse, const struct average *a
     coarse_mean_clear(coarse, mean);
     for (int64_t i = 0; i < average->length; i++) {
         int32_t node = average->idx[i];
-        for (int64_t k = shares->ptr[node]; k < shares->ptr[node + 1]; k++) {
+        int64_t end = held != NULL && held[node] ? shares->ptr[node] : shares->ptr[node + 1];
+        for (int64_t k = shares->ptr[node]; k < end; k++) {
             int64_t field = (int64_t)shares->idx[k] * (coarse->dim + 1);
             coarse_space_values(coarse, node, shares->idx[k], shares->value[k], value);
             for (int m = 0; m <= coarse->dim; m++) {
@@ -62,14 +63,15 @@ void coarse_mean_take(const struct coarse_space *coarse, const struct average *a
 
 enum status coarse_mean_table(const struct coarse_space *coarse, int64_t count,
                               struct average (*average)(const void *context, int64_t i), const void *context,
-                              struct coarse_mean *mean, struct sparse *table, struct error *error)
+                              const bool *held, struct coarse_mean *mean, struct sparse *table,
+                              struct error *error)
 {
     int fields = coarse->dim + 1;
     int64_t entries = 0, at = 0;
     for (int way = 0; way < 2; way++) { /* first only their number */
         for (int64_t r = 0; r < count; r++) {
             struct average of = average(context, r);
-            coarse_mean_take(coarse, &of, mean);
+            coarse_mean_take(coarse, &of, held, mean);
             entries += way == 0 ? mean->count * fields : 0;
             for (int64_t i = 0; i < mean->count * fields && way == 1; i++, at++) {
                 table->idx[at] = mean->centre[i / fields] * fields + (int32_t)(i % fields);
@@ -98,8 +100,8 @@ enum status preconditioner_take_conditions(const struct solid_system *system, st
     const struct constraint_rows *rows = &system->rows;
     RETURN_IF_ERROR(NEW_ARRAY(&p->on_list, rows->list_count * p->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->value, rows->count, error));
-    RETURN_IF_ERROR(
-        coarse_mean_table(&p->coarse, rows->list_count, list_at, rows, &p->mean, &p->conditions, error));
+    RETURN_IF_ERROR(coarse_mean_table(&p->coarse, rows->list_count, list_at, rows, NULL, &p->mean,
+                                      &p->conditions, error));
     return sparse_transpose(&p->conditions, &p->of_field, error);
 }
 

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/processor.h"
 #include "base/vector.h"
+#include "solid/constraint/held_directions.h"
 #include "solid/contact/contact_between.h"
 #include "solid/system/rigid_modes.h"
 
@@ -51,6 +52,19 @@ static struct average corner_at(const void *system, int64_t i)
     return contact_between_corner(&of->contacts[c], i);
 }
 
+/* The nodes that the conditions hold in all directions. */
+static enum status find_held(const struct solid_system *system, struct preconditioner *p, struct error *error)
+{
+    FREED_BY(held_free) struct held_directions held = {0};
+    RETURN_IF_ERROR(held_build(p->dim, p->node_count, &held, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&p->held, p->node_count, error));
+    held_note(&held, &system->rows, 0, system->rows.count);
+    for (int64_t n = 0; n < p->node_count; n++) {
+        p->held[n] = held.count[n] == p->dim;
+    }
+    return STATUS_OK;
+}
+
 /* What conditions and opposite corners see of the coarse fields. */
 static enum status take_means(const struct solid_system *system, struct preconditioner *p,
                               struct error *error)
@@ -59,9 +73,10 @@ static enum status take_means(const struct solid_system *system, struct precondi
     for (int64_t c = 0; c < system->contact_count; c++) {
         corners += contact_between_corners(&system->contacts[c]);
     }
+    RETURN_IF_ERROR(find_held(system, p, error));
     RETURN_IF_ERROR(coarse_mean_begin(&p->coarse, &p->mean, error));
     RETURN_IF_ERROR(preconditioner_take_conditions(system, p, error));
-    return coarse_mean_table(&p->coarse, corners, corner_at, system, &p->mean, &p->opposite, error);
+    return coarse_mean_table(&p->coarse, corners, corner_at, system, p->held, &p->mean, &p->opposite, error);
 }
 
 enum status preconditioner_build(struct solid_system *system, bool coarse, struct preconditioner *p,
@@ -114,8 +129,8 @@ void preconditioner_free(struct preconditioner *p)
     sparse_free(&p->of_field);
     coarse_mean_free(&p->mean);
     FREE_ALL(p->column_first, p->vector, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal,
-             p->creased, p->turned, p->idle, p->patience, p->weight, p->free_weight, p->on_list, p->value,
-             p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->pushed);
+             p->creased, p->turned, p->held, p->idle, p->patience, p->weight, p->free_weight, p->on_list,
+             p->value, p->stiffness_factor, p->capacitance_factor, p->amount, p->contacts, p->pushed);
     *p = (struct preconditioner){0};
 }
 

@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 
+#include <math.h>
 #include <string.h>
 
 static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
@@ -30,7 +31,7 @@ static void take_fields(const struct preconditioner *p, const struct contact *co
     const struct sparse *opposite = &p->opposite;
     int64_t corner;
     double weight;
-    coarse_mean_take(&p->coarse, &average, mean);
+    coarse_mean_take(&p->coarse, &average, p->held, mean);
     for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
         for (int64_t k = opposite->ptr[corners + corner]; k < opposite->ptr[corners + corner + 1]; k++) {
             coarse_mean_add(&p->coarse, opposite->idx[k], -weight * opposite->value[k], mean);
@@ -129,6 +130,9 @@ void preconditioner_resist_open(const struct preconditioner *p, const struct sol
                 continue;
             }
             struct contact_node node = contact_node(contact, a);
+            if (!(node.gap < INFINITY)) { /* it cannot close */
+                continue;
+            }
             struct average average = average_of_boundary(averages, a);
             const double *normal = p->normal + at * dim;
             double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];

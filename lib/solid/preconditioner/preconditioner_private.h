@@ -16,18 +16,18 @@ MUST_CHECK enum status coarse_mean_begin(const struct coarse_space *coarse, stru
 void coarse_mean_free(struct coarse_mean *mean);
 
 /* Set the mean to zero; add factor times that of one coarse field; take those of an average, Z^T phi, for one
- * component of the displacement. */
+ * component of the displacement, without nodes that are held; held[node_count], or NULL: none is. */
 void coarse_mean_clear(const struct coarse_space *coarse, struct coarse_mean *mean);
 void coarse_mean_add(const struct coarse_space *coarse, int64_t field, double value,
                      struct coarse_mean *mean);
-void coarse_mean_take(const struct coarse_space *coarse, const struct average *average,
+void coarse_mean_take(const struct coarse_space *coarse, const struct average *average, const bool *held,
                       struct coarse_mean *mean);
 
 /* The coarse fields' means of averages: a row for each. */
 MUST_CHECK enum status coarse_mean_table(const struct coarse_space *coarse, int64_t count,
                                          struct average (*average)(const void *context, int64_t i),
-                                         const void *context, struct coarse_mean *mean, struct sparse *table,
-                                         struct error *error);
+                                         const void *context, const bool *held, struct coarse_mean *mean,
+                                         struct sparse *table, struct error *error);
 
 /* The coarse fields' means in the conditions. */
 MUST_CHECK enum status preconditioner_take_conditions(const struct solid_system *system,
