@@ -18,7 +18,8 @@ static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
 /* A plane side creases when it is compressed to this stretch (Hong, Zhao and Suo 2009). An instability of a
  * body that is compressed by less is that of its shape, whose length the mesh resolves. So is one whose move
- * changes by less than this share of its largest over a cell there, for it falls off over three cells or more.
+ * changes by less than this share of its largest over a cell there, for it falls off over three cells or
+ * more.
  */
 static const double crease_stretch = 0.65, most_change = 1.0 / 3.0;
 
@@ -161,7 +162,8 @@ static bool is_of_shape(const struct run *run, int64_t node)
 {
     const struct cells *cells = &run->model->assembly.cells;
     int dim = cells->dim;
-    double *near = run_new_values(run, parameter_count(run)), *move = run_new_values(run, parameter_count(run));
+    double *near = run_new_values(run, parameter_count(run)),
+           *move = run_new_values(run, parameter_count(run));
     double stretch = INFINITY, change = 0.0;
     assembly_nodal_field(&run->model->assembly, run->stability.near, near);
     assembly_nodal_field(&run->model->assembly, run->u, move);
