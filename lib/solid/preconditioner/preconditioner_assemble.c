@@ -16,6 +16,7 @@
 #include <string.h>
 
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
+enum { PARTS_OF_THREAD = 4 };    /* summed before they go into the matrix */
 enum { MOST_NUMBERS = 12 };      /* fields of a centre times directions */
 
 /* What some nodes add, between the centres near them. */
@@ -284,6 +285,12 @@ static void add_part(const struct preconditioner *p, int64_t count, const int32_
     }
 }
 
+static void free_part(struct part *part)
+{
+    FREE_ALL(part->centre, part->block);
+    *part = (struct part){0};
+}
+
 /* The parts of all chunks, some of each process, into the matrix. */
 static enum status join(const struct preconditioner *p, const struct ranks *ranks, int64_t chunks,
                         const int64_t *first, struct part *part, double *matrix, struct error *error)
@@ -315,8 +322,7 @@ static enum status join(const struct preconditioner *p, const struct ranks *rank
             memcpy(centre + at[2 * c], part[c].centre, (size_t)count[c] * sizeof *centre);
             memcpy(sums + at[2 * c + 1], part[c].block, (size_t)(pair(count[c], 0) * block) * sizeof *sums);
         }
-        FREE_ALL(part[c].centre, part[c].block);
-        part[c] = (struct part){0};
+        free_part(&part[c]);
     }
     ranks_gather(ranks, centre, sizeof *centre, centre_first);
     ranks_gather(ranks, sums, sizeof *sums, block_first);
@@ -339,6 +345,42 @@ static void mirror(const struct preconditioner *p, double *matrix)
     }
 }
 
+/* The parts of the chunks from `begin` to before `end`. */
+static enum status sum_chunks(const struct moved_fields *fields, const struct solid_system *system,
+                              const struct chunks *nodes, int64_t begin, int64_t end, struct part *part,
+                              struct error *error)
+{
+    int64_t most = block_row_most(&system->body);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(nodes->threads)
+    for (int64_t c = begin; c < end; c++) {
+        (void)sum_chunk(fields, system, nodes, most, c, &part[c]);
+    }
+    for (int64_t c = begin; c < end; c++) {
+        if (part[c].status != STATUS_OK) {
+            *error = part[c].error;
+            return part[c].status;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* In one process the parts go into the matrix some at a time, as each may be large. */
+static enum status sum_alone(const struct moved_fields *fields, const struct solid_system *system,
+                             const struct chunks *nodes, struct part *part, double *matrix,
+                             struct error *error)
+{
+    int64_t at_once = (int64_t)PARTS_OF_THREAD * nodes->threads;
+    for (int64_t begin = 0; begin < nodes->count; begin += at_once) {
+        int64_t end = begin + at_once < nodes->count ? begin + at_once : nodes->count;
+        RETURN_IF_ERROR(sum_chunks(fields, system, nodes, begin, end, part, error));
+        for (int64_t c = begin; c < end; c++) {
+            add_part(fields->p, part[c].count, part[c].centre, part[c].block, matrix);
+            free_part(&part[c]);
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status sum_all(const struct moved_fields *fields, const struct solid_system *system,
                            double *matrix, struct error *error)
 {
@@ -347,26 +389,21 @@ static enum status sum_all(const struct moved_fields *fields, const struct solid
     struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
     struct part part[CHUNKS_MOST] = {{0}};
     SCRATCH int64_t *first = NULL;
-    int64_t most = block_row_most(&system->body);
     enum status status;
-    TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
-#pragma omp parallel for schedule(dynamic, 1) num_threads(nodes.threads)
-    for (int64_t c = first[ranks_rank(ranks)]; c < first[ranks_rank(ranks) + 1]; c++) {
-        (void)sum_chunk(fields, system, &nodes, most, c, &part[c]);
-    }
-    for (int64_t c = 0; c < nodes.count && status == STATUS_OK; c++) {
-        if (part[c].status != STATUS_OK) {
-            status = part[c].status;
-            *error = part[c].error;
-        }
-    }
-    TRY(ranks_agree(ranks, status, error));
     memset(matrix, 0, (size_t)(p->size * p->size) * sizeof *matrix);
-    TRY(join(p, ranks, nodes.count, first, part, matrix, error));
+    if (ranks_count(ranks) == 1) {
+        TRY(sum_alone(fields, system, &nodes, part, matrix, error));
+    } else {
+        TRY(ranks_share(ranks, nodes.count, NULL, &first, error));
+        status = sum_chunks(fields, system, &nodes, first[ranks_rank(ranks)], first[ranks_rank(ranks) + 1],
+                            part, error);
+        TRY(ranks_agree(ranks, status, error));
+        TRY(join(p, ranks, nodes.count, first, part, matrix, error));
+    }
     mirror(p, matrix);
 done:
     for (int64_t c = 0; c < nodes.count; c++) {
-        FREE_ALL(part[c].centre, part[c].block);
+        free_part(&part[c]);
     }
     return status;
 }

@@ -5,7 +5,6 @@
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 
-#include <math.h>
 #include <string.h>
 
 static const double least_cosine = 0.98; /* of a surface's normal with what it was when it was counted in */
@@ -130,9 +129,6 @@ void preconditioner_resist_open(const struct preconditioner *p, const struct sol
                 continue;
             }
             struct contact_node node = contact_node(contact, a);
-            if (!(node.gap < INFINITY)) { /* it cannot close */
-                continue;
-            }
             struct average average = average_of_boundary(averages, a);
             const double *normal = p->normal + at * dim;
             double mean[3], on_node[3], stiffness = node.stiffness * averages->area[a];
