@@ -73,7 +73,7 @@ static enum status take_means(const struct solid_system *system, struct precondi
     for (int64_t c = 0; c < system->contact_count; c++) {
         corners += contact_between_corners(&system->contacts[c]);
     }
-    RETURN_IF_ERROR(find_held(system, p, error));
+    RETURN_IF_ERROR(p->contact_node_count > 0 ? find_held(system, p, error) : STATUS_OK);
     RETURN_IF_ERROR(coarse_mean_begin(&p->coarse, &p->mean, error));
     RETURN_IF_ERROR(preconditioner_take_conditions(system, p, error));
     return coarse_mean_table(&p->coarse, corners, corner_at, system, p->held, &p->mean, &p->opposite, error);

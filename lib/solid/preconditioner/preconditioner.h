@@ -61,8 +61,8 @@ struct preconditioner {
                       which the node could have been left out, */
     int64_t *patience; /* and how many of them it stays counted in */
     int64_t contact_node_count;
-    bool *held; /* node_count: nodes that the conditions hold in all directions. P takes what the coarse
-                   fields move them by, so that contacts see the fields without it */
+    bool *held; /* node_count, where there are contacts: nodes that the conditions hold in all directions. P
+                   takes what the coarse fields move them by, so that contacts see the fields without it */
     struct sparse
         opposite; /* a row for each corner opposite to points, contact by contact: the coarse fields */
     struct sparse conditions, of_field; /* a row for each list of the conditions' rows: the coarse fields'

@@ -18,9 +18,7 @@ static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
 /* A plane side creases when it is compressed to this stretch (Hong, Zhao and Suo 2009). An instability of a
  * body that is compressed by less is that of its shape, whose length the mesh resolves. So is one whose move
- * changes by less than this share of its largest over a cell there, for it falls off over three cells or
- * more.
- */
+ * changes by less than this share of its largest over a cell there: it falls off over three cells or more. */
 static const double crease_stretch = 0.65, most_change = 1.0 / 3.0;
 
 static int64_t parameter_count(const struct run *run)
@@ -181,7 +179,7 @@ static bool is_of_shape(const struct run *run, int64_t node)
             change = fmax(change, vector_distance(dim, move + node * dim, move + other * dim));
         }
     }
-    bool is_long = change < most_change * sqrt(vector_dot(dim, move + node * dim, move + node * dim));
+    bool is_long = change < most_change * vector_length(dim, move + node * dim);
     free(near);
     free(move);
     return stretch > crease_stretch || is_long;
