@@ -107,7 +107,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->capacitance_factor, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->amount, 4 * p->size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->contacts, cells, error));
+    RETURN_IF_ERROR(p->contact_node_count > 0 ? NEW_ARRAY(&p->contacts, cells, error) : STATUS_OK);
     RETURN_IF_ERROR(NEW_ARRAY(&p->pushed, p->contact_node_count, error));
     if (p->size > 0) {
         RETURN_IF_ERROR(take_means(system, p, error));

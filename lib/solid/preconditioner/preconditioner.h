@@ -71,8 +71,8 @@ struct preconditioner {
     double *on_list, *value;            /* of the conditions' lists times dim, and of their rows: scratch */
     double *weight;      /* coarse.count * coarse.count: Z^T B^-1 Z, the same in each direction */
     double *free_weight; /* Z^T B^-1 P Z */
-    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in; of this and
-                         the factors' matrices the lower triangle */
+    double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in (NULL without
+                         contacts); of this and the factors' matrices the lower triangle */
     bool *pushed;     /* contact_node_count: those that A counts in anew; scratch */
     double *stiffness_factor;   /* Cholesky factor of A, */
     double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */

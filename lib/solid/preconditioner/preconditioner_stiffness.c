@@ -43,7 +43,8 @@ static void sum_stiffness(const struct preconditioner *p, double keep, const dou
 #pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
-            matrix[k] = (p->body[k] + p->contacts[k]) / share + (more != NULL ? more[k] : 0.0);
+            double contacts = p->contacts != NULL ? p->contacts[k] : 0.0;
+            matrix[k] = (p->body[k] + contacts) / share + (more != NULL ? more[k] : 0.0);
         }
         for (int64_t k = i % dim; k <= i; k += dim) {
             matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
@@ -67,8 +68,10 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
 
 void preconditioner_factorise_both(struct preconditioner *p, const struct solid_system *system)
 {
-    memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
-    preconditioner_add_contacts(p, system, NULL, p->contacts);
+    if (p->contacts != NULL) {
+        memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
+        preconditioner_add_contacts(p, system, NULL, p->contacts);
+    }
     double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->stiffness_factor) : 0.0;
     if (keep > 0.0) {
         sum_stiffness(p, keep, p->free_weight, p->capacitance_factor);
