@@ -50,6 +50,26 @@ SCENE
     [ -z "$(find . -name 'run.ckpt*')" ]
 }
 
+@test "ended after the first slow mode of a rod: the same command goes on to the same bytes" {
+    rod
+    mtled -q rod.scene rod.mts > whole.dat
+    mtled -q -c run.ckpt -e 0 rod.scene rod.mts > part.dat 2> said 3>&- &
+    run=$!
+    for ((tries = 0; tries < 1000; tries++)); do
+        if [ -s run.ckpt ] && [ "$(mts print state.slow.count run.ckpt 2> note)" -gt 0 ]; then
+            break
+        fi
+        sleep 0.02
+    done 2> note
+    kill -s TERM $run
+    status=0
+    wait $run || status=$?
+    [ $status -eq 143 ]
+    [ "$(mts print state.slow.count run.ckpt)" -gt 0 ]
+    mtled -q -c run.ckpt -o out.dat rod.scene rod.mts
+    cmp whole.dat out.dat
+}
+
 @test "a checkpoint is a stream that can be looked into" {
     begin_and_end TERM run.scene
     mts list run.ckpt | grep -q '^checkpoint	i8	1	1	version='

@@ -131,6 +131,12 @@ SCENE
     same_of_parts '1 3 7' run.scene
 }
 
+@test "the same of a rod with slow modes" {
+    rod
+    mv rod.mts table.mts
+    same 2 rod.scene
+}
+
 @test "parts: a brain section in 8 and 64, by 1, 2, 3, 4 and 7 processes, and by mtled" {
     cp "$BATS_TEST_DIRNAME"/../examples/brain2d/{brain2d.geo,brain2d.scene,load.tsv,skull.tsv} .
     gmsh -2 -v 1 brain2d.geo -setnumber lc 9 -o brain.msh

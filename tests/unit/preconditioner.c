@@ -124,6 +124,37 @@ TEST(mass_and_inverse_agree)
     }
 }
 
+/* The shape x^2 along the second axis, as the bar bends. */
+static void add_bending(struct strained *s)
+{
+    int dim = s->l.system.dim;
+    double *move = lattice_vector(&s->l), *scratch = lattice_vector(&s->l);
+    for (int64_t n = 0; n < s->l.system.node_count; n++) {
+        move[n * dim + 1] = s->l.system.X[n * dim] * s->l.system.X[n * dim];
+    }
+    constraint_project(&s->preconditioner.constraint, NULL, move);
+    GOOD(preconditioner_add_slow_mode(&s->preconditioner, move, scratch, &error));
+}
+
+TEST(mass_with_slow_modes_and_inverse_agree)
+{
+    for (int dim = 2; dim <= 3; dim++) {
+        struct strained s;
+        struct random random = {3};
+        strain_bar(&s, dim, 0.0, true, true);
+        double *scratch = lattice_vector(&s.l);
+        for (int i = 0; i < SLOW_MODES_MOST; i++) {
+            double *move = random_move(&s, &random);
+            GOOD(preconditioner_add_slow_mode(&s.preconditioner, move, scratch, &error));
+            check_inverse(&s);
+        }
+        add_bending(&s); /* one too many: the others are dropped */
+        assert_int_equal(s.preconditioner.slow.count, 1);
+        check_inverse(&s);
+        release(&s);
+    }
+}
+
 static void frequencies(struct strained *s, double *largest, double *lowest)
 {
     double *mode = lattice_vector(&s->l), *start = lattice_vector(&s->l), *scratch;
@@ -157,6 +188,23 @@ TEST(slow_modes_are_gone)
         AT_MOST(largest[1], 2.0);
         AT_MOST(largest[1] / lowest[1], 0.05 * largest[0] / lowest[0]);
     }
+}
+
+/* A slow mode that is added becomes four times as fast, and no other one faster. */
+TEST(added_modes_are_faster)
+{
+    struct strained s;
+    double largest[2], lowest[2];
+    strain_bar(&s, 2, 0.0, true, false);
+    frequencies(&s, &largest[0], &lowest[0]);
+    add_bending(&s);
+    frequencies(&s, &largest[1], &lowest[1]);
+    print_message("lowest frequency %g, then %g; largest %g, %g\n", lowest[0], lowest[1], largest[0],
+                  largest[1]);
+    AT_MOST(2.0, lowest[1] / lowest[0]);
+    AT_MOST(lowest[1] / lowest[0], 4.5);
+    AT_MOST(fabs(largest[1] / largest[0] - 1.0), 0.01);
+    release(&s);
 }
 
 /* With a limit of the bulk modulus nearly incompressible bodies have the frequencies of one that is less so;

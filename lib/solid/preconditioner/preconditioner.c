@@ -94,6 +94,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     RETURN_IF_ERROR(coarse_space_build(system->dim, system->node_count, system->X, system->node_lists,
                                        coarse ? centre_count(system) : 0, &p->coarse, error));
     p->size = p->coarse.count * p->dim;
+    p->slow.size = system->node_count * system->dim;
     cells = p->size * p->size;
     RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
@@ -121,6 +122,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
 void preconditioner_free(struct preconditioner *p)
 {
     constraint_free(&p->constraint);
+    slow_modes_free(&p->slow);
     coarse_space_free(&p->coarse);
     inverse_factor_free(&p->factor);
     constraint_rows_free(&p->factor_rows);
@@ -222,6 +224,24 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     if (rows > 0) {
         constraint_spread(constraint, multiplier, acceleration);
     }
+    slow_modes_accelerate(&p->slow, force, acceleration);
+}
+
+enum status preconditioner_add_slow_mode(struct preconditioner *p, const double *mode, double *field,
+                                         struct error *error)
+{
+    if (p->slow.count == SLOW_MODES_MOST) {
+        p->slow.count = 0;
+    }
+    RETURN_IF_ERROR(slow_modes_reserve(&p->slow, p->slow.count + 1, error));
+    preconditioner_multiply(p, mode, field);
+    slow_modes_add(&p->slow, mode, field);
+    return STATUS_OK;
+}
+
+void preconditioner_drop_slow_modes(struct preconditioner *p)
+{
+    p->slow.count = 0;
 }
 
 /* y = D x */
@@ -264,9 +284,9 @@ double preconditioner_square_diagonal(struct preconditioner *p, const double *x)
 
 double preconditioner_square(struct preconditioner *p, const double *x)
 {
-    double sum = 0.0, *amount = p->amount, *solved = p->amount + p->size;
+    double sum = slow_modes_square(&p->slow, x), *amount = p->amount, *solved = p->amount + p->size;
     if (p->size == 0) {
-        return preconditioner_square_diagonal(p, x);
+        return sum + preconditioner_square_diagonal(p, x);
     }
     preconditioner_unsmooth(p, x, p->vector);
     for (int64_t i = 0; i < p->node_count * p->dim; i++) {
@@ -295,6 +315,7 @@ void preconditioner_multiply(struct preconditioner *p, const double *x, double *
         coarse_space_prolongate(&p->coarse, amount, p->vector);
     }
     preconditioner_unsmooth(p, p->vector, force);
+    slow_modes_multiply(&p->slow, x, force);
 }
 
 void preconditioner_momentum(struct preconditioner *p, const double *velocity, double *amount,
@@ -322,6 +343,22 @@ void preconditioner_prolongate(struct preconditioner *p, const double *amount, d
     constraint_project(&p->constraint, NULL, field);
 }
 
+/* The slow modes of a checkpoint: their number, then these. */
+static enum status slow_modes_state(struct slow_modes *modes, const struct state *state, struct error *error)
+{
+    const struct state_value count[] = {{"count", STATE_COUNTS, &modes->count, 1}};
+    RETURN_IF_ERROR(state_visit(state, "slow", count, 1, error));
+    if (modes->count > SLOW_MODES_MOST) {
+        return fail(error, STATUS_INPUT, "slow.count: %lld modes are too many", (long long)modes->count);
+    }
+    RETURN_IF_ERROR(slow_modes_reserve(modes, modes->count, error));
+    const struct state_value values[] = {
+        {"mode", STATE_NUMBERS, modes->mode, modes->count * modes->size},
+        {"momentum", STATE_NUMBERS, modes->momentum, modes->count * modes->size},
+    };
+    return state_visit(state, "slow", values, sizeof values / sizeof *values, error);
+}
+
 enum status preconditioner_state(struct preconditioner *p, const struct state *state, struct error *error)
 {
     const struct state_value values[] = {
@@ -336,5 +373,6 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"idle", STATE_COUNTS, p->idle, 2 * p->contact_node_count},
         {"patience", STATE_COUNTS, p->patience, 2 * p->contact_node_count},
     };
+    RETURN_IF_ERROR(slow_modes_state(&p->slow, state, error));
     return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
 }

@@ -26,6 +26,7 @@
 #include "base/state.h"
 #include "solid/preconditioner/coarse_space.h"
 #include "solid/preconditioner/inverse_stiffness.h"
+#include "solid/preconditioner/slow_modes.h"
 #include "solid/system/system.h"
 
 /* Means of the coarse fields, which are not zero for a few centres. */
@@ -78,6 +79,7 @@ struct preconditioner {
     double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
     bool uses_coarse;           /* they exist; else M = B^-1 */
     double *amount;             /* 4 * size: scratch */
+    struct slow_modes slow; /* with these M is M' of slow_modes.h; there are none after other changes of M */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -115,6 +117,12 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
  * hundreds of times as large. NULL: a body at rest. field[node_count * dim]: scratch, or NULL with it. */
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
                            bool leave, double *velocity, double *field);
+
+/* Add a slow mode, a move that satisfies the homogeneous conditions. If there are as many as possible, the
+ * earlier ones are dropped. field[node_count * dim]: scratch. */
+MUST_CHECK enum status preconditioner_add_slow_mode(struct preconditioner *preconditioner, const double *mode,
+                                                    double *field, struct error *error);
+void preconditioner_drop_slow_modes(struct preconditioner *preconditioner);
 
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);

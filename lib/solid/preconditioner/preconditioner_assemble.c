@@ -268,8 +268,9 @@ static enum status sum_all(const struct moved_fields *fields, const struct solid
     const struct preconditioner *p = fields->p;
     struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
     int64_t at_once = (int64_t)PARTS_OF_THREAD * nodes.threads * ranks_count(system->body.share.ranks);
-    struct part parts[CHUNKS_MOST] = {{{0}}};
+    struct part parts[CHUNKS_MOST];
     enum status status = STATUS_OK;
+    memset(parts, 0, sizeof parts);
     memset(matrix, 0, (size_t)(p->size * p->size) * sizeof *matrix);
     for (int64_t begin = 0; begin < nodes.count; begin += at_once) {
         int64_t end = begin + at_once < nodes.count ? begin + at_once : nodes.count;

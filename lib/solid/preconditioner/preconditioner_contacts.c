@@ -274,6 +274,7 @@ bool preconditioner_follow(struct preconditioner *p, const struct solid_system *
     if (!change.any || p->size == 0) {
         return false;
     }
+    preconditioner_drop_slow_modes(p);
     if (change.pushes && velocity != NULL && p->uses_coarse) {
         keep_momentum(p, system, change.drops, velocity, field);
     } else {

@@ -154,6 +154,7 @@ enum status preconditioner_set_mass(struct preconditioner *p, const struct solid
         p->stiffness[n] = stiffness[n];
         p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
     }
+    preconditioner_drop_slow_modes(p);
     return preconditioner_restore(p, system, error);
 }
 

@@ -117,6 +117,7 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
                                    int64_t *evaluations, struct error *error)
 {
     SCRATCH double *at_u = NULL;
+    preconditioner_drop_slow_modes(p);
     if (p->size == 0) {
         return STATUS_OK;
     }

@@ -121,6 +121,8 @@ static void let_go(struct relaxation *r)
     r->spectrum_known = false;
     r->augmentations = 0;
     r->steady_augmentations = 0;
+    r->steady_checks = 0;
+    preconditioner_drop_slow_modes(&r->preconditioner);
 }
 
 /* Set the load factors at the share s of the load, and r->factor_change to their changes. */
@@ -150,6 +152,9 @@ static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u;
     relaxation_estimate(r);
+    if (!relaxation_lighten_slow_mode(r, error)) {
+        return false;
+    }
     relaxation_control_load(r);
     if (r->at_full_load <= CHECK_INTERVAL) { /* remove the round-off of the increments' sum */
         constraint_project(&r->preconditioner.constraint, r->system->factor, u);

@@ -58,7 +58,7 @@ void relaxation_estimate(struct relaxation *r)
     }
     memcpy(r->last_residual, r->residual, (size_t)r->size * sizeof *r->residual);
     double bottom = preconditioner_square(&r->preconditioner, du);
-    double quotient = bottom > 0.0 ? along / bottom : 0.0;
+    double quotient = r->quotient = bottom > 0.0 ? along / bottom : 0.0;
     bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
     if (quotient > 0.0 && r->checks > 0 && !augmented) {
         quotient = fmin(quotient, r->frequency * r->frequency);

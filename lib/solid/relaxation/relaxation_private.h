@@ -37,6 +37,9 @@ struct relaxation {
     double low2;                          /* current estimate of the lowest frequency, squared */
     double spectrum2; /* upper bound of low2, computed at the load that is held; INFINITY until then */
     double window[WINDOWS];
+    double quotient;        /* the Rayleigh quotient at the last check; 0 or less: the motion is not stable */
+    int64_t steady_checks;  /* in a row, at which the motion went on in one direction */
+    int64_t lightened_step; /* of the last slow mode that was added to the preconditioner */
     int64_t checks;
     double best_error; /* at the load that is held, reached in best_step; the error has not halved since */
     int64_t best_step;
@@ -74,8 +77,8 @@ struct relaxation {
 
 /* ---- relaxation_error.c: how far from equilibrium ---- */
 
-/* After a measured step: the Rayleigh quotient of the increments since the last check, the damping, the
- * error. `before` holds the u at which the acceleration was measured. */
+/* After a measured step: the Rayleigh quotient of the increments since the last check, which stay in
+ * scratch[size], the damping, the error. `before` holds the u at which the acceleration was measured. */
 void relaxation_estimate(struct relaxation *r);
 
 /* Compute the lowest mode at u, where the residual is known, and set the damping by it. The increments do not
@@ -115,6 +118,10 @@ double relaxation_thickness(const struct solid_system *system);
  * at most before the front of the load, which passes about one cell in a step, reaches the next ones. If a
  * cell is inverted nevertheless, the loading continues more slowly (relaxation_step_back). */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
+
+/* If what is left at a held load is the slow motion along one mode: take the increments since the last check,
+ * which are in scratch[size], into the preconditioner as this mode. False on failure. */
+bool relaxation_lighten_slow_mode(struct relaxation *r, struct error *error);
 
 /* Reduce the rate of loading while the body moves farther in a step than prescribed displacements would move
  * it: forces may. */

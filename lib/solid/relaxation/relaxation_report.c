@@ -15,9 +15,11 @@ bool relaxation_tell(struct relaxation *r)
         return true;
     }
     int64_t at = r->report->steps;
+    bool otherwise = at - r->back_step <= CHECK_INTERVAL ||
+                     (r->lightened_step > 0 && at - r->lightened_step <= CHECK_INTERVAL);
     struct progress progress = {.step = at,
                                 .u = r->u,
-                                .move = at - r->back_step <= CHECK_INTERVAL ? INFINITY : r->moved,
+                                .move = otherwise ? INFINITY : r->moved,
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,

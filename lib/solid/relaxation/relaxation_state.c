@@ -81,6 +81,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"caution", STATE_NUMBERS, &r->step_safety, 1},
         {"retreats", STATE_COUNTS, &r->backtracks, 1},
         {"augmented_step", STATE_COUNTS, &r->augmented_step, 1},
+        {"steady_checks", STATE_COUNTS, &r->steady_checks, 1},
+        {"lightened_step", STATE_COUNTS, &r->lightened_step, 1},
         {"augmentations", STATE_COUNTS, &r->augmentations, 1},
         {"frames", STATE_COUNTS, &r->frames, 1},
         {"at_full_load", STATE_COUNTS, &r->at_full_load, 1},

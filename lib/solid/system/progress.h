@@ -7,7 +7,7 @@ struct progress {
     int64_t step;
     double time;  /* s; 0..1 of the load in relaxation */
     double move;  /* relaxation: largest motion of a node between the last two calls, m; INFINITY if the
-                 iteration returned to an earlier state in between */
+                 iteration returned to an earlier state in between, or with another mass moves otherwise */
     double error; /* relaxation: estimated remaining error relative to the displacement; dynamics: error of
                      the energy balance relative to the largest energy */
     double remaining; /* estimated share of the steps that remain, 0..1; negative: unknown */

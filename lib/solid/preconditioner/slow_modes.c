@@ -1,0 +1,78 @@
+#include "solid/preconditioner/slow_modes.h"
+
+#include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double gain = 16.0; /* of a mode: its frequency becomes four times as high */
+
+void slow_modes_free(struct slow_modes *modes)
+{
+    FREE_ALL(modes->mode, modes->momentum);
+    *modes = (struct slow_modes){0};
+}
+
+enum status slow_modes_reserve(struct slow_modes *modes, int64_t count, struct error *error)
+{
+    if (count > modes->room) {
+        RETURN_IF_ERROR(RESIZE_ARRAY(&modes->mode, count * modes->size, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&modes->momentum, count * modes->size, error));
+        modes->room = count;
+    }
+    return STATUS_OK;
+}
+
+static double product(int64_t size, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
+void slow_modes_add(struct slow_modes *modes, const double *mode, const double *momentum)
+{
+    double *to = modes->mode + modes->count * modes->size;
+    double *momentum_to = modes->momentum + modes->count * modes->size;
+    double scale = 1.0 / sqrt(product(modes->size, mode, momentum));
+    for (int64_t i = 0; i < modes->size; i++) {
+        to[i] = scale * mode[i];
+        momentum_to[i] = scale * momentum[i];
+    }
+    modes->count++;
+}
+
+/* y += factor (direction . x) direction */
+static void add_along(int64_t size, double factor, const double *direction, const double *x, double *y)
+{
+    double amount = factor * product(size, direction, x);
+    for (int64_t i = 0; i < size; i++) {
+        y[i] += amount * direction[i];
+    }
+}
+
+void slow_modes_accelerate(const struct slow_modes *modes, const double *force, double *acceleration)
+{
+    for (int64_t k = 0; k < modes->count; k++) {
+        add_along(modes->size, gain - 1.0, modes->mode + k * modes->size, force, acceleration);
+    }
+}
+
+void slow_modes_multiply(const struct slow_modes *modes, const double *move, double *force)
+{
+    for (int64_t k = 0; k < modes->count; k++) {
+        add_along(modes->size, 1.0 / gain - 1.0, modes->momentum + k * modes->size, move, force);
+    }
+}
+
+double slow_modes_square(const struct slow_modes *modes, const double *move)
+{
+    double sum = 0.0;
+    for (int64_t k = 0; k < modes->count; k++) {
+        double along = product(modes->size, modes->momentum + k * modes->size, move);
+        sum += (1.0 / gain - 1.0) * along * along;
+    }
+    return sum;
+}
