@@ -276,7 +276,7 @@ static enum status share_uses(struct body *body, struct error *error)
             uses[averages->use[i]] = true;
         }
     }
-    return halo_build(share->ranks, averages->use_count, uses, VECTOR_STRIDE(body->dim), owner_of_use, body,
+    return halo_build(share->ranks, averages->use_count, uses, body->dim, owner_of_use, body,
                       &share->uses, error);
 }
 

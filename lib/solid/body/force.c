@@ -171,7 +171,7 @@ static void evaluate(struct body *body, const double *u, double *force)
     {
         set_state(body, u);
         if (body->smoothed) {
-            for_all_blocks(body, stress_cell_block, &share->uses, stride, averages->use_force);
+            for_all_blocks(body, stress_cell_block, &share->uses, body->dim, averages->use_force);
             sum_uses(body, &share->sums);
             body_share_begin(share, &share->rows, stride, averages->force);
             sum_uses(body, &share->inner_sums);

@@ -26,9 +26,9 @@ KERNEL_INLINE void read_uses(const struct field_averages *averages, int64_t firs
 KERNEL_INLINE void write_uses(struct field_averages *averages, int64_t first, int each,
                               const struct block *block, int dim, const double (*forces)[BLOCK_MOST_POINTS])
 {
-    double *use_force = averages->use_force + (first + block->first_point * each) * VECTOR_STRIDE(dim);
+    double *use_force = averages->use_force + (first + block->first_point * each) * dim;
     for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k < each; k++, use_force += VECTOR_STRIDE(dim)) {
+        for (int k = 0; k < each; k++, use_force += dim) {
             for (int a = 0; a < dim; a++) {
                 use_force[a] = forces[k * dim + a][i];
             }
@@ -213,7 +213,7 @@ KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *blo
 {
     struct field_averages *averages = &body->cells.averages;
     int64_t last = block->first_point + block->point_count, first = block->boundary_face;
-    double *force = averages->use_force + field_averages_faces(averages, dim) * VECTOR_STRIDE(dim);
+    double *force = averages->use_force + field_averages_faces(averages, dim) * dim;
     for (int64_t f = first; f < averages->face_count && averages->face_cell[f] < last; f++) {
         int64_t i = averages->face_cell[f] - block->first_point;
         int k = averages->face_vertex[f];
@@ -223,7 +223,7 @@ KERNEL_INLINE void forces_at_boundary(struct body *body, const struct block *blo
             for (int b = 0; b < dim; b++) {
                 along += dim * P[dim * a + b][i] * grad_N[b];
             }
-            force[f * VECTOR_STRIDE(dim) + a] = -along;
+            force[f * dim + a] = -along;
             for (int e = 0; e < FACE_EDGES(dim); e++) {
                 at_edges[cell_face_edge(dim, k, e) * dim + a][i] += EDGE_IN_FACE(dim) * along;
             }

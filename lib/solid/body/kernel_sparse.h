@@ -5,7 +5,8 @@
 #include "solid/body/kernel_vector.h"
 
 /* y_r = sum_j A_rj x_j of vectors VECTOR_STRIDE(dim) apart, in four partial sums, as one would be bound by
- * the latency of the additions; the transpose; and the sums of the forces of uses. */
+ * the latency of the additions; the transpose; and the sums of the forces of uses, which are dim apart: the
+ * fourth number of each is the next one's, and the fourth of their sums nothing. */
 #define ROW_KERNELS(dim, vector)                                                                             \
     KERNEL_INLINE void apply_rows_##dim(const struct sparse *matrix, int64_t begin, int64_t end,             \
                                         const double *x, double *restrict y)                                 \
@@ -56,7 +57,7 @@
         for (int64_t r = begin; r < end; r++) {                                                              \
             vector sum = {0.0}, force;                                                                       \
             for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1]; i++) {                      \
-                LOAD(force, averages->use_force + (int64_t)averages->use[i] * VECTOR_STRIDE(dim));           \
+                LOAD(force, averages->use_force + (int64_t)averages->use[i] * (dim));                        \
                 sum += force;                                                                                \
             }                                                                                                \
             STORE(averages->force + r * VECTOR_STRIDE(dim), sum);                                            \

@@ -165,7 +165,7 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->value, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->force, rows * stride, error));
     RETURN_IF_ERROR(NEW_ARRAY(&averages->of_use, uses, error));
-    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->use_force, uses * stride, error));
+    RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&averages->use_force, uses * input->dim + 1, error));
     RETURN_IF_ERROR(match_uses(input, averages, error));
     return list_uses(input->dim, averages, error);
 }

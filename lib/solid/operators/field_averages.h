@@ -34,7 +34,7 @@ struct field_averages {
     int64_t use_count; /* the CELL_EDGES(dim) edges of each cell, then the dim + 1 vertices of each cell, then
                           boundary faces */
     int32_t *of_use;   /* use_count: offsets in value[] of the rows; */
-    double *use_force; /* with that stride: the force of each use on its row */
+    double *use_force; /* use_count * dim + 1, the last one unused: the force of each use on its row */
     int64_t *use_ptr;  /* row_count + 1: the uses of each row, */
     int32_t *use;      /* use_count, ascending in each row */
     int64_t face_count;    /* boundary faces, by their cells: */

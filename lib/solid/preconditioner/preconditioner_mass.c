@@ -168,6 +168,8 @@ enum status preconditioner_restore(struct preconditioner *p, const struct solid_
     if (p->size > 0) {
         RETURN_IF_ERROR(weigh_coarse_space(p, error));
         RETURN_IF_ERROR(weigh_conditions(p, error));
+    }
+    if (p->size > 0 && p->measured_mass > 0.0) { /* else nothing is known of A yet */
         preconditioner_factorise_both(p, system);
     }
     return STATUS_OK;
