@@ -227,15 +227,23 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     slow_modes_accelerate(&p->slow, force, acceleration);
 }
 
+static void add_slow_mode(struct preconditioner *p, const double *mode, double *field)
+{
+    preconditioner_multiply(p, mode, field);
+    slow_modes_add(&p->slow, mode, field);
+}
+
 enum status preconditioner_add_slow_mode(struct preconditioner *p, const double *mode, double *field,
                                          struct error *error)
 {
-    if (p->slow.count == SLOW_MODES_MOST) {
+    if (p->slow.count == SLOW_MODES_MOST) { /* without the first one the mass of the others is another */
         p->slow.count = 0;
+        for (int64_t k = 1; k < SLOW_MODES_MOST; k++) {
+            add_slow_mode(p, p->slow.mode + k * p->slow.size, field);
+        }
     }
     RETURN_IF_ERROR(slow_modes_reserve(&p->slow, p->slow.count + 1, error));
-    preconditioner_multiply(p, mode, field);
-    slow_modes_add(&p->slow, mode, field);
+    add_slow_mode(p, mode, field);
     return STATUS_OK;
 }
 

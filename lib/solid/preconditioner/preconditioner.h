@@ -118,8 +118,8 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
                            bool leave, double *velocity, double *field);
 
-/* Add a slow mode, a move that satisfies the homogeneous conditions. If there are as many as possible, the
- * earlier ones are dropped. field[node_count * dim]: scratch. */
+/* Add a slow mode, a move that satisfies the homogeneous conditions. Of as many as possible the
+ * earliest one is dropped. field[node_count * dim]: scratch. */
 MUST_CHECK enum status preconditioner_add_slow_mode(struct preconditioner *preconditioner, const double *mode,
                                                     double *field, struct error *error);
 void preconditioner_drop_slow_modes(struct preconditioner *preconditioner);
