@@ -109,9 +109,9 @@ SCENE
     refused 2 "old.ckpt: checkpoint of version 0.0.9, this is" mtled -c old.ckpt run.scene table.mts
     cp table.mts copy.mts
     refused 2 "copy.mts: a stream, but not a checkpoint" mtled -c copy.mts run.scene table.mts
-    mts drop state.inertia.mass run.ckpt > less.ckpt
+    mts drop state.preconditioner.mass run.ckpt > less.ckpt
     run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
-    [[ $stderr == *"state.inertia.mass is missing or does not fit" ]]
+    [[ $stderr == *"state.preconditioner.mass is missing or does not fit" ]]
     refused 2 "no regular file" mtled -c /dev/null run.scene table.mts
     cmp run.ckpt kept
 }

@@ -42,8 +42,8 @@ void coarse_mean_add(const struct coarse_space *coarse, int64_t field, double va
     mean->field[field] += value;
 }
 
-void coarse_mean_take(const struct coarse_space *coarse, const struct average *average, const bool *held,
-                      struct coarse_mean *mean)
+void coarse_mean_of_average(const struct coarse_space *coarse, const struct average *average,
+                            const bool *held, struct coarse_mean *mean)
 {
     const struct sparse *shares = &coarse->shares;
     double value[4];
@@ -71,7 +71,7 @@ enum status coarse_mean_table(const struct coarse_space *coarse, int64_t count,
     for (int way = 0; way < 2; way++) { /* first only their number */
         for (int64_t r = 0; r < count; r++) {
             struct average of = average(context, r);
-            coarse_mean_take(coarse, &of, held, mean);
+            coarse_mean_of_average(coarse, &of, held, mean);
             entries += way == 0 ? mean->count * fields : 0;
             for (int64_t i = 0; i < mean->count * fields && way == 1; i++, at++) {
                 table->idx[at] = mean->centre[i / fields] * fields + (int32_t)(i % fields);
@@ -94,8 +94,8 @@ static struct average list_at(const void *rows, int64_t list)
     return constraint_rows_average(of, of->first[list]);
 }
 
-enum status preconditioner_take_conditions(const struct solid_system *system, struct preconditioner *p,
-                                           struct error *error)
+enum status preconditioner_build_coarse_constraints(const struct solid_system *system,
+                                                    struct preconditioner *p, struct error *error)
 {
     const struct constraint_rows *rows = &system->rows;
     RETURN_IF_ERROR(NEW_ARRAY(&p->on_list, rows->list_count * p->dim, error));
@@ -105,7 +105,8 @@ enum status preconditioner_take_conditions(const struct solid_system *system, st
     return sparse_transpose(&p->conditions, &p->of_field, error);
 }
 
-void preconditioner_see(const struct preconditioner *p, const double *amount, double *value)
+void preconditioner_coarse_constraint_values(const struct preconditioner *p, const double *amount,
+                                             double *value)
 {
     const struct constraint_rows *rows = p->constraint.rows;
     int dim = p->dim;
@@ -115,7 +116,8 @@ void preconditioner_see(const struct preconditioner *p, const double *amount, do
     }
 }
 
-void preconditioner_release(const struct preconditioner *p, const double *value, double *amount)
+void preconditioner_subtract_constraint_forces(const struct preconditioner *p, const double *value,
+                                               double *amount)
 {
     const struct constraint_rows *rows = p->constraint.rows;
     int dim = p->dim;
@@ -126,7 +128,7 @@ void preconditioner_release(const struct preconditioner *p, const double *value,
     sparse_add_rows(&p->of_field, 0, p->coarse.count, dim, p->on_list, amount);
 }
 
-bool preconditioner_hold(const struct preconditioner *p, int64_t k, double *column)
+bool preconditioner_constrain_field(const struct preconditioner *p, int64_t k, double *column)
 {
     const struct constraint_rows *rows = p->constraint.rows;
     const struct sparse *lists = &p->of_field;

@@ -72,7 +72,7 @@ static void subtract_held(const struct preconditioner *p, const int32_t *near, i
 {
     int64_t dim = p->dim, numbers = (dim + 1) * dim;
     for (int64_t k = 0; k < numbers; k++) {
-        if (!preconditioner_hold(p, c * numbers + k, amount)) {
+        if (!preconditioner_constrain_field(p, c * numbers + k, amount)) {
             continue;
         }
         spread(p, amount, field);

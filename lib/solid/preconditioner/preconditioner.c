@@ -75,7 +75,7 @@ static enum status take_means(const struct solid_system *system, struct precondi
     }
     RETURN_IF_ERROR(p->contact_node_count > 0 ? find_held(system, p, error) : STATUS_OK);
     RETURN_IF_ERROR(coarse_mean_begin(&p->coarse, &p->mean, error));
-    RETURN_IF_ERROR(preconditioner_take_conditions(system, p, error));
+    RETURN_IF_ERROR(preconditioner_build_coarse_constraints(system, p, error));
     return coarse_mean_table(&p->coarse, corners, corner_at, system, p->held, &p->mean, &p->opposite, error);
 }
 
@@ -197,7 +197,7 @@ void preconditioner_restrict_force(struct preconditioner *p, const double *force
     constraint_values(&p->constraint, acceleration, multiplier);
     constraint_solve(&p->constraint, multiplier);
     if (p->size > 0) {
-        preconditioner_release(p, multiplier, amount);
+        preconditioner_subtract_constraint_forces(p, multiplier, amount);
     }
 }
 
@@ -215,7 +215,7 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
         coarse_space_prolongate(&p->coarse, amount, acceleration);
     }
     if (p->size > 0 && rows > 0) {
-        preconditioner_see(p, amount, p->value);
+        preconditioner_coarse_constraint_values(p, amount, p->value);
         constraint_solve(constraint, p->value);
         for (int64_t r = 0; r < rows; r++) {
             multiplier[r] -= p->value[r];
@@ -334,7 +334,7 @@ void preconditioner_momentum(struct preconditioner *p, const double *velocity, d
     if (p->constraint.rows != NULL && p->constraint.rows->count > 0) {
         constraint_values(&p->constraint, velocity, p->constraint.multiplier);
         constraint_solve(&p->constraint, p->constraint.multiplier);
-        preconditioner_release(p, p->constraint.multiplier, momentum);
+        preconditioner_subtract_constraint_forces(p, p->constraint.multiplier, momentum);
     }
     memcpy(amount, momentum, (size_t)p->size * sizeof *momentum);
     solve(p, p->capacitance_factor, amount);
@@ -374,7 +374,7 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
         {"measured", STATE_NUMBERS, &p->measured_mass, 1},
-        {"touching", STATE_FLAGS, p->active, p->contact_node_count},
+        {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
         {"creased", STATE_FLAGS, p->creased, p->contact_node_count},
         {"turned", STATE_FLAGS, p->turned, p->contact_node_count},
@@ -382,5 +382,5 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"patience", STATE_COUNTS, p->patience, 2 * p->contact_node_count},
     };
     RETURN_IF_ERROR(slow_modes_state(&p->slow, state, error));
-    return state_visit(state, "inertia", values, sizeof values / sizeof *values, error);
+    return state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error);
 }

@@ -30,7 +30,7 @@ static void take_fields(const struct preconditioner *p, const struct contact *co
     const struct sparse *opposite = &p->opposite;
     int64_t corner;
     double weight;
-    coarse_mean_take(&p->coarse, &average, p->held, mean);
+    coarse_mean_of_average(&p->coarse, &average, p->held, mean);
     for (int64_t i = 0; next_opposite(contact, a, &i, &corner, &weight);) {
         for (int64_t k = opposite->ptr[corners + corner]; k < opposite->ptr[corners + corner + 1]; k++) {
             coarse_mean_add(&p->coarse, opposite->idx[k], -weight * opposite->value[k], mean);

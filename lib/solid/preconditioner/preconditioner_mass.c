@@ -139,8 +139,8 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
         for (int64_t i = 0; i < p->coarse.count; i++) {
             weight[i * dim + k % dim] = p->weight[k / dim * p->coarse.count + i];
         }
-        if (preconditioner_hold(p, k, column)) {
-            preconditioner_release(p, column, weight);
+        if (preconditioner_constrain_field(p, k, column)) {
+            preconditioner_subtract_constraint_forces(p, column, weight);
         }
     }
     ranks_gather(ranks, p->free_weight, (size_t)p->size * sizeof(double), first);

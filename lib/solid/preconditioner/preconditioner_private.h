@@ -20,8 +20,8 @@ void coarse_mean_free(struct coarse_mean *mean);
 void coarse_mean_clear(const struct coarse_space *coarse, struct coarse_mean *mean);
 void coarse_mean_add(const struct coarse_space *coarse, int64_t field, double value,
                      struct coarse_mean *mean);
-void coarse_mean_take(const struct coarse_space *coarse, const struct average *average, const bool *held,
-                      struct coarse_mean *mean);
+void coarse_mean_of_average(const struct coarse_space *coarse, const struct average *average,
+                            const bool *held, struct coarse_mean *mean);
 
 /* The coarse fields' means of averages: a row for each. */
 MUST_CHECK enum status coarse_mean_table(const struct coarse_space *coarse, int64_t count,
@@ -29,14 +29,16 @@ MUST_CHECK enum status coarse_mean_table(const struct coarse_space *coarse, int6
                                          const void *context, const bool *held, struct coarse_mean *mean,
                                          struct sparse *table, struct error *error);
 
-/* The coarse fields' means in the conditions. */
-MUST_CHECK enum status preconditioner_take_conditions(const struct solid_system *system,
-                                                      struct preconditioner *preconditioner,
-                                                      struct error *error);
+/* Set up G Z: the rows of the conditions, applied to the coarse fields. */
+MUST_CHECK enum status preconditioner_build_coarse_constraints(const struct solid_system *system,
+                                                               struct preconditioner *preconditioner,
+                                                               struct error *error);
 
 /* value[rows of the conditions] = G Z amount, and amount[size] -= (G Z)^T value. */
-void preconditioner_see(const struct preconditioner *preconditioner, const double *amount, double *value);
-void preconditioner_release(const struct preconditioner *preconditioner, const double *value, double *amount);
+void preconditioner_coarse_constraint_values(const struct preconditioner *preconditioner,
+                                             const double *amount, double *value);
+void preconditioner_subtract_constraint_forces(const struct preconditioner *preconditioner,
+                                               const double *value, double *amount);
 
 /* sum of D */
 double preconditioner_sum_of_mass(const struct preconditioner *preconditioner);
@@ -64,8 +66,9 @@ double preconditioner_factorise(const struct preconditioner *preconditioner, dou
 /* The Cholesky factors, from what body, contacts and mass are. */
 void preconditioner_factorise_both(struct preconditioner *preconditioner, const struct solid_system *system);
 
-/* column[rows of the conditions] = S^-1 G Z e_k, what they put against field k; false: it is zero. */
-bool preconditioner_hold(const struct preconditioner *preconditioner, int64_t k, double *column);
+/* column[rows of the conditions] = S^-1 G Z e_k: the multipliers by which P changes coarse field k. False: no
+ * condition acts on it. */
+bool preconditioner_constrain_field(const struct preconditioner *preconditioner, int64_t k, double *column);
 
 /* Set the stiffness of body and penalties along the coarse fields, as it is at the last evaluation of a body
  * of smoothed cells. */
