@@ -24,12 +24,12 @@ void centre_sums_free(struct centre_sums *sums)
 
 enum status centre_sums_make_room(struct centre_sums *sums, int64_t more, struct error *error)
 {
-    int64_t wanted = sums->count + more, cells = sums->numbers * sums->numbers;
-    int64_t before = centre_sums_pair(sums->room, 0) * cells;
+    int64_t wanted = sums->count + more, entries = sums->numbers * sums->numbers;
+    int64_t before = centre_sums_pair(sums->room, 0) * entries;
     if (wanted <= sums->room) {
         return STATUS_OK;
     }
-    int64_t room = wanted + MORE_ROOM, values = centre_sums_pair(room, 0) * cells;
+    int64_t room = wanted + MORE_ROOM, values = centre_sums_pair(room, 0) * entries;
     RETURN_IF_ERROR(RESIZE_ARRAY(&sums->block, values, error));
     memset(sums->block + before, 0, (size_t)(values - before) * sizeof *sums->block);
     sums->room = room;
@@ -46,10 +46,12 @@ enum status centre_sums_send(const struct ranks *ranks, int owner, struct centre
     }
     RETURN_IF_ERROR(ranks_list(ranks, sums->count, &count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&first, processes + 1, error));
+    enum status status = STATUS_OK;
     if (ranks_rank(ranks) != owner) {
-        RETURN_IF_ERROR(centre_sums_make_room(sums, count[owner], error));
-        sums->count = count[owner];
+        status = centre_sums_make_room(sums, count[owner], error);
     }
+    RETURN_IF_ERROR(ranks_agree(ranks, status, error));
+    sums->count = count[owner];
     for (int r = owner + 1; r <= processes; r++) {
         first[r] = 1; /* the owner's share is everything */
     }
@@ -58,6 +60,9 @@ enum status centre_sums_send(const struct ranks *ranks, int owner, struct centre
                  (size_t)(centre_sums_pair(sums->count, 0) * sums->numbers * sums->numbers) *
                      sizeof *sums->block,
                  first);
+    for (int64_t i = 0; i < sums->count; i++) {
+        sums->place[sums->centre[i]] = (int32_t)i;
+    }
     return STATUS_OK;
 }
 

@@ -3,7 +3,7 @@
  * weights by distance, sum to one (Shepard). The basis of the coarse space, the coarse fields, are the shares
  * and their products with the coordinates. It contains all linear fields. The construction works on any
  * cloud, however thin. A node has shares of the centres within a radius only, about ten in three dimensions,
- * so that time and memory do not grow with the number of centres.
+ * so that time and memory of the shares do not grow with the number of centres.
  *
  * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour
  * where that is more, so that the two lips of a slit are far from each other. */

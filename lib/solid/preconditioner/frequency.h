@@ -25,8 +25,8 @@ struct spectrum {
  * smooth move, such as the last velocity; for zeros a fixed pseudo-random one). K is the difference of
  * residuals, one evaluation an iteration; residual must hold the residual at u. It ends when a third more
  * iterations changed the lowest eigenvalue by less than 5 %, when that is negative, or after most_iterations.
- * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both are 1, about what D
- * makes them, where the conditions leave no degree of freedom. scratch: 5 * node_count * dim. */
+ * Lowest <= 0: no minimum of the energy, or a contact that opens or closes there. Both are set to 1 if the
+ * conditions leave no degree of freedom. scratch: 5 * node_count * dim. */
 MUST_CHECK enum status system_spectrum(struct solid_system *system, struct preconditioner *preconditioner,
                                        const double *u, const double *residual, int most_iterations,
                                        const double *start, double *scratch, struct spectrum *spectrum,

@@ -60,7 +60,7 @@ static void take_fields(const struct preconditioner *p, const int32_t *near, int
         coarse_space_values(&p->coarse, node, c, nodes->value[i], value);
         for (int m = 0; m <= dim; m++) {
             for (int a = 0; a < dim; a++) {
-                move[(near[node] * dim + a) * numbers + m * dim + a] = value[m];
+                move[((int64_t)near[node] * dim + a) * numbers + m * dim + a] = value[m];
             }
         }
     }

@@ -12,7 +12,7 @@ struct preconditioner;
 
 struct moved_fields {
     const struct preconditioner *p;
-    int32_t *near; /* node_count: which of the nodes near conditions it is, or -1 */
+    int32_t *near; /* node_count: index among the nodes that B G^T reaches, or -1 where P Z = Z */
     int64_t *ptr;  /* near nodes + 1: their entries */
     int64_t *at;   /* for each entry its place in the two lists that follow, centres ascending */
     int32_t *centre;

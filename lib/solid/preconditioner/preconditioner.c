@@ -236,7 +236,7 @@ static void add_slow_mode(struct preconditioner *p, const double *mode, double *
 enum status preconditioner_add_slow_mode(struct preconditioner *p, const double *mode, double *field,
                                          struct error *error)
 {
-    if (p->slow.count == SLOW_MODES_MOST) { /* without the first one the mass of the others is another */
+    if (p->slow.count == SLOW_MODES_MOST) { /* the momenta of the others were formed with the first one */
         p->slow.count = 0;
         for (int64_t k = 1; k < SLOW_MODES_MOST; k++) {
             add_slow_mode(p, p->slow.mode + k * p->slow.size, field);

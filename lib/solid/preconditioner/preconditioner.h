@@ -13,10 +13,10 @@
  *
  *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
  *
- * for x and y that satisfy the homogeneous conditions. Of smoothed cells B = L^T D^-1 L, with the factor L of
- * inverse_stiffness.h and D by how much the stiffness around each node has changed since rest; else B = D^-1,
- *
- * so that the slowest modes left are those that the coarse fields do not resolve. For linear systems this is
+ * for x and y that satisfy the homogeneous conditions (P is Pi of equation (23)). With smoothed cells and
+ * an inverse factor, B = L^T D^-1 L, with the factor L of inverse_stiffness.h and D by how much the stiffness
+ * around each node has changed since rest; otherwise B = D^-1. The slowest modes left are those that the
+ * coarse fields do not resolve; those that a run meets are added (slow_modes.h). For linear systems this is
  * a two-level additive preconditioner with deflated constraints. Any positive definite A is admissible. Its
  * contact part must be updated as contacts close, because a mode that suddenly becomes stiffer than A would
  * be unstable.
@@ -48,8 +48,8 @@ struct preconditioner {
     int64_t *column_first;              /* of several processes: the columns of matrices that each computes */
     double *vector;                     /* node_count * dim: scratch */
     struct constraint constraint;       /* with D */
-    struct coarse_space coarse;         /* count 0: none, M = D */
-    int64_t size;                       /* fields.count * dim: rows and columns of the matrices */
+    struct coarse_space coarse;         /* count 0: none, M = B^-1 */
+    int64_t size;                       /* coarse.count * dim: rows and columns of the coarse matrices */
     double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
                      N/m2) */
     double measured_mass; /* sum of D when it was measured */
@@ -79,7 +79,8 @@ struct preconditioner {
     double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
     bool uses_coarse;           /* they exist; else M = B^-1 */
     double *amount;             /* 4 * size: scratch */
-    struct slow_modes slow; /* with these M is M' of slow_modes.h; there are none after other changes of M */
+    struct slow_modes slow; /* slow modes, of which M includes the correction (26a); they are dropped when D
+                               or A changes */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -118,8 +119,8 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
                            bool leave, double *velocity, double *field);
 
-/* Add a slow mode, a move that satisfies the homogeneous conditions. Of as many as possible the
- * earliest one is dropped. field[node_count * dim]: scratch. */
+/* Add a slow mode, a move that satisfies the homogeneous conditions. If SLOW_MODES_MOST
+ * modes are stored, the earliest is dropped first. field[node_count * dim]: scratch. */
 MUST_CHECK enum status preconditioner_add_slow_mode(struct preconditioner *preconditioner, const double *mode,
                                                     double *field, struct error *error);
 void preconditioner_drop_slow_modes(struct preconditioner *preconditioner);

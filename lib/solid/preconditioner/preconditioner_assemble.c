@@ -36,6 +36,7 @@ static enum status part_begin(const struct preconditioner *p, const struct body 
                               struct part *part, struct error *error)
 {
     int64_t centres = p->coarse.centre_count;
+    part->taken_count = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&part->slot, centres, error));
     RETURN_IF_ERROR(NEW_ARRAY(&part->taken_centre, centres, error));
     RETURN_IF_ERROR(NEW_ARRAY(&part->taken, centres, error));
@@ -237,13 +238,13 @@ static enum status add_chunks(const struct moved_fields *fields, const struct so
 {
     const struct ranks *ranks = system->body.share.ranks;
     int64_t most = block_row_most(&system->body);
-    enum status status = STATUS_OK;
     SCRATCH int64_t *first = NULL;
-    RETURN_IF_ERROR(ranks_share(ranks, end - begin, NULL, &first, error));
-    for (int64_t i = 0; i < end - begin; i++) {
-        RETURN_IF_ERROR(centre_sums_begin(fields->p->coarse.centre_count, (system->dim + 1) * system->dim,
-                                          &parts[i].sums, error));
+    enum status status = ranks_share(ranks, end - begin, NULL, &first, error);
+    for (int64_t i = 0; i < end - begin && status == STATUS_OK; i++) {
+        status = centre_sums_begin(fields->p->coarse.centre_count, (system->dim + 1) * system->dim,
+                                   &parts[i].sums, error);
     }
+    RETURN_IF_ERROR(ranks_agree(ranks, status, error));
     int64_t own = first[ranks_rank(ranks)], own_end = first[ranks_rank(ranks) + 1];
 #pragma omp parallel for schedule(dynamic, 1) num_threads(nodes->threads)
     for (int64_t i = own; i < own_end; i++) {
@@ -267,7 +268,8 @@ static enum status sum_all(const struct moved_fields *fields, const struct solid
 {
     const struct preconditioner *p = fields->p;
     struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
-    int64_t at_once = (int64_t)PARTS_OF_THREAD * nodes.threads * ranks_count(system->body.share.ranks);
+    const struct ranks *ranks = system->body.share.ranks;
+    int64_t at_once = PARTS_OF_THREAD * ranks_most(ranks, nodes.threads) * ranks_count(ranks);
     struct part parts[CHUNKS_MOST];
     enum status status = STATUS_OK;
     memset(parts, 0, sizeof parts);
@@ -289,7 +291,7 @@ enum status preconditioner_assemble(struct preconditioner *p, struct solid_syste
 {
     struct moved_fields fields = {0};
     body_share_collect(&system->body);
-    enum status status = moved_fields_build(p, &fields, error);
+    enum status status = ranks_agree(system->body.share.ranks, moved_fields_build(p, &fields, error), error);
     if (status == STATUS_OK) {
         status = sum_all(&fields, system, p->body, error);
     }

@@ -118,7 +118,7 @@ void preconditioner_resist_open(const struct preconditioner *p, const struct sol
                                 const double *move, double *force)
 {
     int64_t dim = p->dim, at = 0;
-    if (p->active == NULL) {
+    if (p->active == NULL) { /* the mass of a dynamic run */
         return;
     }
     for (int64_t c = 0; c < system->contact_count; c++) {

@@ -3,9 +3,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <string.h>
-
-static const double gain = 16.0; /* of a mode: its frequency becomes four times as high */
 
 void slow_modes_free(struct slow_modes *modes)
 {
@@ -36,7 +33,10 @@ void slow_modes_add(struct slow_modes *modes, const double *mode, const double *
 {
     double *to = modes->mode + modes->count * modes->size;
     double *momentum_to = modes->momentum + modes->count * modes->size;
-    double scale = 1.0 / sqrt(product(modes->size, mode, momentum));
+    double square = product(modes->size, mode, momentum), scale = 1.0 / sqrt(square);
+    if (!(square > 0.0)) {
+        return; /* round-off */
+    }
     for (int64_t i = 0; i < modes->size; i++) {
         to[i] = scale * mode[i];
         momentum_to[i] = scale * momentum[i];
@@ -56,14 +56,14 @@ static void add_along(int64_t size, double factor, const double *direction, cons
 void slow_modes_accelerate(const struct slow_modes *modes, const double *force, double *acceleration)
 {
     for (int64_t k = 0; k < modes->count; k++) {
-        add_along(modes->size, gain - 1.0, modes->mode + k * modes->size, force, acceleration);
+        add_along(modes->size, SLOW_MODE_GAIN - 1.0, modes->mode + k * modes->size, force, acceleration);
     }
 }
 
 void slow_modes_multiply(const struct slow_modes *modes, const double *move, double *force)
 {
     for (int64_t k = 0; k < modes->count; k++) {
-        add_along(modes->size, 1.0 / gain - 1.0, modes->momentum + k * modes->size, move, force);
+        add_along(modes->size, 1.0 / SLOW_MODE_GAIN - 1.0, modes->momentum + k * modes->size, move, force);
     }
 }
 
@@ -72,7 +72,7 @@ double slow_modes_square(const struct slow_modes *modes, const double *move)
     double sum = 0.0;
     for (int64_t k = 0; k < modes->count; k++) {
         double along = product(modes->size, modes->momentum + k * modes->size, move);
-        sum += (1.0 / gain - 1.0) * along * along;
+        sum += (1.0 / SLOW_MODE_GAIN - 1.0) * along * along;
     }
     return sum;
 }

@@ -1,14 +1,15 @@
-/* Slow modes that a relaxation has met, with less mass (deflation: Nicolaides 1987; equation (26a) of
- * lib/README.md); private to lib/solid.
+/* Slow modes that a relaxation has met, with less mass: a rank-one update of M^-1 multiplies the eigenvalue
+ * of each (equation (26a) of lib/README.md; compare deflation: Nicolaides 1987). Private to lib/solid.
  *
  * A few modes whose stiffness is far below that of all others, such as the turning of a buckled rod, lie in
- * no coarse space that is chosen beforehand. What a run has moved by for some time is such a mode w. With w .
- * M w = 1 and a gain g > 1,
+ * no coarse space that is chosen beforehand. An increment that keeps its direction over several checks
+ * approximates such a mode w. With w . M w = 1 and a gain g > 1,
  *
  *   M'^-1 = M^-1 + (g - 1) w (x) w,    M' = M - (1 - 1 / g) M w (x) M w,
  *
- * it is g times as light, and no other motion heavier. The largest eigenvalue of M'^-1 K rises by at most
- * (g - 1) w . K w, which is small for a slow mode. The next mode is added to M' in the same way. */
+ * the mass along w is divided by g. No motion becomes heavier, as M - M' is positive semidefinite. The
+ * largest eigenvalue of M'^-1 K rises by at most (g - 1) w . K w, which is small for a slow mode. The next
+ * mode is added to M' in the same way. */
 #pragma once
 
 #include "base/status.h"
@@ -16,11 +17,13 @@
 #include <stdint.h>
 
 enum { SLOW_MODES_MOST = 8 };
+#define SLOW_MODE_GAIN 16.0 /* g: the frequency of a mode becomes four times as high */
 
 struct slow_modes {
     int64_t size;            /* of a mode */
     int64_t count, room;     /* modes; arrays are allocated for `room` of them */
-    double *mode, *momentum; /* count * size each: w, and M w with the mass before w was added */
+    double *mode, *momentum; /* count * size each: mode k is w_k, momentum k is M_(k-1) w_k, and w_k . M_(k-1)
+                                w_k = 1; M_(k-1) includes the modes before it */
 };
 
 void slow_modes_free(struct slow_modes *modes);
@@ -28,7 +31,8 @@ void slow_modes_free(struct slow_modes *modes);
 /* Make room for so many modes. Errors: STATUS_SYSTEM (memory). */
 MUST_CHECK enum status slow_modes_reserve(struct slow_modes *modes, int64_t count, struct error *error);
 
-/* Add a mode; `momentum` is M' mode. There must be room. */
+/* Add a mode. momentum = M mode, where M includes the modes already stored; both are scaled so that their
+ * product is 1. There must be room. A mode whose product is not positive, by round-off, is left out. */
 void slow_modes_add(struct slow_modes *modes, const double *mode, const double *momentum);
 
 /* acceleration += (M'^-1 - M^-1) force */

@@ -113,12 +113,11 @@ static bool step(struct relaxation *r, double *u, bool measure)
     return true;
 }
 
-/* Continue the loading after the equilibrium of a frame: reset what refers to the load that was held. */
-static void let_go(struct relaxation *r)
+/* After the equilibrium of a frame: reset what refers to the load that was held. */
+static void resume_loading(struct relaxation *r)
 {
     r->at_full_load = r->converged_checks = 0;
-    r->spectrum2 = INFINITY;
-    r->spectrum_known = false;
+    relaxation_note_new_mass(r);
     r->augmentations = 0;
     r->steady_augmentations = 0;
     r->steady_checks = 0;
@@ -152,7 +151,7 @@ static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u;
     relaxation_estimate(r);
-    if (!relaxation_lighten_slow_mode(r, error)) {
+    if (!relaxation_add_slow_mode(r, r->scratch, r->scratch + r->size, error)) {
         return false;
     }
     relaxation_control_load(r);
@@ -264,7 +263,7 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
             if (!relaxation_give_frame(r, error)) {
                 return RELAXATION_STOPPED;
             }
-            let_go(r);
+            resume_loading(r);
         }
         if ((measure || is_interrupted(r)) && !relaxation_tell(r)) {
             return RELAXATION_STOPPED;
@@ -305,8 +304,8 @@ static enum status begin(struct relaxation *r, struct error *error)
 static enum status resume(struct relaxation *r, struct error *error)
 {
     RETURN_IF_ERROR(relaxation_visit(r, r->options->restored, error));
-    RETURN_IF_ERROR(preconditioner_restore(&r->preconditioner, r->system, error));
-    return STATUS_OK;
+    r->residual_at = r->u;
+    return preconditioner_restore(&r->preconditioner, r->system, error);
 }
 
 enum status relaxation_run(struct solid_system *system, const struct relaxation_options *options, double *u,

@@ -23,10 +23,10 @@ static const double first_low2 = 0.15;
 static const double least_low2 = 1e-4;    /* the same by the largest eigenvalue, if that result is negative */
 static const int64_t most_backtracks = 8; /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
-/* A mode is slow if its frequency is below the largest one by this factor, and alone if the direction of the
- * motion, by its cosine, has stayed for so many checks. */
+/* A mode is slow if its frequency is below the largest one by this factor. It is alone if the cosine between
+ * increment and velocity has exceeded this value at so many checks in a row. */
 static const double slow_ratio = 50.0, steady_cosine = 0.99;
-static const int64_t steady_checks = 5;
+static const int64_t least_steady_checks = 5;
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0; /* between checks of the mass */
 
@@ -154,9 +154,8 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     return STATUS_OK;
 }
 
-bool relaxation_lighten_slow_mode(struct relaxation *r, struct error *error)
+bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *scratch, struct error *error)
 {
-    const double *du = r->scratch;
     double square = 0.0, speed2 = 0.0, along = 0.0;
     if (r->at_full_load <= CHECK_INTERVAL || r->report->steps - r->augmented_step < CHECK_INTERVAL) {
         return true;
@@ -168,13 +167,13 @@ bool relaxation_lighten_slow_mode(struct relaxation *r, struct error *error)
     }
     bool steady = r->quotient > 0.0 && along > steady_cosine * sqrt(square * speed2);
     r->steady_checks = steady ? r->steady_checks + 1 : 0;
-    if (r->steady_checks < steady_checks ||
+    if (r->steady_checks < least_steady_checks ||
         !(slow_ratio * slow_ratio * r->quotient < r->frequency * r->frequency)) {
         return true;
     }
-    r->failure = preconditioner_add_slow_mode(&r->preconditioner, du, r->scratch + r->size, error);
+    r->failure = preconditioner_add_slow_mode(&r->preconditioner, du, scratch, error);
     r->steady_checks = 0;
-    r->lightened_step = r->report->steps;
+    r->slow_mode_step = r->report->steps;
     r->usual_residual2 = 0.0;
     relaxation_note_new_mass(r);
     return r->failure == STATUS_OK;
@@ -206,6 +205,7 @@ static void go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
     r->back_step = r->report->steps;
+    r->steady_checks = 0;
     memcpy(r->u, kept->u, (size_t)r->size * sizeof *r->u);
     memcpy(r->velocity, kept->u + r->size, (size_t)r->size * sizeof *r->velocity);
     system_load_factors(r->system, fmin(1.0, r->load / (double)r->report->ramp_steps));

@@ -37,9 +37,9 @@ struct relaxation {
     double low2;                          /* current estimate of the lowest frequency, squared */
     double spectrum2; /* upper bound of low2, computed at the load that is held; INFINITY until then */
     double window[WINDOWS];
-    double quotient;        /* the Rayleigh quotient at the last check; 0 or less: the motion is not stable */
+    double quotient;        /* Rayleigh quotient (26) at the last check, before limits; 0 if nothing moved */
     int64_t steady_checks;  /* in a row, at which the motion went on in one direction */
-    int64_t lightened_step; /* of the last slow mode that was added to the preconditioner */
+    int64_t slow_mode_step; /* of the last slow mode that was added to the preconditioner */
     int64_t checks;
     double best_error; /* at the load that is held, reached in best_step; the error has not halved since */
     int64_t best_step;
@@ -48,12 +48,12 @@ struct relaxation {
     double thickness;                         /* mean, across that diagonal, m */
     double measured_frequency, measured_move; /* the largest ones when the coarse space was measured */
     double usual_residual2;                   /* the residual's squared norm is compared with it */
-    bool unstable;                            /* it rose far above that in the last step */
-    int64_t calmed_step;                      /* of the last relaxation_calm */
-    int64_t back_step;                        /* of the last return to a kept state */
-    int64_t augmented_step;                   /* of the last augmentation */
-    int64_t augmentations;                    /* of contacts at the load that is held */
-    int64_t steady_augmentations;             /* consecutive ones of pressures at the load that is held */
+    bool unstable;                /* r . M^-1 r exceeded a multiple of usual_residual2 in the last step */
+    int64_t calmed_step;          /* of the last relaxation_calm */
+    int64_t back_step;            /* of the last return to a kept state */
+    int64_t augmented_step;       /* of the last augmentation */
+    int64_t augmentations;        /* of contacts at the load that is held */
+    int64_t steady_augmentations; /* consecutive ones of pressures at the load that is held */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
     enum status failure;
     double load,
@@ -119,9 +119,10 @@ double relaxation_thickness(const struct solid_system *system);
  * cell is inverted nevertheless, the loading continues more slowly (relaxation_step_back). */
 int64_t relaxation_choose_ramp(const struct relaxation *r);
 
-/* If what is left at a held load is the slow motion along one mode: take the increments since the last check,
- * which are in scratch[size], into the preconditioner as this mode. False on failure. */
-bool relaxation_lighten_slow_mode(struct relaxation *r, struct error *error);
+/* If the load is held and the increment du[size] since the last check has been parallel to the velocity at
+ * enough checks, and is slow: add it to the slow modes of M. Checks within an interval of an augmentation do
+ * not count. scratch: size. False on failure. */
+bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *scratch, struct error *error);
 
 /* Reduce the rate of loading while the body moves farther in a step than prescribed displacements would move
  * it: forces may. */

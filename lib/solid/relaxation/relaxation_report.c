@@ -14,12 +14,11 @@ bool relaxation_tell(struct relaxation *r)
     if (r->options->progress == NULL) {
         return true;
     }
-    int64_t at = r->report->steps;
-    bool otherwise = at - r->back_step <= CHECK_INTERVAL ||
-                     (r->lightened_step > 0 && at - r->lightened_step <= CHECK_INTERVAL);
+    int64_t at = r->report->steps, check = at - at % CHECK_INTERVAL;
     struct progress progress = {.step = at,
                                 .u = r->u,
-                                .move = otherwise ? INFINITY : r->moved,
+                                .move = check - r->back_step <= CHECK_INTERVAL ? INFINITY : r->moved,
+                                .raised = check == r->slow_mode_step ? SLOW_MODE_GAIN : 1.0,
                                 .error = r->report->error,
                                 .remaining = -1.0,
                                 .state = relaxation_visit,

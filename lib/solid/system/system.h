@@ -161,10 +161,10 @@ double system_penalty_force(const struct solid_system *system, int64_t r, const 
  * where lips press on each other. */
 bool system_has_inverse(const struct solid_system *system);
 
-/* mass[node_count] > 0: the fictitious mass, a bound of each node's stiffness (24), contact penalties
- * included, N/m (2D: N/m2). So all parts of the body have about the same critical step, 1, however the cloud
- * is graded. With an inverse factor, which contains the stiffness at rest, it is (24) with the linear shape
- * functions of the cells; only its change since rest matters. `rest`: at rest. */
+/* mass[node_count] > 0: the fictitious mass, a bound of each node's stiffness, N/m (2D: N/m2). Without an
+ * inverse factor: (24) with the penalties of constraints and contacts, so that all parts of the body have
+ * about the same critical step, 1, however the cloud is graded. With one: (24) with the linear shape
+ * functions of the cells, without penalties; only its ratio to the value at rest matters. `rest`: at rest. */
 void system_relaxation_mass(struct solid_system *system, bool rest, double *mass);
 
 /* Mean spacing of the nodes, m. */

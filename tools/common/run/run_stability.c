@@ -13,7 +13,8 @@
 /* Near a stable equilibrium, with damping, moves fall. Near one that is not stable they fall until the mode
  * that leaves it has grown, and then rise exponentially. So a body has left an equilibrium when, under a load
  * that is held, the largest of the last samples' moves has risen by this factor over what it was at an
- * estimated error below `near_error`; moves below a share of the displacement are round-off. */
+ * estimated error below `near_error`, and that by what a slow mode that was added since may have raised it;
+ * moves below a share of the displacement are round-off. */
 static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
 
 /* A plane side creases when it is compressed to this stretch (Hong, Zhao and Suo 2009). An instability of a
@@ -84,6 +85,7 @@ void run_stability_follow(struct run *run, const struct progress *progress)
         stability->left = true;
         stability->since = stability->negative ? stability->since : progress->time;
     }
+    stability->least *= progress->raised;
 }
 
 void run_stability_look(struct run *run, double load)
