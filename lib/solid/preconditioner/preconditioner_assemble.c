@@ -17,80 +17,83 @@
 #include <string.h>
 
 enum { NODES_FOR_THREAD = 200 }; /* see chunks_of */
-enum { PARTS_OF_THREAD = 4 };    /* summed before they go into the matrix */
+enum { SUMS_OF_THREAD = 4 };     /* summed before they go into the matrix */
 enum { MOST_NUMBERS = 12 };      /* fields of a centre times directions */
 
 /* What some nodes add, between the centres near them. */
-struct part {
+struct chunk_sum {
     struct centre_sums sums;
     struct block_row row;
-    int32_t *slot; /* centre_count: place in `taken`, or -1 */
-    int64_t taken_count;
-    int32_t *taken_centre;            /* centre_count */
-    double (*taken)[4][MOST_NUMBERS]; /* centre_count: K_nm W_m for these, and below it E_n */
+    int32_t *place; /* centre_count: place in `product`, or -1 */
+    int64_t product_count;
+    int32_t *product_centre;            /* centre_count */
+    double (*product)[4][MOST_NUMBERS]; /* centre_count: K_nm W_m for these, and below it E_n */
     enum status status;
     struct error error;
 };
 
-static enum status part_begin(const struct preconditioner *p, const struct body *body, int64_t most,
-                              struct part *part, struct error *error)
+static enum status chunk_sum_begin(const struct preconditioner *p, const struct body *body, int64_t most,
+                                   struct chunk_sum *chunk, struct error *error)
 {
     int64_t centres = p->coarse.centre_count;
-    part->taken_count = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&part->slot, centres, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&part->taken_centre, centres, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&part->taken, centres, error));
-    memset(part->slot, -1, (size_t)centres * sizeof *part->slot);
-    return block_row_begin(body, most, &part->row, error);
+    chunk->product_count = 0;
+    RETURN_IF_ERROR(NEW_ARRAY(&chunk->place, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&chunk->product_centre, centres, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&chunk->product, centres, error));
+    memset(chunk->place, -1, (size_t)centres * sizeof *chunk->place);
+    return block_row_begin(body, most, &chunk->row, error);
 }
 
 /* All but the sums. */
-static void part_end(struct part *part)
+static void chunk_sum_end(struct chunk_sum *chunk)
 {
-    block_row_free(&part->row);
-    FREE_ALL(part->slot, part->taken_centre, part->taken);
-    part->slot = part->taken_centre = NULL;
-    part->taken = NULL;
+    block_row_free(&chunk->row);
+    FREE_ALL(chunk->place, chunk->product_centre, chunk->product);
+    chunk->place = chunk->product_centre = NULL;
+    chunk->product = NULL;
 }
 
-/* Where a centre is in `taken`, zero at first. */
-static double (*slot_of(struct part *part, int32_t centre))[MOST_NUMBERS]
+/* Where a centre is in `product`, zero at first. */
+static double (*product_of(struct chunk_sum *chunk, int32_t centre))[MOST_NUMBERS]
 {
-    if (part->slot[centre] < 0) {
-        part->slot[centre] = (int32_t)part->taken_count;
-        part->taken_centre[part->taken_count] = centre;
-        memset(part->taken[part->taken_count++], 0, sizeof *part->taken);
+    if (chunk->place[centre] < 0) {
+        chunk->place[centre] = (int32_t)chunk->product_count;
+        chunk->product_centre[chunk->product_count] = centre;
+        memset(chunk->product[chunk->product_count++], 0, sizeof *chunk->product);
     }
-    return part->taken[part->slot[centre]];
+    return chunk->product[chunk->place[centre]];
 }
 
-static void forget(struct part *part)
+static void clear_products(struct chunk_sum *chunk)
 {
-    for (int64_t i = 0; i < part->taken_count; i++) {
-        part->slot[part->taken_centre[i]] = -1;
+    for (int64_t i = 0; i < chunk->product_count; i++) {
+        chunk->place[chunk->product_centre[i]] = -1;
     }
-    part->taken_count = 0;
+    chunk->product_count = 0;
 }
 
-/* taken[rows] += block[rows][dim] W_n. The dimension is known when compiling, here and below. */
-KERNEL_INLINE void take(const struct moved_fields *fields, int dim, int64_t node, int rows,
-                        const double *block, struct part *part)
+/* product[rows] += block[rows][dim] W_n. The dimension is known when compiling, here and below. */
+KERNEL_INLINE void add_products(const struct moved_fields *fields, int dim, int64_t node, int rows,
+                                const double *block, struct chunk_sum *chunk)
 {
     const struct coarse_space *coarse = &fields->p->coarse;
     int32_t near = fields->near[node];
     int numbers = (dim + 1) * dim;
-    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1] && near < 0; i++) {
-        double(*to)[MOST_NUMBERS] = slot_of(part, coarse->shares.idx[i]), value[4];
-        coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
-        for (int r = 0; r < rows; r++) {
-            for (int k = 0; k < numbers; k++) {
-                to[r][k] += block[r * dim + k % dim] * value[k / dim];
+    if (near < 0) {
+        for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
+            double(*to)[MOST_NUMBERS] = product_of(chunk, coarse->shares.idx[i]), value[4];
+            coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
+            for (int r = 0; r < rows; r++) {
+                for (int k = 0; k < numbers; k++) {
+                    to[r][k] += block[r * dim + k % dim] * value[k / dim];
+                }
             }
         }
+        return;
     }
-    for (int64_t e = near < 0 ? 0 : fields->ptr[near]; near >= 0 && e < fields->ptr[near + 1]; e++) {
+    for (int64_t e = fields->ptr[near]; e < fields->ptr[near + 1]; e++) {
         const float *move = fields->move + fields->at[e] * dim * numbers;
-        double(*to)[MOST_NUMBERS] = slot_of(part, fields->centre[fields->at[e]]);
+        double(*to)[MOST_NUMBERS] = product_of(chunk, fields->centre[fields->at[e]]);
         for (int r = 0; r < rows; r++) {
             for (int a = 0; a < dim; a++) {
                 for (int k = 0; k < numbers; k++) {
@@ -101,60 +104,67 @@ KERNEL_INLINE void take(const struct moved_fields *fields, int dim, int64_t node
     }
 }
 
-/* The blocks between a centre and those in `taken` that are not above it += W_n^T taken. */
-KERNEL_INLINE void put_centre(int dim, int32_t centre, const double *value, const float *move,
-                              struct part *part)
+/* The blocks between a centre and those of the products that are not above it += W_n^T product, with W_n =
+ * value[dim + 1] (x) I, or after the projection W_n = move[dim][(dim + 1) * dim]; the other one is NULL. */
+KERNEL_INLINE void add_centre_blocks(int dim, int32_t centre, const double *value, const float *move,
+                                     struct chunk_sum *chunk)
 {
     int numbers = (dim + 1) * dim;
-    for (int64_t t = 0; t < part->taken_count; t++) {
-        if (part->taken_centre[t] > centre) {
+    for (int64_t t = 0; t < chunk->product_count; t++) {
+        if (chunk->product_centre[t] > centre) {
             continue;
         }
-        double *block = centre_sums_block(&part->sums, centre, part->taken_centre[t]);
-        const double(*taken)[MOST_NUMBERS] = (const double(*)[MOST_NUMBERS])part->taken[t];
+        double *block = centre_sums_block(&chunk->sums, centre, chunk->product_centre[t]);
+        const double(*product)[MOST_NUMBERS] = (const double(*)[MOST_NUMBERS])chunk->product[t];
         for (int i = 0; i < numbers; i++) {
             if (move == NULL) {
                 for (int k = 0; k < numbers; k++) {
-                    block[i * numbers + k] += value[i / dim] * taken[i % dim][k];
+                    block[i * numbers + k] += value[i / dim] * product[i % dim][k];
                 }
                 continue;
             }
             for (int a = 0; a < dim; a++) {
                 for (int k = 0; k < numbers; k++) {
-                    block[i * numbers + k] += (double)move[a * numbers + i] * taken[a][k];
+                    block[i * numbers + k] += (double)move[a * numbers + i] * product[a][k];
                 }
             }
         }
     }
 }
 
-KERNEL_INLINE void put(const struct moved_fields *fields, int dim, int64_t node, struct part *part)
+/* The same for all fields of a node. */
+KERNEL_INLINE void add_blocks(const struct moved_fields *fields, int dim, int64_t node,
+                              struct chunk_sum *chunk)
 {
     const struct coarse_space *coarse = &fields->p->coarse;
     int32_t near = fields->near[node];
-    for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1] && near < 0; i++) {
-        double value[4];
-        coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
-        put_centre(dim, coarse->shares.idx[i], value, NULL, part);
+    if (near < 0) {
+        for (int64_t i = coarse->shares.ptr[node]; i < coarse->shares.ptr[node + 1]; i++) {
+            double value[4];
+            coarse_space_values(coarse, node, coarse->shares.idx[i], coarse->shares.value[i], value);
+            add_centre_blocks(dim, coarse->shares.idx[i], value, NULL, chunk);
+        }
+        return;
     }
-    for (int64_t e = near < 0 ? 0 : fields->ptr[near]; near >= 0 && e < fields->ptr[near + 1]; e++) {
+    for (int64_t e = fields->ptr[near]; e < fields->ptr[near + 1]; e++) {
         const float *move = fields->move + fields->at[e] * dim * (dim + 1) * dim;
-        put_centre(dim, fields->centre[fields->at[e]], NULL, move, part);
+        add_centre_blocks(dim, fields->centre[fields->at[e]], NULL, move, chunk);
     }
 }
 
-/* The blocks += factor row^T row, of row `r` of `taken`. */
-KERNEL_INLINE void put_square(int dim, int r, double factor, struct part *part)
+/* The blocks += factor row^T row, of row `r` of `product`. */
+KERNEL_INLINE void add_square(int dim, int r, double factor, struct chunk_sum *chunk)
 {
     int numbers = (dim + 1) * dim;
-    for (int64_t s = 0; s < part->taken_count; s++) {
-        const double *upper = part->taken[s][r];
-        for (int64_t t = 0; t < part->taken_count; t++) {
-            if (part->taken_centre[t] > part->taken_centre[s]) {
+    for (int64_t s = 0; s < chunk->product_count; s++) {
+        const double *upper = chunk->product[s][r];
+        for (int64_t t = 0; t < chunk->product_count; t++) {
+            if (chunk->product_centre[t] > chunk->product_centre[s]) {
                 continue;
             }
-            const double *lower = part->taken[t][r];
-            double *block = centre_sums_block(&part->sums, part->taken_centre[s], part->taken_centre[t]);
+            const double *lower = chunk->product[t][r];
+            double *block =
+                centre_sums_block(&chunk->sums, chunk->product_centre[s], chunk->product_centre[t]);
             for (int i = 0; i < numbers; i++) {
                 double scaled = factor * upper[i];
                 for (int k = 0; k < numbers; k++) {
@@ -166,75 +176,76 @@ KERNEL_INLINE void put_square(int dim, int r, double factor, struct part *part)
 }
 
 KERNEL_INLINE void add_node(const struct moved_fields *fields, const struct body *body, int dim, int32_t node,
-                            struct part *part)
+                            struct chunk_sum *chunk)
 {
-    const struct block_row *row = &part->row;
-    block_row_make(body, node, &part->row);
-    forget(part);
+    const struct block_row *row = &chunk->row;
+    block_row_make(body, node, &chunk->row);
+    clear_products(chunk);
     for (int64_t m = 0; m < row->count; m++) {
-        take(fields, dim, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim, part);
+        add_products(fields, dim, body->node_order[row->node[m]], dim + 1, row->block + m * (dim + 1) * dim,
+                     chunk);
     }
-    part->status = centre_sums_make_room(&part->sums, part->taken_count, &part->error);
-    if (part->status == STATUS_OK) {
-        put(fields, dim, body->node_order[node], part);
-        put_square(dim, dim, 1.0 / row->volume, part);
+    chunk->status = centre_sums_make_room(&chunk->sums, chunk->product_count, &chunk->error);
+    if (chunk->status == STATUS_OK) {
+        add_blocks(fields, dim, body->node_order[node], chunk);
+        add_square(dim, dim, 1.0 / row->volume, chunk);
     }
 }
 
 KERNEL_INLINE void add_penalty(const struct moved_fields *fields, const struct solid_system *system, int dim,
-                               int64_t r, struct part *part)
+                               int64_t r, struct chunk_sum *chunk)
 {
     const struct constraint_rows *penalties = &system->penalties;
     struct average average = constraint_rows_average(penalties, r);
-    forget(part);
+    clear_products(chunk);
     for (int64_t i = 0; i < average.length; i++) {
         double block[3];
         for (int a = 0; a < dim; a++) {
             block[a] = average.phi[i] * penalties->direction[r * dim + a];
         }
-        take(fields, dim, average.idx[i], 1, block, part);
+        add_products(fields, dim, average.idx[i], 1, block, chunk);
     }
-    part->status = centre_sums_make_room(&part->sums, part->taken_count, &part->error);
-    if (part->status == STATUS_OK) {
-        put_square(dim, 0, system->penalty_stiffness[r], part);
+    chunk->status = centre_sums_make_room(&chunk->sums, chunk->product_count, &chunk->error);
+    if (chunk->status == STATUS_OK) {
+        add_square(dim, 0, system->penalty_stiffness[r], chunk);
     }
 }
 
 ALL_SETS static void add(const struct moved_fields *fields, const struct solid_system *system, bool penalty,
-                         int64_t item, struct part *part)
+                         int64_t item, struct chunk_sum *chunk)
 {
     if (penalty && system->dim == 2) {
-        add_penalty(fields, system, 2, item, part);
+        add_penalty(fields, system, 2, item, chunk);
     } else if (penalty) {
-        add_penalty(fields, system, 3, item, part);
+        add_penalty(fields, system, 3, item, chunk);
     } else if (system->dim == 2) {
-        add_node(fields, &system->body, 2, (int32_t)item, part);
+        add_node(fields, &system->body, 2, (int32_t)item, chunk);
     } else {
-        add_node(fields, &system->body, 3, (int32_t)item, part);
+        add_node(fields, &system->body, 3, (int32_t)item, chunk);
     }
 }
 
 /* The sums of the nodes and penalties of a chunk. */
 static void sum_chunk(const struct moved_fields *fields, const struct solid_system *system,
-                      const struct chunks *nodes, int64_t most, int64_t c, struct part *part)
+                      const struct chunks *nodes, int64_t most, int64_t c, struct chunk_sum *chunk)
 {
     struct chunks penalties = *nodes;
     penalties.items = system->penalties.count;
-    part->status = part_begin(fields->p, &system->body, most, part, &part->error);
+    chunk->status = chunk_sum_begin(fields->p, &system->body, most, chunk, &chunk->error);
     for (int way = 0; way < 2; way++) {
         const struct chunks *items = way == 0 ? nodes : &penalties;
         int64_t end = chunks_begin(items, c + 1);
-        for (int64_t i = chunks_begin(items, c); i < end && part->status == STATUS_OK; i++) {
-            add(fields, system, way == 1, i, part);
+        for (int64_t i = chunks_begin(items, c); i < end && chunk->status == STATUS_OK; i++) {
+            add(fields, system, way == 1, i, chunk);
         }
     }
-    part_end(part);
+    chunk_sum_end(chunk);
 }
 
 /* Sum some chunks, each process its share of them, and add them to the matrix in their order. */
 static enum status add_chunks(const struct moved_fields *fields, const struct solid_system *system,
-                              const struct chunks *nodes, int64_t begin, int64_t end, struct part *parts,
-                              double *matrix, struct error *error)
+                              const struct chunks *nodes, int64_t begin, int64_t end,
+                              struct chunk_sum *chunk_sums, double *matrix, struct error *error)
 {
     const struct ranks *ranks = system->body.share.ranks;
     int64_t most = block_row_most(&system->body);
@@ -242,23 +253,23 @@ static enum status add_chunks(const struct moved_fields *fields, const struct so
     enum status status = ranks_share(ranks, end - begin, NULL, &first, error);
     for (int64_t i = 0; i < end - begin && status == STATUS_OK; i++) {
         status = centre_sums_begin(fields->p->coarse.centre_count, (system->dim + 1) * system->dim,
-                                   &parts[i].sums, error);
+                                   &chunk_sums[i].sums, error);
     }
     RETURN_IF_ERROR(ranks_agree(ranks, status, error));
     int64_t own = first[ranks_rank(ranks)], own_end = first[ranks_rank(ranks) + 1];
 #pragma omp parallel for schedule(dynamic, 1) num_threads(nodes->threads)
     for (int64_t i = own; i < own_end; i++) {
-        sum_chunk(fields, system, nodes, most, begin + i, &parts[i]);
+        sum_chunk(fields, system, nodes, most, begin + i, &chunk_sums[i]);
     }
     for (int64_t i = own; i < own_end && status == STATUS_OK; i++) {
-        *error = parts[i].error;
-        status = parts[i].status;
+        *error = chunk_sums[i].error;
+        status = chunk_sums[i].status;
     }
     RETURN_IF_ERROR(ranks_agree(ranks, status, error));
     for (int64_t i = 0; i < end - begin; i++) {
-        RETURN_IF_ERROR(centre_sums_send(ranks, ranks_owner(ranks, first, i), &parts[i].sums, error));
-        centre_sums_add(&parts[i].sums, matrix);
-        centre_sums_free(&parts[i].sums);
+        RETURN_IF_ERROR(centre_sums_send(ranks, ranks_owner(ranks, first, i), &chunk_sums[i].sums, error));
+        centre_sums_add(&chunk_sums[i].sums, matrix);
+        centre_sums_free(&chunk_sums[i].sums);
     }
     return STATUS_OK;
 }
@@ -269,19 +280,19 @@ static enum status sum_all(const struct moved_fields *fields, const struct solid
     const struct preconditioner *p = fields->p;
     struct chunks nodes = chunks_of(p->node_count, NODES_FOR_THREAD);
     const struct ranks *ranks = system->body.share.ranks;
-    int64_t at_once = PARTS_OF_THREAD * ranks_most(ranks, nodes.threads) * ranks_count(ranks);
-    struct part parts[CHUNKS_MOST];
+    int64_t at_once = SUMS_OF_THREAD * ranks_most(ranks, nodes.threads) * ranks_count(ranks);
+    struct chunk_sum chunk_sums[CHUNKS_MOST];
     enum status status = STATUS_OK;
-    memset(parts, 0, sizeof parts);
+    memset(chunk_sums, 0, sizeof chunk_sums);
     memset(matrix, 0, (size_t)(p->size * p->size) * sizeof *matrix);
     for (int64_t begin = 0; begin < nodes.count; begin += at_once) {
         int64_t end = begin + at_once < nodes.count ? begin + at_once : nodes.count;
-        TRY(add_chunks(fields, system, &nodes, begin, end, parts, matrix, error));
+        TRY(add_chunks(fields, system, &nodes, begin, end, chunk_sums, matrix, error));
     }
     centre_sums_mirror(p->coarse.centre_count, (p->dim + 1) * p->dim, matrix);
 done:
     for (int64_t i = 0; i < CHUNKS_MOST; i++) {
-        centre_sums_free(&parts[i].sums);
+        centre_sums_free(&chunk_sums[i].sums);
     }
     return status;
 }

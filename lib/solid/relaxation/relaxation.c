@@ -26,17 +26,17 @@ static const int iterations = 1, iterations_loading = 2;
 /* Whether the squared norm of the residual, r . M^-1 r with the acceleration M^-1 r in r->scratch, grows as
  * in an unstable run. In a stable run the norm follows the load. A mode whose frequency exceeds the stability
  * limit makes it grow by a constant factor in each step, for many steps before points invert.
- * `usual_residual2` follows the norm at a bounded rate. */
+ * `usual_square` follows the norm at a bounded rate. */
 static bool residual_grows(struct relaxation *r)
 {
-    double now2 = 0.0, usual2 = r->usual_residual2;
+    double now2 = 0.0, usual2 = r->usual_square;
     for (int64_t i = 0; i < r->size; i++) {
         now2 += r->residual[i] * r->scratch[i];
     }
     bool grows =
         usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
-    r->usual_residual2 = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
-    r->usual_residual2 = fmax(r->usual_residual2, usual_fall * usual2);
+    r->usual_square = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
+    r->usual_square = fmax(r->usual_square, usual_fall * usual2);
     return grows;
 }
 
@@ -53,17 +53,17 @@ static void augment(struct relaxation *r)
     }
     bool contacts = r->system->contact_count > 0 && relaxation_contacts_lack(r);
     if (pressures) {
-        r->steady_augmentations = r->at_full_load > pause ? r->steady_augmentations + 1 : 0;
+        r->steady_augmentations = r->held_steps > pause ? r->steady_augmentations + 1 : 0;
         r->pressures_lack =
             body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
     }
     if (contacts) {
-        system_augment_contacts(r->system, r->at_full_load > pause);
-        r->augmentations += r->at_full_load > 0;
+        system_augment_contacts(r->system, r->held_steps > pause);
+        r->augmentations += r->held_steps > 0;
     }
     if (pressures || contacts) {
         r->augmented_step = r->report->steps;
-        r->usual_residual2 = 0.0;
+        r->usual_square = 0.0;
     }
 }
 
@@ -116,7 +116,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
 /* After the equilibrium of a frame: reset what refers to the load that was held. */
 static void resume_loading(struct relaxation *r)
 {
-    r->at_full_load = r->converged_checks = 0;
+    r->held_steps = r->converged_checks = 0;
     relaxation_note_new_mass(r);
     r->augmentations = 0;
     r->steady_augmentations = 0;
@@ -142,7 +142,7 @@ static void change_load(struct relaxation *r, double s)
 static bool hovers(const struct relaxation *r)
 {
     int64_t since = r->best_step > r->calmed_step ? r->best_step : r->calmed_step;
-    return r->at_full_load > hover_steps && r->report->steps - since > hover_steps;
+    return r->held_steps > hover_steps && r->report->steps - since > hover_steps;
 }
 
 /* After a measured step: estimate the error, and adapt load, mass, time step and preconditioner to the state.
@@ -155,7 +155,7 @@ static bool follow(struct relaxation *r, struct error *error)
         return false;
     }
     relaxation_control_load(r);
-    if (r->at_full_load <= CHECK_INTERVAL) { /* remove the round-off of the increments' sum */
+    if (r->held_steps <= CHECK_INTERVAL) { /* remove the round-off of the increments' sum */
         constraint_project(&r->preconditioner.constraint, r->system->factor, u);
     }
     if (r->report->steps % keep_interval == 0) {
@@ -169,7 +169,7 @@ static bool follow(struct relaxation *r, struct error *error)
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
         return false;
     }
-    relaxation_follow_time_step(r, r->residual_at, r->at_full_load == 0 ? iterations_loading : iterations);
+    relaxation_follow_time_step(r, r->residual_at, r->held_steps == 0 ? iterations_loading : iterations);
     if (hovers(r)) {
         relaxation_calm(r, r->acceleration);
     }
@@ -187,7 +187,7 @@ static bool multipliers_hold(struct relaxation *r)
 static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct error *error)
 {
     const double *error_now = &r->report->error, tolerance = r->options->tolerance;
-    bool whole = r->at_full_load > 2 * CHECK_INTERVAL;
+    bool whole = r->held_steps > 2 * CHECK_INTERVAL;
     bool small = whole && *error_now <= tolerance;
     bool augmented = r->augmented_step == r->report->steps - 1;
     if (!small) {
@@ -241,8 +241,8 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
         bool measure = ++r->report->steps % CHECK_INTERVAL == 0;
         double hold = relaxation_load_to_hold(r);
         r->load = fmin(hold, r->load + r->load_rate);
-        r->at_full_load = r->load < hold ? 0 : r->at_full_load + 1;
-        r->report->loading_steps += r->at_full_load == 0;
+        r->held_steps = r->load < hold ? 0 : r->held_steps + 1;
+        r->report->loading_steps += r->held_steps == 0;
         change_load(r, r->load / ramp);
         if (!step(r, r->u, measure)) {
             measure = false;
@@ -287,7 +287,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     constraint_project(&r->preconditioner.constraint, system->factor, r->u);
     memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u);
     r->residual_at = r->u;
-    r->low2 = r->pressures_lack = INFINITY;
+    r->lowest_eigenvalue = r->pressures_lack = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
         r->window[i] = INFINITY;
     }
@@ -321,7 +321,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
                            .load_rate = 1.0,
                            .top_rate = 1.0,
                            .step_safety = 1.0,
-                           .spectrum2 = INFINITY};
+                           .lanczos_bound = INFINITY};
     *report = (struct relaxation_report){.least_jacobian = 1.0};
     body_limit_bulk(&system->body, bulk_limit);
     RETURN_IF_ERROR(relaxation_allocate(&r, error));

@@ -19,8 +19,9 @@ static const double most_moved = 1.4, most_raised = 1.25;
 static const double most_move_per_step = 1.0 / 320.0;
 /* First guess of the lowest eigenvalue, by the result of FIRST_ITERATIONS, which is up to about seven times
  * too large. */
-static const double first_low2 = 0.15;
-static const double least_low2 = 1e-4;    /* the same by the largest eigenvalue, if that result is negative */
+static const double first_share = 0.15;
+static const double first_share_of_largest =
+    1e-4;                                 /* the same by the largest eigenvalue, if that result is negative */
 static const int64_t most_backtracks = 8; /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 /* A mode is slow if its frequency is below the largest one by this factor. It is alone if the cosine between
@@ -82,7 +83,7 @@ void relaxation_follow_time_step(struct relaxation *r, const double *u, int iter
 {
     double before = r->frequency;
     relaxation_update_time_step(r, u, iterations);
-    if (r->at_full_load == 0) {
+    if (r->held_steps == 0) {
         r->time_step *= fmin(1.0, before / r->frequency);
     }
 }
@@ -129,7 +130,7 @@ bool relaxation_update_preconditioner(struct relaxation *r, struct error *error)
 
 void relaxation_note_new_mass(struct relaxation *r)
 {
-    r->spectrum2 = INFINITY;
+    r->lanczos_bound = INFINITY;
     r->spectrum_known = false;
 }
 
@@ -147,8 +148,8 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     }
     r->frequency = sqrt(fmax(spectrum.largest, 0.0));
     relaxation_update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
-    relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_low2 * spectrum.lowest
-                                                     : least_low2 * spectrum.largest);
+    relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_share * spectrum.lowest
+                                                     : first_share_of_largest * spectrum.largest);
     r->measured_frequency = r->frequency;
     r->measured_move = r->largest_move;
     return STATUS_OK;
@@ -157,7 +158,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
 bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *scratch, struct error *error)
 {
     double square = 0.0, speed2 = 0.0, along = 0.0;
-    if (r->at_full_load <= CHECK_INTERVAL || r->report->steps - r->augmented_step < CHECK_INTERVAL) {
+    if (r->held_steps <= CHECK_INTERVAL || r->report->steps - r->augmented_step < CHECK_INTERVAL) {
         return true;
     }
     for (int64_t i = 0; i < r->size; i++) {
@@ -174,7 +175,7 @@ bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *sc
     r->failure = preconditioner_add_slow_mode(&r->preconditioner, du, scratch, error);
     r->steady_checks = 0;
     r->slow_mode_step = r->report->steps;
-    r->usual_residual2 = 0.0;
+    r->usual_square = 0.0;
     relaxation_note_new_mass(r);
     return r->failure == STATUS_OK;
 }
@@ -257,7 +258,7 @@ static bool is_unstable(struct relaxation *r, const double *acceleration)
 void relaxation_calm(struct relaxation *r, const double *acceleration)
 {
     r->calmed_step = r->report->steps;
-    r->usual_residual2 = 0.0;
+    r->usual_square = 0.0;
     if (!is_unstable(r, acceleration)) {
         (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
         r->report->force_evaluations++;
@@ -289,7 +290,7 @@ static bool give_way(const struct relaxation *r)
 
 bool relaxation_contacts_lack(const struct relaxation *r)
 {
-    return r->at_full_load == 0 || (r->augmentations < most_augmentations && give_way(r));
+    return r->held_steps == 0 || (r->augmentations < most_augmentations && give_way(r));
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)

@@ -37,11 +37,11 @@ static double ratio(double part, double whole)
 /* The lowest frequency that recent estimates have shown, squared. */
 static double least_of_window(const struct relaxation *r)
 {
-    double least2 = INFINITY;
+    double least_eigenvalue = INFINITY;
     for (int i = 0; i < WINDOWS; i++) {
-        least2 = fmin(least2, r->window[i]);
+        least_eigenvalue = fmin(least_eigenvalue, r->window[i]);
     }
-    return least2;
+    return least_eigenvalue;
 }
 
 void relaxation_estimate(struct relaxation *r)
@@ -62,25 +62,26 @@ void relaxation_estimate(struct relaxation *r)
     bool augmented = r->report->steps - r->augmented_step < CHECK_INTERVAL;
     if (quotient > 0.0 && r->checks > 0 && !augmented) {
         quotient = fmin(quotient, r->frequency * r->frequency);
-        r->low2 = quotient < r->low2 ? quotient : fmin(quotient, most_growth * r->low2);
-        r->low2 = fmin(r->low2, r->spectrum2);
-        r->damping = 2.0 * sqrt(r->low2);
-        r->window[r->checks % WINDOWS] = r->low2;
+        r->lowest_eigenvalue =
+            quotient < r->lowest_eigenvalue ? quotient : fmin(quotient, most_growth * r->lowest_eigenvalue);
+        r->lowest_eigenvalue = fmin(r->lowest_eigenvalue, r->lanczos_bound);
+        r->damping = 2.0 * sqrt(r->lowest_eigenvalue);
+        r->window[r->checks % WINDOWS] = r->lowest_eigenvalue;
     }
     r->checks++;
-    double least2 = least_of_window(r);
+    double least_eigenvalue = least_of_window(r);
     r->largest_displacement =
         fmax(r->largest_displacement, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
     r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
     /* Of the largest so far: a scene may end at rest. */
     double on_the_whole =
-        ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least2,
+        ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least_eigenvalue,
               r->largest_displacement);
-    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least2, r->largest_move);
+    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least_eigenvalue, r->largest_move);
     /* Moves below the round-off of positions are none. */
     bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
     r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);
-    r->report->lowest_frequency = sqrt(least2);
+    r->report->lowest_frequency = sqrt(least_eigenvalue);
 }
 
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
@@ -92,12 +93,12 @@ bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_it
     return r->failure == STATUS_OK;
 }
 
-void relaxation_damp_at_most(struct relaxation *r, double low2)
+void relaxation_damp_at_most(struct relaxation *r, double lowest_eigenvalue)
 {
-    r->low2 = fmin(r->low2, low2);
-    r->damping = 2.0 * sqrt(r->low2);
+    r->lowest_eigenvalue = fmin(r->lowest_eigenvalue, lowest_eigenvalue);
+    r->damping = 2.0 * sqrt(r->lowest_eigenvalue);
     for (int i = 0; i < WINDOWS; i++) {
-        r->window[i] = fmin(r->window[i], r->low2);
+        r->window[i] = fmin(r->window[i], r->lowest_eigenvalue);
     }
 }
 
@@ -122,13 +123,13 @@ bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct e
         !note_stability(r, u, &spectrum, error)) {
         return false;
     }
-    r->spectrum2 = INFINITY;
+    r->lanczos_bound = INFINITY;
     if (spectrum.lowest > 0.0 && isfinite(spectrum.lowest)) {
-        r->spectrum2 = spectrum_share * spectrum.lowest;
-        relaxation_damp_at_most(r, r->spectrum2);
-        double least2 = least_of_window(r);
-        r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least2;
-        r->report->lowest_frequency = sqrt(least2);
+        r->lanczos_bound = spectrum_share * spectrum.lowest;
+        relaxation_damp_at_most(r, r->lanczos_bound);
+        double least_eigenvalue = least_of_window(r);
+        r->report->error *= r->report->lowest_frequency * r->report->lowest_frequency / least_eigenvalue;
+        r->report->lowest_frequency = sqrt(least_eigenvalue);
     }
     r->spectrum_known = true;
     return true;
@@ -148,7 +149,7 @@ double relaxation_round_off(const struct relaxation *r)
 
 void relaxation_note_best(struct relaxation *r)
 {
-    if (r->at_full_load <= CHECK_INTERVAL || r->report->error < 0.5 * r->best_error) {
+    if (r->held_steps <= CHECK_INTERVAL || r->report->error < 0.5 * r->best_error) {
         r->best_error = r->report->error;
         r->best_step = r->report->steps;
     }

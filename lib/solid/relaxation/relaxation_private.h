@@ -34,8 +34,9 @@ struct relaxation {
     double *last_u, *last_residual; /* at the last check */
     double *acceleration;
     double time_step, damping, frequency; /* current; frequency: largest */
-    double low2;                          /* current estimate of the lowest frequency, squared */
-    double spectrum2; /* upper bound of low2, computed at the load that is held; INFINITY until then */
+    double lowest_eigenvalue; /* estimate (26) of that of M^-1 K that is still active; dimensionless */
+    double lanczos_bound; /* upper bound of it, by Lanczos iteration at the load that is held; INFINITY until
+                             then */
     double window[WINDOWS];
     double quotient;        /* Rayleigh quotient (26) at the last check, before limits; 0 if nothing moved */
     int64_t steady_checks;  /* in a row, at which the motion went on in one direction */
@@ -47,8 +48,8 @@ struct relaxation {
     double body_size;                         /* diagonal of the nodes' box, m */
     double thickness;                         /* mean, across that diagonal, m */
     double measured_frequency, measured_move; /* the largest ones when the coarse space was measured */
-    double usual_residual2;                   /* the residual's squared norm is compared with it */
-    bool unstable;                /* r . M^-1 r exceeded a multiple of usual_residual2 in the last step */
+    double usual_square;                      /* r . M^-1 r of the residual is compared with it */
+    bool unstable;                /* r . M^-1 r exceeded a multiple of usual_square in the last step */
     int64_t calmed_step;          /* of the last relaxation_calm */
     int64_t back_step;            /* of the last return to a kept state */
     int64_t augmented_step;       /* of the last augmentation */
@@ -62,14 +63,14 @@ struct relaxation {
     double moved;    /* of a node between the last two checks, m */
     double largest_displacement; /* so far, in the norm of the mass */
     double largest_move;         /* so far, of a node, m */
-    bool spectrum_known;         /* spectrum2 belongs to the present mass and load */
+    bool spectrum_known;         /* lanczos_bound belongs to the present mass and load */
     double step_safety;          /* on the time step: 1 until an inversion */
     int64_t backtracks;
     struct kept_state newer, older;            /* the last two of relaxation_keep_state, */
     struct kept_state check_now, check_before; /* and those of the last two checks */
     int64_t frames;                            /* reported so far, without frame 0 */
     int64_t
-        at_full_load; /* steps at the load that is held, that of a frame or the full one; 0 while it grows */
+        held_steps; /* steps in a row at a constant load, that of a frame or the full one; 0 while it grows */
     int64_t converged_checks; /* checks in a row with a small error */
     double mass_change; /* of the stiffness since the mass was set, by the change at which it is set anew */
     int64_t last_mass_check, next_mass_check; /* numbers of the last check of the mass and of the next */
@@ -90,8 +91,9 @@ bool relaxation_find_lowest_mode(struct relaxation *r, const double *u, struct e
 bool relaxation_find_spectrum(struct relaxation *r, const double *u, int most_iterations,
                               struct spectrum *spectrum, struct error *error);
 
-/* Lower the estimate of the lowest eigenvalue to low2 if it is larger, and the damping with it. */
-void relaxation_damp_at_most(struct relaxation *r, double low2);
+/* Lower the estimate of the lowest eigenvalue to lowest_eigenvalue if it is larger, and the damping with it.
+ */
+void relaxation_damp_at_most(struct relaxation *r, double lowest_eigenvalue);
 
 /* Whether the load is held and the error has not halved for at least this many periods of the lowest mode and
  * this many steps. */
