@@ -181,6 +181,99 @@ Box(2) = {0, 15, 0, 60, 15, 20};
 Mesh.MeshSizeMax = 6;
 END
     ;;
+rod) # slender bodies from here on: they buckle
+    geo << 'END'
+Cylinder(1) = {0, 0, 0, 100, 0, 0, 2};
+Mesh.MeshSizeMax = 1.6;
+END
+    ;;
+taper)
+    geo << 'END'
+Cone(1) = {0, 0, 0, 0, 90, 0, 4, 1.5};
+Mesh.MeshSizeMax = 1.7;
+END
+    ;;
+pin)
+    geo << 'END'
+Cylinder(1) = {0, 0, 0, 0, 0, 90, 3};
+Sphere(2) = {0, 0, 90, 9};
+BooleanUnion(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+Mesh.MeshSizeMax = 2.5;
+END
+    ;;
+tube) # one cell thick
+    geo << 'END'
+Cylinder(1) = {0, 0, 0, 0, 0, 80, 20};
+Cylinder(2) = {0, 0, -1, 0, 0, 82, 18};
+BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
+Mesh.MeshSizeMax = 4;
+END
+    ;;
+arch)
+    geo << 'END'
+Torus(1) = {0, 0, 0, 40, 2.5, Pi};
+Mesh.MeshSizeMax = 1.9;
+END
+    ;;
+portal)
+    geo << 'END'
+Box(1) = {0, 0, 0, 60, 4, 4};
+Box(2) = {0, 36, 0, 60, 4, 4};
+Box(3) = {0, 0, 0, 4, 40, 4};
+Box(4) = {56, 0, 0, 4, 40, 4};
+BooleanUnion{ Volume{1}; Delete; }{ Volume{2:4}; Delete; }
+Mesh.MeshSizeMax = 1.9;
+END
+    ;;
+ladder)
+    geo << 'END'
+Box(1) = {0, 0, 0, 100, 3, 3};
+Box(2) = {0, 15, 0, 100, 3, 3};
+For i In {0:4}
+    Box(3 + i) = {10 + 19 * i, 0, 0, 3, 18, 3};
+EndFor
+BooleanUnion{ Volume{1}; Delete; }{ Volume{2:7}; Delete; }
+Mesh.MeshSizeMax = 1.9;
+END
+    ;;
+channel)
+    geo << 'END'
+Box(1) = {0, 0, 0, 90, 16, 2};
+Box(2) = {0, 0, 0, 90, 2, 10};
+Box(3) = {0, 14, 0, 90, 2, 10};
+BooleanUnion{ Volume{1}; Delete; }{ Volume{2:3}; Delete; }
+Mesh.MeshSizeMax = 2.2;
+END
+    ;;
+cruciform)
+    geo << 'END'
+Box(1) = {-10, -1, 0, 20, 2, 80};
+Box(2) = {-1, -10, 0, 2, 20, 80};
+BooleanUnion{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+Mesh.MeshSizeMax = 2.2;
+END
+    ;;
+fins) # that touch each other
+    geo << 'END'
+Box(1) = {0, 0, 0, 80, 30, 5};
+For i In {0:3}
+    Box(2 + i) = {5 + 17 * i, 0, 5, 4, 30, 25};
+EndFor
+Box(6) = {71, 0, 5, 4, 30, 25};
+BooleanUnion(7) = { Volume{1}; Delete; }{ Volume{2:6}; Delete; };
+Mesh.MeshSizeMax = 4;
+END
+    ;;
+comb)
+    geo << 'END'
+Box(1) = {0, 0, 0, 80, 10, 10};
+For i In {0:6}
+    Box(10 + i) = {2 + 12 * i, 10, 2, 5, 30, 6};
+EndFor
+BooleanUnion(2) = { Volume{1}; Delete; }{ Volume{10:16}; Delete; };
+Mesh.MeshSizeMax = 4;
+END
+    ;;
 brain)
     cp "$here/../../examples/brain3d/brain3d.geo" .
     gunzip -c "$here/../../examples/brain3d/brain3d_surfaces.msh.gz" > brain3d_surfaces.msh

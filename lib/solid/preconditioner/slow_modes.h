@@ -1,5 +1,5 @@
 /* Slow modes that a relaxation has met, with less mass: a rank-one update of M^-1 multiplies the eigenvalue
- * of each (equation (26a) of lib/README.md; compare deflation: Nicolaides 1987). Private to lib/solid.
+ * of each (equation (26a) of lib/README.md; compare deflation: Nicolaides 1987).
  *
  * A few modes whose stiffness is far below that of all others, such as the turning of a buckled rod, lie in
  * no coarse space that is chosen beforehand. An increment that keeps its direction over several checks
