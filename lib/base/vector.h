@@ -13,6 +13,16 @@ static inline double vector_dot(int dim, const double *a, const double *b)
     return sum;
 }
 
+/* The same for nodal vectors of so many numbers. */
+static inline double vector_product(int64_t size, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (int64_t i = 0; i < size; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
 /* |a - b|^2 */
 static inline double vector_distance2(int dim, const double *a, const double *b)
 {

@@ -26,15 +26,6 @@ static double largest_entry(const double *vector, int64_t size)
     return largest;
 }
 
-static double product(int64_t size, const double *x, const double *y)
-{
-    double sum = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 /* Mean spacing of the points. */
 static double point_spacing(const struct solid_system *system)
 {
@@ -82,7 +73,7 @@ double system_largest_frequency(struct solid_system *system, struct precondition
             displaced[i] = (residual[i] - response[i]) / epsilon;
         }
         preconditioner_resist_open(p, system, mode, displaced);
-        eigenvalue = product(size, mode, displaced) / preconditioner_square(p, mode);
+        eigenvalue = vector_product(size, mode, displaced) / preconditioner_square(p, mode);
         preconditioner_apply(p, displaced, response);
         double scale = 1.0 / largest_entry(response, size);
         for (int64_t i = 0; i < size; i++) {
@@ -216,7 +207,7 @@ static bool lanczos_begin(struct lanczos *l)
     constraint_project(&l->preconditioner->constraint, NULL, l->vector);
     memset(l->force_before, 0, (size_t)lanczos_size(l) * sizeof *l->force_before);
     preconditioner_multiply(l->preconditioner, l->vector, l->force);
-    l->norm = sqrt(product(lanczos_size(l), l->vector, l->force));
+    l->norm = sqrt(vector_product(lanczos_size(l), l->vector, l->force));
     return preconditioner_square_diagonal(l->preconditioner, l->vector) > least_free * least_free * whole;
 }
 
@@ -262,7 +253,7 @@ static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off
     for (int64_t i = 0; i < size; i++) {
         next[i] = (l->residual[i] - l->response[i]) / epsilon - coupling * l->force_before[i];
     }
-    diagonal[k] = product(size, l->vector, next);
+    diagonal[k] = vector_product(size, l->vector, next);
     for (int64_t i = 0; i < size; i++) {
         next[i] -= diagonal[k] * l->force[i];
     }
@@ -271,7 +262,7 @@ static void lanczos_step(struct lanczos *l, int k, double *diagonal, double *off
     preconditioner_apply(l->preconditioner, next, l->vector);
     /* `next` is M times that but for reactions, which would grow from step to step */
     preconditioner_multiply(l->preconditioner, l->vector, next);
-    l->norm = off_diagonal[k] = sqrt(product(size, l->vector, next));
+    l->norm = off_diagonal[k] = sqrt(vector_product(size, l->vector, next));
 }
 
 enum status system_spectrum(struct solid_system *system, struct preconditioner *p, const double *u,

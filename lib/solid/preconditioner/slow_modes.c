@@ -1,6 +1,7 @@
 #include "solid/preconditioner/slow_modes.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -20,20 +21,11 @@ enum status slow_modes_reserve(struct slow_modes *modes, int64_t count, struct e
     return STATUS_OK;
 }
 
-static double product(int64_t size, const double *x, const double *y)
-{
-    double sum = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 void slow_modes_add(struct slow_modes *modes, const double *mode, const double *momentum)
 {
     double *to = modes->mode + modes->count * modes->size;
     double *momentum_to = modes->momentum + modes->count * modes->size;
-    double square = product(modes->size, mode, momentum), scale = 1.0 / sqrt(square);
+    double square = vector_product(modes->size, mode, momentum), scale = 1.0 / sqrt(square);
     if (!(square > 0.0)) {
         return; /* round-off */
     }
@@ -47,7 +39,7 @@ void slow_modes_add(struct slow_modes *modes, const double *mode, const double *
 /* y += factor (direction . x) direction */
 static void add_along(int64_t size, double factor, const double *direction, const double *x, double *y)
 {
-    double amount = factor * product(size, direction, x);
+    double amount = factor * vector_product(size, direction, x);
     for (int64_t i = 0; i < size; i++) {
         y[i] += amount * direction[i];
     }
@@ -71,7 +63,7 @@ double slow_modes_square(const struct slow_modes *modes, const double *move)
 {
     double sum = 0.0;
     for (int64_t k = 0; k < modes->count; k++) {
-        double along = product(modes->size, modes->momentum + k * modes->size, move);
+        double along = vector_product(modes->size, modes->momentum + k * modes->size, move);
         sum += (1.0 / SLOW_MODE_GAIN - 1.0) * along * along;
     }
     return sum;
