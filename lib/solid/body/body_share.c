@@ -276,8 +276,8 @@ static enum status share_uses(struct body *body, struct error *error)
             uses[averages->use[i]] = true;
         }
     }
-    return halo_build(share->ranks, averages->use_count, uses, body->dim, owner_of_use, body,
-                      &share->uses, error);
+    return halo_build(share->ranks, averages->use_count, uses, body->dim, owner_of_use, body, &share->uses,
+                      error);
 }
 
 enum status body_share_rows(struct body *body, const bool *wanted, struct error *error)

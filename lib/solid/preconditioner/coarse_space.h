@@ -2,7 +2,7 @@
  * linear polynomials. Some nodes far from each other are centres. At each node the shares of the centres,
  * weights by distance, sum to one (Shepard). The basis of the coarse space, the coarse fields, are the shares
  * and their products with the coordinates. It contains all linear fields. The construction works on any
- * cloud, however thin. A node has shares of the centres within a radius only, about ten in three dimensions,
+ * cloud, however thin. A node has shares of the centres within a radius only, some six,
  * so that time and memory of the shares do not grow with the number of centres.
  *
  * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour

@@ -227,23 +227,22 @@ void preconditioner_apply(struct preconditioner *p, const double *force, double 
     slow_modes_accelerate(&p->slow, force, acceleration);
 }
 
-static void add_slow_mode(struct preconditioner *p, const double *mode, double *field)
+static void add_slow_mode(struct preconditioner *p, const double *mode)
 {
-    preconditioner_multiply(p, mode, field);
-    slow_modes_add(&p->slow, mode, field);
+    preconditioner_multiply(p, mode, slow_modes_next_momentum(&p->slow));
+    slow_modes_add(&p->slow, mode);
 }
 
-enum status preconditioner_add_slow_mode(struct preconditioner *p, const double *mode, double *field,
-                                         struct error *error)
+enum status preconditioner_add_slow_mode(struct preconditioner *p, const double *mode, struct error *error)
 {
     if (p->slow.count == SLOW_MODES_MOST) { /* the momenta of the others were formed with the first one */
         p->slow.count = 0;
         for (int64_t k = 1; k < SLOW_MODES_MOST; k++) {
-            add_slow_mode(p, p->slow.mode + k * p->slow.size, field);
+            add_slow_mode(p, p->slow.mode + k * p->slow.size);
         }
     }
     RETURN_IF_ERROR(slow_modes_reserve(&p->slow, p->slow.count + 1, error));
-    add_slow_mode(p, mode, field);
+    add_slow_mode(p, mode);
     return STATUS_OK;
 }
 

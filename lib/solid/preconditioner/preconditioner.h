@@ -119,10 +119,10 @@ void preconditioner_resist_open(const struct preconditioner *preconditioner,
 bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
                            bool leave, double *velocity, double *field);
 
-/* Add a slow mode, a move that satisfies the homogeneous conditions. If SLOW_MODES_MOST
- * modes are stored, the earliest is dropped first. field[node_count * dim]: scratch. */
+/* Add a slow mode, a move that satisfies the homogeneous conditions. If SLOW_MODES_MOST modes are stored, the
+ * earliest is dropped first. */
 MUST_CHECK enum status preconditioner_add_slow_mode(struct preconditioner *preconditioner, const double *mode,
-                                                    double *field, struct error *error);
+                                                    struct error *error);
 void preconditioner_drop_slow_modes(struct preconditioner *preconditioner);
 
 /* acceleration = M^-1 force. */

@@ -21,17 +21,16 @@ enum status slow_modes_reserve(struct slow_modes *modes, int64_t count, struct e
     return STATUS_OK;
 }
 
-void slow_modes_add(struct slow_modes *modes, const double *mode, const double *momentum)
+void slow_modes_add(struct slow_modes *modes, const double *mode)
 {
-    double *to = modes->mode + modes->count * modes->size;
-    double *momentum_to = modes->momentum + modes->count * modes->size;
+    double *to = modes->mode + modes->count * modes->size, *momentum = slow_modes_next_momentum(modes);
     double square = vector_product(modes->size, mode, momentum), scale = 1.0 / sqrt(square);
     if (!(square > 0.0)) {
         return; /* round-off */
     }
     for (int64_t i = 0; i < modes->size; i++) {
         to[i] = scale * mode[i];
-        momentum_to[i] = scale * momentum[i];
+        momentum[i] *= scale;
     }
     modes->count++;
 }

@@ -31,9 +31,16 @@ void slow_modes_free(struct slow_modes *modes);
 /* Make room for so many modes. Errors: STATUS_SYSTEM (memory). */
 MUST_CHECK enum status slow_modes_reserve(struct slow_modes *modes, int64_t count, struct error *error);
 
-/* Add a mode. momentum = M mode, where M includes the modes already stored; both are scaled so that their
- * product is 1. There must be room. A mode whose product is not positive, by round-off, is left out. */
-void slow_modes_add(struct slow_modes *modes, const double *mode, const double *momentum);
+/* Where the caller puts M mode, where M includes the modes already stored, before it adds a mode. */
+static inline double *slow_modes_next_momentum(const struct slow_modes *modes)
+{
+    return modes->momentum + modes->count * modes->size;
+}
+
+/* Add a mode, which may be a later one of those stored. It and its momentum are scaled so that their product
+ * is
+ * 1. There must be room. A mode whose product is not positive, by round-off, is left out. */
+void slow_modes_add(struct slow_modes *modes, const double *mode);
 
 /* acceleration += (M'^-1 - M^-1) force */
 void slow_modes_accelerate(const struct slow_modes *modes, const double *force, double *acceleration);

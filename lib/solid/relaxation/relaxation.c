@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,10 +30,7 @@ static const int iterations = 1, iterations_loading = 2;
  * `usual_square` follows the norm at a bounded rate. */
 static bool residual_grows(struct relaxation *r)
 {
-    double now2 = 0.0, usual2 = r->usual_square;
-    for (int64_t i = 0; i < r->size; i++) {
-        now2 += r->residual[i] * r->scratch[i];
-    }
+    double now2 = vector_product(r->size, r->residual, r->scratch), usual2 = r->usual_square;
     bool grows =
         usual2 > 0.0 && now2 > unstable_rise * usual2 && r->report->steps > r->calmed_step + calm_steps;
     r->usual_square = usual2 > 0.0 ? fmin(now2, usual_rise * usual2) : now2;
@@ -151,7 +149,7 @@ static bool follow(struct relaxation *r, struct error *error)
 {
     double *u = r->u;
     relaxation_estimate(r);
-    if (!relaxation_add_slow_mode(r, r->scratch, r->scratch + r->size, error)) {
+    if (!relaxation_add_slow_mode(r, r->scratch, error)) {
         return false;
     }
     relaxation_control_load(r);

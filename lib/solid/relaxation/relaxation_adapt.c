@@ -1,6 +1,6 @@
 /* Load, mass, time step and contacts adapted to the state of a relaxation. */
 #include "base/box.h"
-#include "base/memory.h"
+#include "base/vector.h"
 #include "solid/relaxation/relaxation_private.h"
 
 #include <math.h>
@@ -155,24 +155,20 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     return STATUS_OK;
 }
 
-bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *scratch, struct error *error)
+bool relaxation_add_slow_mode(struct relaxation *r, const double *du, struct error *error)
 {
-    double square = 0.0, speed2 = 0.0, along = 0.0;
     if (r->held_steps <= CHECK_INTERVAL || r->report->steps - r->augmented_step < CHECK_INTERVAL) {
         return true;
     }
-    for (int64_t i = 0; i < r->size; i++) {
-        square += du[i] * du[i];
-        speed2 += r->velocity[i] * r->velocity[i];
-        along += du[i] * r->velocity[i];
-    }
+    double square = vector_product(r->size, du, du), along = vector_product(r->size, du, r->velocity);
+    double speed2 = vector_product(r->size, r->velocity, r->velocity);
     bool steady = r->quotient > 0.0 && along > steady_cosine * sqrt(square * speed2);
     r->steady_checks = steady ? r->steady_checks + 1 : 0;
     if (r->steady_checks < least_steady_checks ||
         !(slow_ratio * slow_ratio * r->quotient < r->frequency * r->frequency)) {
         return true;
     }
-    r->failure = preconditioner_add_slow_mode(&r->preconditioner, du, scratch, error);
+    r->failure = preconditioner_add_slow_mode(&r->preconditioner, du, error);
     r->steady_checks = 0;
     r->slow_mode_step = r->report->steps;
     r->usual_square = 0.0;

@@ -123,8 +123,8 @@ int64_t relaxation_choose_ramp(const struct relaxation *r);
 
 /* If the load is held and the increment du[size] since the last check has been parallel to the velocity at
  * enough checks, and is slow: add it to the slow modes of M. Checks within an interval of an augmentation do
- * not count. scratch: size. False on failure. */
-bool relaxation_add_slow_mode(struct relaxation *r, const double *du, double *scratch, struct error *error);
+ * not count. False on failure. */
+bool relaxation_add_slow_mode(struct relaxation *r, const double *du, struct error *error);
 
 /* Reduce the rate of loading while the body moves farther in a step than prescribed displacements would move
  * it: forces may. */
