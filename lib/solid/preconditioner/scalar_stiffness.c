@@ -1,5 +1,6 @@
 #include "solid/preconditioner/scalar_stiffness.h"
 
+#include "base/chunks.h"
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -8,6 +9,8 @@
 
 #include <math.h>
 #include <stdlib.h>
+
+static const int64_t worthwhile = 1000; /* fields for a thread */
 
 /* The number of points of a contact with a rigid surface. Contacts between facets of the body do not count:
  * it is not known where they will touch, and the time step takes account of their stiffness. */
@@ -108,6 +111,7 @@ enum status scalar_stiffness_make(const struct solid_system *system, struct scal
     }
     RETURN_IF_ERROR(row_operator_ranges(&body->rows, &stiffness->range, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stiffness->slot, system->node_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->field_slot, stiffness->field_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stiffness->bond_stiffness, stiffness->bond_count, error));
     return list_bonds(stiffness, error);
 }
@@ -116,14 +120,17 @@ void scalar_stiffness_free(struct scalar_stiffness *stiffness)
 {
     sparse_free(&stiffness->bonds);
     sparse_free(&stiffness->fields);
-    FREE_ALL(stiffness->bond_stiffness, stiffness->range, stiffness->slot);
+    sparse_free(&stiffness->cells);
+    FREE_ALL(stiffness->bond_stiffness, stiffness->range, stiffness->slot, stiffness->cells_end,
+             stiffness->field_slot);
     *stiffness = (struct scalar_stiffness){0};
 }
 
 enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                             struct error *error)
 {
-    int64_t nodes = stiffness->system->node_count, fields = stiffness->field_count + stiffness->bond_count;
+    const struct body *body = &stiffness->system->body;
+    int64_t nodes = body->node_count, fields = stiffness->field_count + stiffness->bond_count;
     *row = (struct scalar_row){0};
     RETURN_IF_ERROR(NEW_ARRAY(&row->node, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->value, nodes, error));
@@ -131,16 +138,12 @@ enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct sca
     RETURN_IF_ERROR(NEW_ARRAY(&row->on_field, fields, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->sum, nodes, error));
     RETURN_IF_ERROR(NEW_ARRAY(&row->touched, fields, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&row->cell_seen, stiffness->system->body.point_count, error));
-    return NEW_ARRAY(&row->field_seen, fields, error);
-}
-
-enum status scalar_stiffness_prepare(struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
-                                     struct error *error)
-{
-    sparse_free(&stiffness->fields);
-    return row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count,
-                                  stiffness->slot, &stiffness->fields, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&row->cell_seen, body->point_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&row->field_seen, fields, error));
+    for (int64_t p = 0; p < nodes; p++) {
+        row->sum[p].node = (int32_t)body->node_order[p];
+    }
+    return STATUS_OK;
 }
 
 void scalar_row_free(struct scalar_row *row)
@@ -161,19 +164,18 @@ static double wave_modulus(const struct body *body, int64_t q)
     return body->weight[q] * (bulk + 4.0 / 3.0 * shear);
 }
 
-static void put(const double amount, int64_t f, int64_t i, struct scalar_row *row, int64_t *touched)
+static void put(double amount, int64_t f, struct scalar_row *row)
 {
-    if (row->field_seen[f] != i + 1) {
-        row->field_seen[f] = (int32_t)(i + 1);
-        row->touched[(*touched)++] = (int32_t)f;
+    if (row->field_seen[f] != row->turn) {
+        row->field_seen[f] = row->turn;
+        row->touched[row->touched_count++] = (int32_t)f;
         row->on_field[f] = 0.0;
     }
     row->on_field[f] += amount;
 }
 
 /* The forces of the mean gradient of a group of cells, the first of which is q. */
-static void add_mean(const struct scalar_stiffness *stiffness, int64_t q, int64_t i, struct scalar_row *row,
-                     int64_t *touched)
+static void add_mean(const struct scalar_stiffness *stiffness, int64_t q, struct scalar_row *row)
 {
     const struct body *body = &stiffness->system->body;
     int dim = body->dim, count[MERGED_MOST_CELLS];
@@ -191,15 +193,13 @@ static void add_mean(const struct scalar_stiffness *stiffness, int64_t q, int64_
     for (int64_t c = q; c < end; c++) {
         double share = smoothed_cells_share(body, c);
         for (int r = 0; r < count[c - q]; r++) {
-            put(share * modulus * vector_dot(dim, mean, gradient[c - q] + r * dim), field[c - q][r], i, row,
-                touched);
+            put(share * modulus * vector_dot(dim, mean, gradient[c - q] + r * dim), field[c - q][r], row);
         }
     }
 }
 
 /* The forces of the variance of the gradient in cell q. */
-static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, int64_t i,
-                         struct scalar_row *row, int64_t *touched)
+static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, struct scalar_row *row)
 {
     const struct body *body = &stiffness->system->body;
     int dim = body->dim;
@@ -220,86 +220,166 @@ static void add_variance(const struct scalar_stiffness *stiffness, int64_t q, in
         double force =
             EDGE_OFFSET * modulus *
             (vector_dot(dim, R + k * dim, grad_N + l * dim) + vector_dot(dim, R + l * dim, grad_N + k * dim));
-        put(force, smoothed_cells_edge(body, q, e), i, row, touched);
-        put(-0.5 * force, nodes + smoothed_cells_node(body, q, k), i, row, touched);
-        put(-0.5 * force, nodes + smoothed_cells_node(body, q, l), i, row, touched);
+        put(force, smoothed_cells_edge(body, q, e), row);
+        put(-0.5 * force, nodes + smoothed_cells_node(body, q, k), row);
+        put(-0.5 * force, nodes + smoothed_cells_node(body, q, l), row);
     }
 }
 
-/* Force on a node of the body's order, listed in row->node. */
-static inline void add_to_node(int32_t node, double amount, int64_t i, struct scalar_row *row)
+static void begin_row(struct scalar_row *row)
 {
-    struct scalar_sum *at = &row->sum[node];
-    if (at->row != i + 1) {
-        *at = (struct scalar_sum){.row = i + 1};
-        row->node[row->count++] = node;
-    }
-    at->sum += amount;
+    row->turn++;
+    row->touched_count = row->count = 0;
 }
 
-/* Sum the forces on the nodes up to i: the entries of the row. */
-static void spread(const struct scalar_stiffness *stiffness, int64_t touched, int64_t i,
-                   struct scalar_row *row)
-{
-    const struct body *body = &stiffness->system->body;
-    const int32_t *place;
-    int64_t kept = 0;
-    row->count = 0;
-    for (int64_t t = 0; t < touched; t++) {
-        struct average field = field_at(stiffness, row->touched[t], &place);
-        double force = row->on_field[row->touched[t]];
-        for (int64_t k = 0; k < field.length; k++) {
-            int32_t node = place != NULL ? place[field.idx[k]] : field.idx[k];
-            add_to_node(node, force * field.phi[k], i, row);
-        }
-    }
-    for (int64_t k = 0; k < row->count; k++) {
-        int64_t node = body->node_order[row->node[k]];
-        if (node <= i) {
-            row->node[kept++] = (int32_t)node;
-        }
-    }
-    row->count = kept;
-    qsort(row->node, (size_t)row->count, sizeof *row->node, compare_int32);
-    for (int64_t k = 0; k < row->count; k++) {
-        row->value[k] = row->sum[body->node_place[row->node[k]]].sum;
-    }
-}
-
-/* Add the cells that use field f. */
-static void add_cells(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row,
-                      int64_t *touched)
+/* The forces of the cells on fields if field f is 1 and all others are 0. */
+static void field_row(const struct scalar_stiffness *stiffness, int64_t f, struct scalar_row *row)
 {
     const struct body *body = &stiffness->system->body;
     const struct field_averages *averages = &body->cells.averages;
+    begin_row(row);
+    row->at_field[f] = 1.0;
     for (int64_t u = averages->use_ptr[f]; u < averages->use_ptr[f + 1]; u++) {
         int64_t q = smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
-        if (row->cell_seen[q] != i + 1) {
-            row->cell_seen[q] = (int32_t)(i + 1);
-            add_mean(stiffness, q, i, row, touched);
-            add_variance(stiffness, q, i, row, touched);
+        if (row->cell_seen[q] != row->turn) {
+            row->cell_seen[q] = row->turn;
+            add_mean(stiffness, q, row);
+            add_variance(stiffness, q, row);
         }
+    }
+    row->at_field[f] = 0.0;
+}
+
+/* At most how many fields the cells at field f have: edges, vertices and boundary faces. */
+static int64_t most_fields(const struct body *body, int64_t f)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    int64_t most = 0;
+    for (int64_t u = averages->use_ptr[f]; u < averages->use_ptr[f + 1]; u++) {
+        int64_t q = smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
+        int64_t end = smoothed_cells_group_end(body, q);
+        most += (end - q) * (CELL_EDGES(body->dim) + body->dim + 1) + field_averages_face(averages, end) -
+                field_averages_face(averages, q);
+    }
+    return most;
+}
+
+/* List the fields of the prepared nodes, and make room for their rows. field[]: the field of each row. */
+static enum status list_fields(struct scalar_stiffness *stiffness, int32_t **field, struct error *error)
+{
+    const struct sparse *fields = &stiffness->fields;
+    int64_t count = 0, entries = 0;
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        stiffness->field_slot[f] = -1;
+    }
+    for (int64_t k = 0; k < fields->ptr[fields->row_count]; k++) {
+        int32_t f = fields->idx[k];
+        if (stiffness->field_slot[f] < 0) {
+            stiffness->field_slot[f] = (int32_t)count++;
+            entries += most_fields(&stiffness->system->body, f);
+        }
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(field, count, error));
+    RETURN_IF_ERROR(sparse_new(count, stiffness->field_count, entries, &stiffness->cells, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&stiffness->cells_end, count, error));
+    for (int64_t f = 0; f < stiffness->field_count; f++) {
+        if (stiffness->field_slot[f] >= 0) {
+            (*field)[stiffness->field_slot[f]] = (int32_t)f;
+        }
+    }
+    for (int64_t r = 0; r < count; r++) {
+        stiffness->cells.ptr[r + 1] =
+            stiffness->cells.ptr[r] + most_fields(&stiffness->system->body, (*field)[r]);
+    }
+    return STATUS_OK;
+}
+
+/* Compute the rows of the cells. */
+static enum status make_field_rows(struct scalar_stiffness *stiffness, struct error *error)
+{
+    struct sparse *cells = &stiffness->cells;
+    SCRATCH int32_t *field = NULL;
+    enum status status = STATUS_OK;
+    RETURN_IF_ERROR(list_fields(stiffness, &field, error));
+    const struct chunks chunks = chunks_of(cells->row_count, worthwhile);
+#pragma omp parallel num_threads(chunks.threads)
+    {
+        struct scalar_row row;
+        struct error own;
+        enum status made = scalar_row_make(stiffness, &row, &own);
+#pragma omp for schedule(static)
+        for (int64_t r = 0; r < cells->row_count; r++) {
+            if (made == STATUS_OK) {
+                field_row(stiffness, field[r], &row);
+                int64_t at = cells->ptr[r];
+                for (int64_t k = 0; k < row.touched_count; k++, at++) {
+                    cells->idx[at] = row.touched[k];
+                    cells->value[at] = row.on_field[row.touched[k]];
+                }
+                stiffness->cells_end[r] = at;
+            }
+        }
+        scalar_row_free(&row);
+#pragma omp critical
+        if (made != STATUS_OK) {
+            status = made;
+            *error = own;
+        }
+    }
+    return status;
+}
+
+enum status scalar_stiffness_prepare(struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,
+                                     struct error *error)
+{
+    sparse_free(&stiffness->fields);
+    sparse_free(&stiffness->cells);
+    FREE_ALL(stiffness->cells_end);
+    stiffness->cells_end = NULL;
+    RETURN_IF_ERROR(row_operator_transpose(&stiffness->system->body.rows, stiffness->range, place, count,
+                                           stiffness->slot, &stiffness->fields, error));
+    return make_field_rows(stiffness, error);
+}
+
+/* Add the forces on nodes of the force on field f; list the nodes up to i. */
+static void spread(const struct scalar_stiffness *stiffness, int64_t f, int64_t i, struct scalar_row *row)
+{
+    const int32_t *place;
+    struct average field = field_at(stiffness, f, &place);
+    double force = row->on_field[f];
+    for (int64_t k = 0; k < field.length; k++) {
+        struct scalar_sum *at = &row->sum[place != NULL ? place[field.idx[k]] : field.idx[k]];
+        if (at->row != row->turn) {
+            at->row = row->turn;
+            at->sum = 0.0;
+            row->node[row->count] = at->node; /* without a branch that is taken half of the time */
+            row->count += at->node <= i;
+        }
+        at->sum += force * field.phi[k];
     }
 }
 
 void scalar_stiffness_row(const struct scalar_stiffness *stiffness, int64_t i, struct scalar_row *row)
 {
-    const struct sparse *bonds = &stiffness->bonds;
+    const struct sparse *bonds = &stiffness->bonds, *cells = &stiffness->cells;
+    const int32_t *node_place = stiffness->system->body.node_place;
     struct average fields = fields_of(stiffness, i);
-    int64_t touched = 0;
+    begin_row(row);
     for (int64_t k = 0; k < fields.length; k++) {
-        row->at_field[fields.idx[k]] = fields.phi[k];
-    }
-    for (int64_t k = 0; k < fields.length; k++) {
-        add_cells(stiffness, fields.idx[k], i, row, &touched);
+        int32_t slot = stiffness->field_slot[fields.idx[k]];
+        for (int64_t e = cells->ptr[slot]; e < stiffness->cells_end[slot]; e++) {
+            put(fields.phi[k] * cells->value[e], cells->idx[e], row);
+        }
     }
     for (int64_t k = bonds->ptr[i]; k < bonds->ptr[i + 1]; k++) {
         int64_t bond = bonds->idx[k];
-        put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, i, row,
-            &touched);
+        put(stiffness->bond_stiffness[bond] * bonds->value[k], stiffness->field_count + bond, row);
     }
-    for (int64_t k = 0; k < fields.length; k++) {
-        row->at_field[fields.idx[k]] = 0.0;
+    for (int64_t t = 0; t < row->touched_count; t++) {
+        spread(stiffness, row->touched[t], i, row);
     }
-    spread(stiffness, touched, i, row);
+    qsort(row->node, (size_t)row->count, sizeof *row->node, compare_int32);
+    for (int64_t k = 0; k < row->count; k++) {
+        row->value[k] = row->sum[node_place[row->node[k]]].sum;
+    }
 }

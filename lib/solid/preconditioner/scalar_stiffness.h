@@ -7,8 +7,7 @@
 
 struct solid_system;
 
-/* Fields: the rows of the edges, then the values at the nodes. Bonds: the averages that
- * penalties act on. */
+/* Fields: the rows of the edges, then the values at the nodes. Bonds: the averages that penalties act on. */
 struct scalar_stiffness {
     const struct solid_system *system;
     int64_t field_count, bond_count;
@@ -17,12 +16,15 @@ struct scalar_stiffness {
     double *bond_stiffness; /* N/m (2D: N/m2) */
     struct sparse fields;   /* a row for each prepared node: the fields that contain it, and its weights */
     int32_t *slot;          /* of nodes in the body's order: the number of that row */
+    struct sparse cells; /* a row for each field of these: the forces of the cells on fields, by its value */
+    int64_t *cells_end;  /* the end of each of these rows */
+    int32_t *field_slot; /* of fields: the number of that row */
 };
 
-/* A sum at a node for the row number `row` - 1. */
+/* The force on a node, while it is summed for the row number `row`. */
 struct scalar_sum {
     double sum;
-    int64_t row;
+    int32_t row, node; /* `node`: the caller's number */
 };
 
 /* Prepare for the rows of this process's nodes (body_share.h). */
@@ -30,15 +32,17 @@ MUST_CHECK enum status scalar_stiffness_make(const struct solid_system *system,
                                              struct scalar_stiffness *stiffness, struct error *error);
 void scalar_stiffness_free(struct scalar_stiffness *stiffness);
 
-/* A row, and scratch for it, which is zero between calls unless stated otherwise. */
+/* A row, and scratch for it. */
 struct scalar_row {
     int64_t count;
-    int32_t *node; /* columns of the entries, ascending, */
-    double *value; /* and values, N/m (2D: N/m2) */
-    double *at_field, *on_field;
+    int32_t *node;               /* columns of the entries, ascending, */
+    double *value;               /* and values, N/m (2D: N/m2) */
+    double *at_field, *on_field; /* values of fields, zero but for those in use; forces on fields */
+    int32_t *touched;            /* the fields with forces */
+    int64_t touched_count;
     struct scalar_sum *sum;          /* of nodes in the body's order */
-    int32_t *touched;                /* fields */
-    int32_t *cell_seen, *field_seen; /* 1 + the last row that uses each */
+    int32_t turn;                    /* number of rows computed so far, */
+    int32_t *cell_seen, *field_seen; /* and when each was used last */
 };
 MUST_CHECK enum status scalar_row_make(const struct scalar_stiffness *stiffness, struct scalar_row *row,
                                        struct error *error);
