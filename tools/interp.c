@@ -44,7 +44,7 @@ static const char usage[] =
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "stage_options.h"
-#include "stages/solved.h"
+#include "stages/stages.h"
 
 #include "approx/field/field.h"
 #include "io/stream/sections.h"
@@ -56,7 +56,7 @@ static const char usage[] =
 
 /* Points with their neighbours and shape functions. */
 struct points {
-    struct solved solved; /* the computed field whose shape functions these are, if any */
+    struct recorded solved; /* the computed field whose shape functions these are, if any */
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
@@ -159,7 +159,7 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
 
 /* Make supports and shape functions at the points: integration points of the stream, or points of a file,
  * which may be outside; the shape functions are those of the computed field, or chosen by options. */
-static enum status make_table(const struct tool *tool, const struct solved *known,
+static enum status make_table(const struct tool *tool, const struct recorded *known,
                               const struct support_options *support, const struct stream *stream, bool skip,
                               const char *file, struct points *points, struct error *error)
 {
@@ -171,8 +171,8 @@ static enum status make_table(const struct tool *tool, const struct solved *know
     RETURN_IF_ERROR(NEW_ARRAY(&radius, cells.node_count, error));
     RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
     if (known->radius != NULL) {
-        support = &known->recorded.support;
-        shapes = &known->recorded.shapes;
+        support = &known->support;
+        shapes = &known->shapes;
         memcpy(radius, known->radius, (size_t)cells.node_count * sizeof *radius);
     } else {
         RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
@@ -189,7 +189,7 @@ static enum status copy_points(const struct stream *stream, int dim, struct poin
                                struct error *error)
 {
     const struct section *x;
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.x", &x, error));
     points->count = x->rows;
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, x->rows * dim, error));
     memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
@@ -264,11 +264,7 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
     char attributes[64];
     const struct section *u;
     double *x;
-    TOOL_TRY(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error));
-    if (u->rows != node_count) {
-        tool_fail(tool, STATUS_INPUT, "u: %lld rows for %lld nodes", (long long)u->rows,
-                  (long long)node_count);
-    }
+    TOOL_TRY(tool, stream_field(stream, "u", dim, node_count, &u, &error));
     TOOL_TRY(tool, NEW_ARRAY(&x, points->count * dim, &error));
     u = solved_parameters(stream, &points->solved, u);
     evaluate(points, u, x);
@@ -285,15 +281,15 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
     const char *file = tool_value(tool, "points");
     struct support_options support = parse(tool, dim);
     if (tool_first_given(tool, choose_supports) == NULL) {
-        TOOL_TRY(tool, supports_read(stream, "parameters", &points->solved, &error));
+        TOOL_TRY(tool, stage_recorded(stream, "parameters", &points->solved, &error));
     }
-    struct solved known = points->solved;
+    struct recorded known = points->solved;
     if (file == NULL) {
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
         TOOL_TRY(tool, copy_points(stream, dim, points, &error));
         if (known.radius == NULL && radius != NULL) {
-            TOOL_TRY(tool, supports_read(stream, "support", &known, &error));
+            TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit")) {
         read_table(tool, file, tool_value(tool, "unit"), dim, points);

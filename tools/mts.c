@@ -41,8 +41,7 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/files/descriptor.h"
-#include "stages/check.h"
-#include "stages/views.h"
+#include "stages/stages.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>

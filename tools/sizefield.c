@@ -75,9 +75,9 @@ static enum status recover(const struct stream *stream, const char *field, struc
     const struct section *section;
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
-    RETURN_IF_ERROR(stream_field(stream, field, cells->node_count, &section, error));
+    RETURN_IF_ERROR(stream_field(stream, field, 0, cells->node_count, &section, error));
     if (stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(squared, cells->count, error));
     return fail_in(error,

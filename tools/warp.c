@@ -51,8 +51,7 @@ static const char usage[] =
 
 #include "images/image_body.h"
 #include "images/images.h"
-#include "stages/solved.h"
-#include "stages/views.h"
+#include "stages/stages.h"
 #include "images/warp_voxels.h"
 
 #include "approx/field/motion.h"
@@ -93,11 +92,7 @@ static const double *find_field(const struct tool *tool, const struct stream *st
 {
     const struct section *u;
     TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
-    TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error));
-    if (u->rows != cells->node_count) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld rows for %lld nodes", name, (long long)u->rows,
-                  (long long)cells->node_count);
-    }
+    TOOL_TRY(tool, stream_field(stream, name, cells->dim, cells->node_count, &u, &error));
     const double *values = u->data;
     for (int64_t i = 0; i < u->rows * u->cols; i++) {
         if (!(fabs(values[i]) <= 1e100)) {
@@ -201,12 +196,11 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
                          const struct cells *cells, const double *u, struct motion *motion)
 {
     struct error error;
-    struct solved solved;
-    tool_check(tool, supports_read(stream, "parameters", &solved, &error), &error);
+    struct recorded recorded;
+    tool_check(tool, stage_recorded(stream, "parameters", &recorded, &error), &error);
     const struct section *field = stream_find(stream, section);
-    const struct section *parameters = solved_parameters(stream, &solved, field);
-    struct motion_source source = {&solved.recorded.support, &solved.recorded.shapes, solved.radius,
-                                   parameters->data};
+    const struct section *parameters = solved_parameters(stream, &recorded, field);
+    struct motion_source source = {&recorded.support, &recorded.shapes, recorded.radius, parameters->data};
     enum status status = motion_build(cells, u, false, parameters != field ? &source : NULL, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);

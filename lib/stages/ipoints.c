@@ -94,11 +94,7 @@ static enum status adaptive_radii(const struct stream *stream, const struct ipoi
     if (recorded == NULL || options->given_radius) {
         return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
     }
-    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
-    if (recorded->rows != cells->node_count) {
-        return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
-                    (long long)recorded->rows, (long long)cells->node_count);
-    }
+    RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
     memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
     return STATUS_OK;
 }

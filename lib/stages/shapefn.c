@@ -2,9 +2,7 @@
 
 #include "approx/cells/face_edges.h"
 #include "base/memory.h"
-#include "io/stream/sections.h"
 
-#include <math.h>
 #include <string.h>
 
 /* The points of one section, and their lists of one prefix. */
@@ -21,20 +19,14 @@ static enum status view_points(const struct stream *stream, const char *section,
     int dim;
     const struct section *points, *radius;
     RETURN_IF_ERROR(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
-    RETURN_IF_ERROR(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
-    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    RETURN_IF_ERROR(stream_view(stream, section, &points, error));
+    RETURN_IF_ERROR(stream_view(stream, "support.radius", &radius, error));
     RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
-    if (radius->rows != of->node_count || of->lists.widen == NULL) {
-        return fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
+    if (of->lists.widen == NULL) {
+        return fail(error, STATUS_INPUT, "no section %s.widen: run support", prefix);
     }
-    RETURN_IF_ERROR(section_check_numbers(points, false, error));
-    RETURN_IF_ERROR(section_check_numbers(radius, true, error));
-    for (int64_t p = 0; p < points->rows; p++) {
-        if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
-            return fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
-                        of->lists.widen[p]);
-        }
-    }
+    RETURN_IF_ERROR(section_check_numbers(points, FINITE, error));
+    RETURN_IF_ERROR(section_check_numbers(radius, POSITIVE, error));
     of->x = points->data;
     of->radius = radius->data;
     of->section = section;
@@ -115,7 +107,7 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
 {
     const struct section *points;
     sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
     bool smoothed = points_are_smoothed(points);
     if (stream_find(stream, "faces") != NULL || smoothed) {
         RETURN_IF_ERROR(put_faces(stream, mls, smoothed, error));

@@ -31,16 +31,16 @@ static enum status view_side(struct side *side, const char *field, struct error 
 {
     struct nodal_field *view = &side->field;
     RETURN_IF_ERROR(stream_cells(&side->stream, false, &view->cells, error));
-    RETURN_IF_ERROR(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
-    RETURN_IF_ERROR(supports_read(&side->stream, "parameters", &side->solved, error));
+    RETURN_IF_ERROR(stream_field(&side->stream, field, 0, view->cells.node_count, &side->section, error));
+    RETURN_IF_ERROR(stage_recorded(&side->stream, "parameters", &side->solved, error));
     const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
     view->cols = side->section->cols;
     view->values = side->section->data;
     if (parameters != side->section) {
         view->parameters = parameters->data;
         view->radius = side->solved.radius;
-        view->support = &side->solved.recorded.support;
-        view->shapes = &side->solved.recorded.shapes;
+        view->support = &side->solved.support;
+        view->shapes = &side->solved.shapes;
     }
     return STATUS_OK;
 }
@@ -84,7 +84,7 @@ static enum status regions_read(const struct stream *stream, const struct cells 
     if (stream_find(stream, "cells.region") == NULL || cells->count == 0) {
         return STATUS_OK;
     }
-    enum status status = stream_regions(stream, cells, &of, error);
+    enum status status = stream_regions(stream, &of, error);
     regions->names = of.names;
     RETURN_IF_ERROR(status);
     int64_t count = of.names.count;
@@ -107,7 +107,6 @@ static void regions_free(struct regions *regions)
 static enum status regions_choose(const struct regions *regions, const char *name, bool **chosen,
                                   struct error *error)
 {
-    char list[256];
     *chosen = NULL;
     if (name == NULL) {
         return STATUS_OK;
@@ -115,7 +114,7 @@ static enum status regions_choose(const struct regions *regions, const char *nam
     int64_t region = names_find(&regions->names, name);
     if (region < 0) {
         return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", name,
-                    names_text(&regions->names, list));
+                    regions->names.count > 0 ? regions->names.list : "none");
     }
     RETURN_IF_ERROR(NEW_ARRAY(chosen, regions->node_count, error));
     for (int64_t n = 0; n < regions->node_count; n++) {

@@ -1,7 +1,7 @@
 /* The difference of nodal fields of two streams, and its output: shared by fieldcmp and fielderr. */
 #pragma once
 
-#include "stages/solved.h"
+#include "stages/stages.h"
 #include "tool.h"
 
 #include "approx/field/field_compare.h"
@@ -19,7 +19,7 @@ struct side {
     struct stream stream;
     const struct section *section; /* of the field */
     struct nodal_field field;
-    struct solved solved;
+    struct recorded solved; /* parameters of that field, if there are any */
 };
 
 /* The difference of two fields. */

@@ -1,6 +1,5 @@
 #include "stage_options.h"
 
-#include "stages/mls_settings.h"
 #include "stages/stages.h"
 
 #include <string.h>
@@ -37,7 +36,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
         status = stage_support(stream, &options, &report, &error);
     } else {
         struct recorded recorded;
-        status = stage_recorded(stream, "support", dim, &recorded, &error);
+        status = stage_recorded(stream, "support", &recorded, &error);
         if (status == STATUS_OK) {
             status = stage_shapefn(stream, &recorded.support.mls, &error);
         }

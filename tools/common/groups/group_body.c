@@ -128,7 +128,7 @@ static enum status read_regions(const struct stream *stream, struct group_body *
     if (stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(stream, &body->cells, &regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     RETURN_IF_ERROR(add_named(list, &regions.names, error));
     return sort_items(list, body->cells.count, regions.of_cell, NULL, error);
 }

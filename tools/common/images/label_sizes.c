@@ -52,5 +52,5 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
                   (long long)sizes->cells.node_count);
     }
     sizes->size = section->data;
-    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, true, &error), "--sizes"));
+    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
 }

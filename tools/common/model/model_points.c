@@ -1,8 +1,6 @@
 /* Measured points of a section: their table, and the field there. */
 #include "model/model.h"
 
-#include "stages/stages.h"
-
 #include "approx/field/field.h"
 #include "io/files/table.h"
 
@@ -84,7 +82,6 @@ static enum status find_field(struct point_section *p, struct error *error)
 {
     const struct cells *cells = &p->model->assembly.cells;
     const struct measured *measured = &p->condition->measured;
-    const struct section *radius;
     struct recorded recorded;
     SCRATCH double *reach = NULL;
     double given = p->section->reach;
@@ -105,12 +102,11 @@ static enum status find_field(struct point_section *p, struct error *error)
                                          "wrong place?");
         }
     }
-    RETURN_IF_ERROR(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
-    if (radius->rows != cells->node_count) {
-        return fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
+    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", &recorded, error));
+    if (recorded.radius == NULL) {
+        return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
-    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data,
+    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, recorded.radius,
                                       measured->count, measured->x, p->section->table, &field, error));
     return keep_field(p, &field, error);
 }

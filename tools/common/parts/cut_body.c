@@ -41,7 +41,7 @@ static void check_groups(const struct cut_body *whole)
     FREED_BY(named_sets_free) struct named_sets sets = {0};
     const int32_t *side;
     if (stream_find(whole->stream, "cells.region") != NULL) {
-        TOOL_TRY(tool, stream_regions(whole->stream, cells, &regions, &error));
+        TOOL_TRY(tool, stream_regions(whole->stream, &regions, &error));
     }
     TOOL_TRY(tool, stage_sides(whole->stream, "parameters", &side, &error));
     TOOL_TRY(tool, stream_facets(whole->stream, has(whole, "facets", "facets.set"), cells, &facets, &error));

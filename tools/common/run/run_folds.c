@@ -120,15 +120,14 @@ static enum status ask_field(struct run *run, int64_t count, const double *u, st
 {
     struct run_folds *folds = &run->folds;
     const struct cells *cells = &run->model->assembly.cells;
-    const struct section *radius = stream_find(run->stream, "support.radius");
     struct recorded recorded;
     SCRATCH double *least = NULL;
-    if (radius == NULL || radius->rows != cells->node_count) {
+    RETURN_IF_ERROR(stage_recorded(run->stream, "support", &recorded, error));
+    if (recorded.radius == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stage_recorded(run->stream, "support", cells->dim, &recorded, error));
     if (!folds->has_space) {
-        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, radius->data, &folds->space, error));
+        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, recorded.radius, &folds->space, error));
         folds->has_space = true;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&least, count, error));

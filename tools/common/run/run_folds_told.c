@@ -1,8 +1,6 @@
 /* What is said of folds: where and from when on, at rest and at the end, with the remedy. */
 #include "run/run.h"
 
-#include "stages/names.h"
-
 #include <string.h>
 
 /* The name of a group that a facet of the boundary is in, or "the boundary". */
