@@ -61,7 +61,6 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "groups/group_body.h"
-#include "groups/group_select.h"
 #include "tool.h"
 
 #include "base/box.h"
@@ -356,6 +355,6 @@ int main(int argc, char *argv[])
         }
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

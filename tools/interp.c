@@ -218,8 +218,7 @@ static void put_values(const struct tool *tool, const struct stream *stream, con
     const struct section *from = solved_parameters(stream, &points->solved, field);
     TOOL_TRY(tool, NEW_ARRAY(&values, points->count * field->cols, &error));
     evaluate(points, from, values);
-    TOOL_TRY(tool, stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes,
-                              values, true, &error));
+    tool_put(tool, output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values);
 }
 
 static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
@@ -271,8 +270,8 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
     }
-    TOOL_TRY(tool, stream_put(output, "x.deformed", TYPE_F8, points->count, dim,
-                              vector_attributes(dim, "m", attributes), x, true, &error));
+    tool_put(tool, output, "x.deformed", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
+             x);
 }
 
 /* Find the points, those of the stream or of a file, with supports and shape functions. */
@@ -307,8 +306,8 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
     char attributes[64];
     stream_init(output);
     stream_inherit(output, stream);
-    TOOL_TRY(tool, stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
-                              vector_attributes(dim, "m", attributes), points->x, true, &error));
+    tool_put(tool, output, "nodes.x", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
+             points->x);
 }
 
 int main(int argc, char *argv[])
@@ -334,10 +333,9 @@ int main(int argc, char *argv[])
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     if (tool_given(&tool, "skip-outside")) {
-        TOOL_TRY(&tool,
-                 stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error));
+        tool_put(&tool, &output, "points.row", TYPE_I8, points.count, 1, "", array_take(&points.row));
     }
-    tool_write(&tool, &output, tool_given(&tool, "text"));
+    tool_write(&tool, &output);
     field_table_free(&points.table);
     stream_free(&output);
     free(points.row);

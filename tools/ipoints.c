@@ -116,6 +116,6 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "verbose")) {
         tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
     }
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

@@ -88,9 +88,9 @@ static int print(struct tool *tool)
 static int convert(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
-    bool text = strcmp(tool->operands[0], "text") == 0;
+    tool->text = strcmp(tool->operands[0], "text") == 0;
     tool_read(tool, tool->operands[1], &stream);
-    tool_copy(tool, &stream, text);
+    tool_copy(tool, &stream);
     return tool_end(tool);
 }
 
@@ -152,7 +152,7 @@ static int recover(struct tool *tool)
         tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,
                   (long long)stream.section_count);
     }
-    tool_write(tool, &stream, tool_given(tool, "text"));
+    tool_write(tool, &stream);
     return tool_end(tool);
 }
 
@@ -196,7 +196,7 @@ static int select_sections(struct tool *tool)
             tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns[i]);
         }
     }
-    tool_write(tool, &stream, tool_given(tool, "text"));
+    tool_write(tool, &stream);
     return tool_end(tool);
 }
 

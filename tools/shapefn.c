@@ -50,6 +50,6 @@ int main(int argc, char *argv[])
     /* Other tools evaluate the shape functions by these settings. */
     const struct section *radius = stream_find(&stream, "support.radius");
     TOOL_TRY(&tool, stage_record(&stream, &recorded, radius->rows, radius->data, &error));
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

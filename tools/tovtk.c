@@ -49,15 +49,16 @@ static const char usage[] =
 #include <string.h>
 
 /* Write one frame as a vtu file. */
-static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
+static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, FILE *file,
+                             struct error *error)
 {
     RETURN_IF_ERROR(plot_choose(plot, frame, error));
     return vtu_write(file, &plot->mesh, plot->field_count, plot->fields, plot->number_count, plot->numbers,
-                     text, error);
+                     tool->text, error);
 }
 
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
-static void write_series(const struct tool *tool, struct plot *plot, bool text)
+static void write_series(const struct tool *tool, struct plot *plot)
 {
     struct error error;
     struct target target;
@@ -77,7 +78,7 @@ static void write_series(const struct tool *tool, struct plot *plot, bool text)
         paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
                              frame == FRAME_NONE ? 0LL : (long long)frame);
         target_open(tool, &target, paths[i]);
-        target_close(tool, &target, write_vtu(plot, frame, text, target.file, &error), &error);
+        target_close(tool, &target, write_vtu(tool, plot, frame, target.file, &error), &error);
         names[i] = paths[i] + folder;
     }
     target_open(tool, &target, tool->output);
@@ -109,15 +110,14 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &plot.stream);
     tool_check(&tool, plot_find(&plot, &error), &error);
     if (is_series) {
-        write_series(&tool, &plot, tool_given(&tool, "text"));
+        write_series(&tool, &plot);
     } else {
         if (plot.frame_count > 0) {
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
         target_open(&tool, &target, tool.output);
-        target_close(&tool, &target,
-                     write_vtu(&plot, FRAME_NONE, tool_given(&tool, "text"), target.file, &error), &error);
+        target_close(&tool, &target, write_vtu(&tool, &plot, FRAME_NONE, target.file, &error), &error);
     }
     return tool_end(&tool);
 }

@@ -64,13 +64,9 @@ static const char usage[] =
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
-#include "images/label_mesh.h"
-#include "images/label_part.h"
-#include "images/label_sizes.h"
-#include "images/label_surface.h"
 #include "cell_report.h"
+#include "images/label_image.h"
 
-#include "approx/cells/cells.h"
 #include "approx/cells/parts.h"
 
 #include <ctype.h>
@@ -253,7 +249,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
 }
 
 static void write_stream(const struct tool *tool, const struct label_image *image,
-                         const struct label_cells *result, bool text)
+                         const struct label_cells *result)
 {
     FREED_BY(label_mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
@@ -269,7 +265,7 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
         }
     }
     TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
-    tool_write(tool, &stream, text);
+    tool_write(tool, &stream);
 }
 
 static void check_options(const struct tool *tool)
@@ -334,7 +330,7 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &result, &surface);
     } else {
-        write_stream(&tool, &image, &result, tool_given(&tool, "text"));
+        write_stream(&tool, &image, &result);
     }
     stream_free(&sizes.stream);
     return tool_end(&tool);

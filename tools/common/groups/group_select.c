@@ -1,4 +1,4 @@
-#include "groups/group_select.h"
+#include "groups/group_body.h"
 
 #include "approx/cells/parts.h"
 #include "base/memory.h"

@@ -1,6 +1,5 @@
-#include "images/label_mesh.h"
+#include "images/label_image.h"
 
-#include "approx/cells/cells.h"
 #include "base/lists.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "images/label_sizes.h"
+#include "images/label_image.h"
 
 #include "stages/views.h"
 

@@ -1,8 +1,7 @@
-#include "images/label_surface.h"
+#include "images/label_image.h"
 
 #include "output.h"
 
-#include "approx/cells/cells.h"
 #include "base/vector.h"
 
 #include <math.h>

@@ -146,7 +146,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     }
     double *field = run_new_values(run, nodes * dim);
     assembly_nodal_field(&run->model->assembly, progress->u, field);
-    TOOL_TRY(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error));
+    tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
 }
 
 /* The state of the run, and of the checks of this program. */
