@@ -165,10 +165,7 @@ static int grid_axis(const struct tool *tool, const struct image *image, int wor
     int found = 3;
     bool oblique = false;
     for (int e = 0; e < 3; e++) {
-        double length = sqrt(image->to_world[0][e] * image->to_world[0][e] +
-                             image->to_world[1][e] * image->to_world[1][e] +
-                             image->to_world[2][e] * image->to_world[2][e]);
-        double along = fabs(image->to_world[world][e]) / length;
+        double along = fabs(image->to_world[world][e]) / image_step(image, e);
         if (along > 1 - 1e-6) {
             found = e;
         }
