@@ -147,8 +147,7 @@ int main(int argc, char *argv[])
     }
     struct cells cells = {cloud.dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     tool_note_thin(&tool, &cells);
-    SCRATCH int32_t *region = NULL;
-    TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
+    TOOL_SCRATCH(&tool, int32_t, region, cloud.cell_count);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
         put_field(&tool, &stream, &cloud, (enum cloud_function)function);

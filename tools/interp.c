@@ -126,9 +126,8 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
                                 bool skip, const char *file, struct points *points, struct error *error)
 {
     int dim = cells->dim;
-    SCRATCH bool *outside = NULL;
     int64_t kept = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, points->count, error));
+    NEW_SCRATCH(bool, outside, points->count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&points->row, points->count, error));
     RETURN_IF_ERROR(
         field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
@@ -164,11 +163,10 @@ static enum status make_table(const struct tool *tool, const struct recorded *kn
                               const char *file, struct points *points, struct error *error)
 {
     struct cells cells;
-    SCRATCH double *spacing = NULL, *radius = NULL;
     const struct mls *shapes = NULL;
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells.node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells.node_count, error));
+    NEW_SCRATCH(double, spacing, cells.node_count, error);
+    NEW_SCRATCH(double, radius, cells.node_count, error);
     RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
     if (known->radius != NULL) {
         support = &known->support;

@@ -85,14 +85,12 @@ static double shown(int dim, double volume)
 static void report_labels(const struct tool *tool, const struct label_image *image,
                           const struct label_cells *result, const struct cells *cells, bool verbose)
 {
-    SCRATCH double *volume = NULL, *voxels = NULL;
-    SCRATCH int64_t *lost = NULL;
     int dim = result->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
-    TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
+    TOOL_SCRATCH(tool, double, volume, image->labels.count);
+    TOOL_SCRATCH(tool, int64_t, lost, image->labels.count);
     TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
+    TOOL_SCRATCH(tool, double, voxels, image->labels.count);
     for (int64_t c = 0; c < cells->count; c++) {
         volume[image->region[result->label[c]]] += cell_volume(cells, c);
     }
@@ -170,10 +168,9 @@ static void report_apart(const struct tool *tool, const struct label_image *imag
 static void report_bodies(const struct tool *tool, const struct label_image *image,
                           const struct label_cells *result, const struct cells *cells, bool verbose)
 {
-    SCRATCH int32_t *part = NULL;
     int32_t count = 0;
     double total = 0, first = 0;
-    TOOL_TRY(tool, NEW_ARRAY(&part, cells->count, &error));
+    TOOL_SCRATCH(tool, int32_t, part, cells->count);
     TOOL_TRY(tool, cells_parts(cells, part, &count, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         double volume = cell_volume(cells, c);

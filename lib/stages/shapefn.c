@@ -38,11 +38,11 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
                             const char *prefix, const char *phi_name, bool gradients, struct error *error)
 {
     struct tabulated of;
-    SCRATCH double *phi = NULL, *dphi = NULL;
+    SCRATCH double *dphi = NULL;
     char attributes[64];
     RETURN_IF_ERROR(view_points(stream, section, prefix, &of, error));
     int64_t pairs = of.lists.ptr[of.lists.count];
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, pairs, error));
+    NEW_SCRATCH(double, phi, pairs, error);
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&dphi, pairs * mls->dim, error));
     }
@@ -74,14 +74,13 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     struct faces faces;
     struct tabulated of;
     FREED_BY(shape_rows_free) struct shape_rows boundary = {0}, edges = {0};
-    SCRATCH double *phi = NULL;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
     RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_point_count(&faces)) {
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, of.lists.ptr[of.lists.count], error));
+    NEW_SCRATCH(double, phi, of.lists.ptr[of.lists.count], error);
     RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, of.section, phi, NULL, error));
     if (smoothed) {
         RETURN_IF_ERROR(shape_on_edges(&of.lists, phi, &faces, &edges, error));

@@ -10,8 +10,7 @@ static enum status local_radii(const struct stream *stream, const struct support
                                int64_t node_count, const double *x, double *radius, struct error *error)
 {
     struct cells cells;
-    SCRATCH double *spacing = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, node_count, error));
+    NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (cells.count > 0) {
         RETURN_IF_ERROR(cells_node_spacing(&cells, spacing, error));
@@ -32,8 +31,7 @@ enum status stage_radii(const struct stream *stream, const struct support_option
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
-    SCRATCH double *radius = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
+    NEW_SCRATCH(double, radius, node_count, error);
     RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
     return stage_record(stream, &(struct recorded){NULL, *options, options->mls}, node_count, radius, error);
 }

@@ -230,8 +230,7 @@ static enum status view_edges(const struct stream *stream, struct faces *faces, 
         }
         faces->edge_count += faces->edge[i] == faces->edge_count;
     }
-    SCRATCH int32_t *ends = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    NEW_SCRATCH(int32_t, ends, faces->edge_count * 2, error);
     return face_edges_ends(faces, ends, error);
 }
 

@@ -204,8 +204,7 @@ static enum status print_regions(const struct findings *findings, struct error *
 {
     const struct field_comparison *comparison = &findings->comparison;
     const struct names *names = &findings->regions.names;
-    SCRATCH int64_t *node = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&node, comparison->count, error));
+    NEW_SCRATCH(int64_t, node, comparison->count, error);
     for (int64_t r = 0; r < names->count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;

@@ -66,6 +66,11 @@ void tool_check(const struct tool *tool, enum status status, const struct error 
         tool_check((tool), (expression), &error);                                                            \
     } while (0)
 
+/* A local array of zeros that is freed wherever its function is left; exits if there is no memory. */
+#define TOOL_SCRATCH(tool, type, pointer, count)                                                             \
+    SCRATCH type *pointer = NULL;                                                                            \
+    TOOL_TRY(tool, NEW_ARRAY(&pointer, (count), &error))
+
 /* Return memory; exits if it is NULL. */
 void *tool_memory(const struct tool *tool, void *memory);
 

@@ -130,8 +130,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
                        const char *table)
 {
     int64_t count = (int64_t)image_voxels(source);
-    SCRATCH struct values *values = NULL;
-    TOOL_TRY(tool, NEW_ARRAY(&values, 1, &error));
+    TOOL_SCRATCH(tool, struct values, values, 1);
     collect_values(tool, source, values);
     if (table == NULL) {
         name_values(tool, values, &image->table);

@@ -27,13 +27,12 @@ static void choose_regions(const struct tool *tool, const struct stream *stream,
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     const struct names *names = &regions.names;
     const struct section *cell;
-    SCRATCH bool *wanted = NULL;
     int64_t kept = 0;
     TOOL_TRY(tool, stream_view(stream, "points.cell", &cell, &error));
     TOOL_TRY(tool, stream_regions(stream, &regions, &error));
     TOOL_TRY(tool, section_check_indices(cell, 0, stream_find(stream, "cells.region")->rows, "cell",
                                          " of a region", &error));
-    TOOL_TRY(tool, NEW_ARRAY(&wanted, names->count, &error));
+    TOOL_SCRATCH(tool, bool, wanted, names->count);
     for (char *name; (name = strsep(&list, ",")) != NULL;) {
         int64_t index = names_find(names, name);
         if (index < 0) {

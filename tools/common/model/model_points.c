@@ -85,10 +85,9 @@ static enum status find_field(struct point_section *p, struct error *error)
     struct recorded recorded;
     SCRATCH double *reach = NULL;
     double given = p->section->reach;
-    SCRATCH bool *outside = NULL;
     struct field_table field = {0};
     RETURN_IF_ERROR(NEW_ARRAY(&reach, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, measured->count, error));
+    NEW_SCRATCH(bool, outside, measured->count, error);
     RETURN_IF_ERROR(field_spacing(cells, reach, error));
     for (int64_t n = 0; n < cells->node_count && given > 0.0; n++) {
         reach[n] = given;

@@ -150,13 +150,12 @@ static void put_numbers(const struct cut_body *whole, struct stream *part, const
 void cut_body_make_part(const struct cut_body *whole, int32_t number, const struct body_part *body,
                         struct stream *part)
 {
-    SCRATCH int32_t *place = NULL, *owner = NULL, *facet = NULL, *member = NULL;
-    SCRATCH bool *has_cell = NULL;
+    SCRATCH int32_t *facet = NULL, *member = NULL;
     struct part_rows rows[KINDS] = {{body->node_count, body->node}, {body->cell_count, body->cell}};
     char attributes[192];
-    TOOL_TRY(whole->tool, NEW_ARRAY(&place, whole->cells.node_count, &error));
-    TOOL_TRY(whole->tool, NEW_ARRAY(&has_cell, whole->cells.count, &error));
-    TOOL_TRY(whole->tool, NEW_ARRAY(&owner, body->node_count, &error));
+    TOOL_SCRATCH(whole->tool, int32_t, place, whole->cells.node_count);
+    TOOL_SCRATCH(whole->tool, bool, has_cell, whole->cells.count);
+    TOOL_SCRATCH(whole->tool, int32_t, owner, body->node_count);
     for (int64_t n = 0; n < whole->cells.node_count; n++) {
         place[n] = -1;
     }

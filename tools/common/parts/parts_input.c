@@ -82,8 +82,7 @@ static int64_t begin(const struct tool *tool, const char *operand, struct stream
 /* A checksum of the checksums of all parts. */
 static uint32_t identify(const struct tool *tool, const struct rejoin *rejoin, const int64_t *first)
 {
-    SCRATCH uint32_t *each = NULL;
-    TOOL_TRY(tool, NEW_ARRAY(&each, rejoin->part_count, &error));
+    TOOL_SCRATCH(tool, uint32_t, each, rejoin->part_count);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         each[k] = rejoin->part[k].elsewhere ? 0 : checkpoint_identify_input(&rejoin->part[k].stream);
     }
@@ -205,7 +204,7 @@ static enum status share_small(struct rejoin *rejoin, const int64_t *first, char
 {
     const struct ranks *ranks = process_ranks();
     SCRATCH char *own = NULL;
-    SCRATCH int64_t *units = NULL, *begin = NULL;
+    SCRATCH int64_t *units = NULL;
     size_t size;
     if (ranks == NULL) {
         return STATUS_OK;
@@ -218,7 +217,7 @@ static enum status share_small(struct rejoin *rejoin, const int64_t *first, char
         return fail_memory(error, "parts");
     }
     RETURN_IF_ERROR(ranks_list(ranks, (int64_t)(size + UNIT_SENT - 1) / UNIT_SENT, &units, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&begin, ranks->count + 1, error));
+    NEW_SCRATCH(int64_t, begin, ranks->count + 1, error);
     for (int r = 0; r < ranks->count; r++) {
         begin[r + 1] = begin[r] + units[r];
     }

@@ -144,7 +144,6 @@ int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, 
 
 void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
 {
-    SCRATCH bool *found = NULL;
     int64_t total = 0;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
@@ -156,7 +155,7 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: %lld rows in all parts, not %lld: cut again", called,
                   (long long)total, (long long)rejoin->rows[kind]);
     }
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&found, total, &error));
+    TOOL_SCRATCH(rejoin->tool, bool, found, total);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t i = 0; i < part->count[kind]; i++) {
@@ -211,15 +210,13 @@ static void map_body(struct rejoin *rejoin)
 static void find_edges(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;
-    SCRATCH int32_t *degree = NULL;
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&degree, rejoin->rows[ROWS_NODES], &error));
+    TOOL_SCRATCH(rejoin->tool, int32_t, degree, rejoin->rows[ROWS_NODES]);
     for (int64_t i = 0; i < rejoin->rows[ROWS_CELLS] * vertices; i++) {
         degree[rejoin->cell[i]]++;
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        SCRATCH int32_t *here = NULL;
-        TOOL_TRY(rejoin->tool, NEW_ARRAY(&here, part->cells.node_count, &error));
+        TOOL_SCRATCH(rejoin->tool, int32_t, here, part->cells.node_count);
         TOOL_TRY(rejoin->tool, NEW_ARRAY(&part->at_edge, part->cells.node_count, &error));
         for (int64_t i = 0; i < part->cells.count * vertices; i++) {
             here[part->cells.node[i]]++;

@@ -121,7 +121,6 @@ static enum status ask_field(struct run *run, int64_t count, const double *u, st
     struct run_folds *folds = &run->folds;
     const struct cells *cells = &run->model->assembly.cells;
     struct recorded recorded;
-    SCRATCH double *least = NULL;
     RETURN_IF_ERROR(stage_recorded(run->stream, "support", &recorded, error));
     if (recorded.radius == NULL) {
         return STATUS_OK;
@@ -130,7 +129,7 @@ static enum status ask_field(struct run *run, int64_t count, const double *u, st
         RETURN_IF_ERROR(support_space_build(&recorded.support, cells, recorded.radius, &folds->space, error));
         folds->has_space = true;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&least, count, error));
+    NEW_SCRATCH(double, least, count, error);
     enum status status = field_least_determinants(&recorded.support, &recorded.shapes, &folds->space, count,
                                                   folds->flat, u, least, error);
     for (int64_t i = 0; i < count && status == STATUS_OK; i++) {

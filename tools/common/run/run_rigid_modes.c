@@ -64,10 +64,9 @@ static bool hold_each_other(struct bodies *bodies, const struct contact *contact
 static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
                                  struct error *error)
 {
-    SCRATCH bool *there = NULL;
     bool more = true;
     int all = system->dim == 2 ? 3 : 6;
-    RETURN_IF_ERROR(NEW_ARRAY(&there, bodies->count, error));
+    NEW_SCRATCH(bool, there, bodies->count, error);
     for (int64_t c = 0; c < system->contact_count; c++) {
         if (system->contacts[c].between == NULL) {
             mark_bodies(bodies, &system->contact_points[c], bodies->touches);
