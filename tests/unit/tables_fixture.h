@@ -4,6 +4,7 @@
 #include "unit.h"
 
 #include "approx/points/cloud.h"
+#include "solid/assembly/assembly.h"
 #include "stages/stages.h"
 
 /* Tables on nodes with cells, in a stream, and what an assembly takes of both, in view. gauss_points of each
