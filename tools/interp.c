@@ -236,8 +236,8 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
-    char *list = tool_memory(tool, strdup(names)), *name;
-    for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
+    SCRATCH char *list = tool_memory(tool, strdup(names));
+    for (char *rest = list, *name; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
             tool_fail(tool, STATUS_INPUT,
@@ -251,7 +251,6 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
         }
         put_values(tool, stream, field, points, output);
     }
-    free(list);
 }
 
 /* Put x.deformed, the points moved by the displacement. */
@@ -302,7 +301,6 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
                          struct stream *output)
 {
     char attributes[64];
-    stream_init(output);
     stream_inherit(output, stream);
     tool_put(tool, output, "nodes.x", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
              points->x);
@@ -311,7 +309,7 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream, output;
+    FREED_BY(stream_free) struct stream stream = {0}, output = {0};
     struct points points = {0};
     int dim;
     int64_t node_count;
@@ -335,8 +333,6 @@ int main(int argc, char *argv[])
     }
     tool_write(&tool, &output);
     field_table_free(&points.table);
-    stream_free(&output);
     free(points.row);
-    stream_free(&stream);
     return tool_end(&tool);
 }

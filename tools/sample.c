@@ -210,7 +210,6 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             char place[96];
             point_text(rows->dim, rows->x + p * rows->dim, place);
-            free(moduli);
             tool_fail(tool, STATUS_INPUT,
                       "%s: row %lld at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "

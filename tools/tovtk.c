@@ -60,18 +60,15 @@ static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
 static void write_series(const struct tool *tool, struct plot *plot)
 {
-    struct error error;
     struct target target;
     int64_t count = plot_state_count(plot);
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
-    SCRATCH char **paths = NULL,
-                 **names = NULL; /* the names are relative to the .pvd file: the ends of the paths */
-    SCRATCH double *times = NULL;
-    tool_check(tool, NEW_ARRAY(&paths, count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&names, count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&times, count, &error), &error);
+    TOOL_SCRATCH(tool, char *, paths, count);
+    TOOL_SCRATCH(tool, char *, names, count); /* relative to the .pvd file: the ends of the paths */
+    TOOL_SCRATCH(tool, double, times, count);
+    struct error error;
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = plot_frame(plot, i);
         tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);

@@ -251,7 +251,6 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     FREED_BY(label_mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
-    stream_init(&stream);
     for (int32_t p = 0; p < image->part_count; p++) {
         bool found = false;
         for (int32_t s = 0; s < mesh.facet_sets.count; s++) {

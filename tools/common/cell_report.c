@@ -15,8 +15,6 @@ enum status cell_report_make(const struct cells *cells, double bound, struct cel
     *report = (struct cell_report){0};
     NEW_SCRATCH(int32_t, part, cells->count, error);
     RETURN_IF_ERROR(cells_parts(cells, part, &report->bodies, error));
-    free(part);
-    part = NULL;
     NEW_SCRATCH(double, quality, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
         quality[c] = cell_quality(cells, c);

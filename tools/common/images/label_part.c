@@ -39,7 +39,8 @@ static bool is_within(const struct place *place, const struct labels *labels, co
 static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
 {
     double value[4] = {0};
-    char *copy = tool_memory(tool, strdup(text)), *rest = copy;
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *rest = copy;
     int count = 0;
     for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
         if (count == dim + 1) {
@@ -53,7 +54,6 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
     }
     memcpy(place->ball.centre, value, sizeof place->ball.centre);
     place->ball.radius = value[dim];
-    free(copy);
 }
 
 static void check_name(const struct tool *tool, const struct label_image *image, const char *name)

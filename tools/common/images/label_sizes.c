@@ -9,7 +9,8 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
                        double spacing, double *finest)
 {
     bool *fine = NULL;
-    char *copy = tool_memory(tool, strdup(text)), *names = copy;
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *names = copy;
     const char *length = strsep(&names, ":");
     TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
     if (*finest >= spacing) {
@@ -28,7 +29,6 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
             fine[l] = fine[l] || image->region[l] == label;
         }
     }
-    free(copy);
     return fine;
 }
 

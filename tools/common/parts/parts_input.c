@@ -243,7 +243,6 @@ void parts_read(const struct tool *tool, const char *operand, struct stream *str
     SCRATCH char *packed = NULL;
     *parts = (struct parts_input){.given = true};
     tool_names_input(operand);
-    stream_init(stream);
     rejoin.part_count = begin(tool, operand, &start);
     TOOL_TRY(tool, NEW_ARRAY(&rejoin.part, rejoin.part_count, &error));
     TOOL_TRY(tool, ranks_share(ranks, rejoin.part_count, NULL, &first, &error));

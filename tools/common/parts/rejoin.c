@@ -255,8 +255,8 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
 /* Map the integration points, which belong to the parts of their cells. */
 static void map_points(struct rejoin *rejoin)
 {
-    int64_t *begin, cells = rejoin->rows[ROWS_CELLS];
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&begin, cells + 2, &error));
+    int64_t cells = rejoin->rows[ROWS_CELLS];
+    TOOL_SCRATCH(rejoin->tool, int64_t, begin, cells + 2);
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t k = 0; k < rejoin->part_count; k++) {
             struct rejoin_part *part = &rejoin->part[k];
@@ -288,7 +288,6 @@ static void map_points(struct rejoin *rejoin)
         }
         rejoin->rows[ROWS_POINTS] = pass == 0 ? begin[cells + 1] : rejoin->rows[ROWS_POINTS];
     }
-    free(begin);
 }
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)

@@ -108,7 +108,7 @@ void run_dynamic(struct run *run)
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;
-    double *velocity = NULL;
+    SCRATCH double *velocity = NULL;
     if (run->scene->initial.table != NULL) {
         velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
         tool_check(run->tool, model_initial(run->model, run->u, velocity, &error), &error);
@@ -121,7 +121,6 @@ void run_dynamic(struct run *run)
                                       output->energy ? &log : NULL, &report, &error);
     run->solve_seconds += clock_seconds() - started;
     run_clear_progress(&run->display);
-    free(velocity);
     tool_check(run->tool, status, &error);
     if (output->energy) {
         put_energy(run, &log);

@@ -234,11 +234,10 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 void run_put_results(struct run *run)
 {
     struct model *model = run->model;
-    double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
+    SCRATCH double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
     /* Evaluate F, stresses and gaps at the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
-    free(scratch);
     put_state(run, &(struct moment){.frame = FRAME_NONE});
     put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
 }
