@@ -101,7 +101,7 @@ static void print_violation(void *context, const char *text)
 }
 
 /* Report on valid cells; returns the number of violations found. */
-static int tell_cells(const struct tool *tool, const struct stream *stream)
+static int print_cells(const struct tool *tool, const struct stream *stream)
 {
     struct cells cells;
     struct cell_report report;
@@ -136,7 +136,7 @@ static int check(struct tool *tool)
     tool_read(tool, tool->operands[1], &stream);
     int64_t count;
     TOOL_TRY(tool, stream_check(&stream, print_violation, NULL, &count, &error));
-    count += tell_cells(tool, &stream);
+    count += print_cells(tool, &stream);
     int status = tool_end(tool);
     return count > 0 ? (int)STATUS_VERDICT : status;
 }

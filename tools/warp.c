@@ -102,8 +102,9 @@ static const double *find_field(const struct tool *tool, const struct stream *st
     return values;
 }
 
-static void tell(const struct tool *tool, const struct warp_request *request, const struct motion *motion,
-                 const struct image *grid, const struct warp_report *report)
+static void print_report(const struct tool *tool, const struct warp_request *request,
+                         const struct motion *motion, const struct image *grid,
+                         const struct warp_report *report)
 {
     char text[128];
     int dim = motion->cells.dim;
@@ -179,7 +180,7 @@ static void new_result(const struct tool *tool, const struct image *source, cons
     result->version = grid->version;
 }
 
-static void tell_not_finite(const struct tool *tool, const struct image *image, const char *name)
+static void note_not_finite(const struct tool *tool, const struct image *image, const char *name)
 {
     size_t count = 0;
     for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
@@ -267,7 +268,7 @@ int main(int argc, char *argv[])
     SCRATCH int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     if (!request.field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
-        tell_not_finite(&tool, &image, tool.operands[0]);
+        note_not_finite(&tool, &image, tool.operands[0]);
     }
     new_result(&tool, request.field ? NULL : &image, grid, &result);
     struct warp_job job = {.request = &request,
@@ -280,9 +281,9 @@ int main(int argc, char *argv[])
                            .result = &result};
     image_to_voxel(&image, job.source_voxel);
     warp_voxels(&job, &report);
-    tell(&tool, &request, &motion, grid, &report);
+    print_report(&tool, &request, &motion, grid, &report);
     if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
-        tell_label_volumes(&tool, &image, &result, cells.dim);
+        report_label_volumes(&tool, &image, &result, cells.dim);
     }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);

@@ -130,7 +130,7 @@ struct check {
     struct error error;
 };
 
-static void tell(struct check *check, enum status status, const struct error *error)
+static void record(struct check *check, enum status status, const struct error *error)
 {
     if (status == STATUS_INPUT) {
         check->report(check->context, error->text);
@@ -145,17 +145,17 @@ static void check_together(const struct stream *stream, struct check *check, str
 {
     struct cells cells = {0};
     if (stream_find(stream, "nodes.x") != NULL) {
-        tell(check, stream_cells(stream, false, &cells, error), error);
+        record(check, stream_cells(stream, false, &cells, error), error);
     }
     if (check->count > 0) {
         return;
     }
-    tell(check, check_groups(stream, &cells, error), error);
-    tell(check, check_faces(stream, &cells, error), error);
+    record(check, check_groups(stream, &cells, error), error);
+    record(check, check_faces(stream, &cells, error), error);
     for (int k = 0; k < SECTION_KINDS; k++) {
         const struct section_kind *kind = &section_kinds[k];
         if (kind->content == LIST && strcmp(kind->name, "sets.ptr") != 0) {
-            tell(check, check_lists(stream, kind->name, error), error);
+            record(check, check_lists(stream, kind->name, error), error);
         }
     }
 }
@@ -165,7 +165,7 @@ enum status stream_check(const struct stream *stream, violation_function *report
 {
     struct check check = {.report = report, .context = context};
     for (int64_t i = 0; i < stream->section_count; i++) {
-        tell(&check, check_section(stream, &stream->sections[i], error), error);
+        record(&check, check_section(stream, &stream->sections[i], error), error);
     }
     if (check.count == 0) {
         check_together(stream, &check, error);

@@ -206,7 +206,7 @@ static bool count_labels(const struct image *image, int which, struct label *lab
     return true;
 }
 
-void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
+void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
                         int dim)
 {
     struct label labels[LABELS_MOST];

@@ -19,13 +19,13 @@ static void show_progress(struct display *display, const struct progress *progre
     }
 }
 
-bool run_tell(void *context, const struct progress *progress)
+bool run_progress(void *context, const struct progress *progress)
 {
     struct run *run = context;
     show_progress(&run->display, progress);
-    run_folds_look(run, progress->u, progress->time, false);
+    run_folds_check(run, progress->u, progress->time, false);
     run_stability_follow(run, progress);
-    return run_checkpoint_tell(run, progress);
+    return run_checkpoint_step(run, progress);
 }
 
 void run_clear_progress(const struct display *display)

@@ -91,7 +91,7 @@ struct run {
     struct scene *scene; /* see run_again */
     struct model *model;
     const struct parts_input *parts;
-    struct stream *stream; /* receives what the scene's [output] asks for */
+    struct stream *stream; /* receives what the scene's [output] requests */
     struct display display;
     struct run_checkpoint checkpoint;
     struct run_folds folds;
@@ -108,7 +108,7 @@ struct run {
 };
 
 /* A progress_function, whose context is the struct run: shows progress and writes checkpoints. */
-bool run_tell(void *context, const struct progress *progress);
+bool run_progress(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* End the run without result: print a message and exit with `status`, see tool_fail. If the scene requests
@@ -220,7 +220,7 @@ void run_checkpoint_begin(struct run *run);
 const struct state *run_checkpoint_state(const struct run *run);
 
 /* After a step: write a checkpoint if it is due. False if a signal ends the run. */
-bool run_checkpoint_tell(struct run *run, const struct progress *progress);
+bool run_checkpoint_step(struct run *run, const struct progress *progress);
 
 /* After the last step: restore the default actions of signals. */
 void run_checkpoint_end(void);
@@ -240,8 +240,8 @@ void run_folds_free(struct run *run);
 /* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
 void run_folds_at_rest(const struct run *run);
 
-/* Look at parameters u at a time of the run; `is_frame`: the state is given as a frame. */
-void run_folds_look(struct run *run, const double *u, double time, bool is_frame);
+/* Search the state of parameters u at a time of the run; `is_frame`: the state is given as a frame. */
+void run_folds_check(struct run *run, const double *u, double time, bool is_frame);
 
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_folds_state(struct run *run, const struct state *state, struct error *error);
@@ -259,7 +259,7 @@ bool run_folds_touch_in_part(const struct run *run);
 /* Forget what was seen. */
 void run_folds_forget(struct run *run);
 
-/* Whether parts of the boundary have passed through each other, and contact would hold them apart: tells so,
+/* Whether parts of the boundary have passed through each other, and contact would hold them apart: notes so,
  * and the run is to end without a verdict (run->again). */
 bool run_folds_let_touch(struct run *run);
 
@@ -273,11 +273,11 @@ void run_folds_judge(struct run *run);
 void run_stability_begin(struct run *run);
 void run_stability_free(struct run *run);
 
-/* Look at a state on the way. */
+/* Check a state on the way. */
 void run_stability_follow(struct run *run, const struct progress *progress);
 
-/* Look at a state of equilibrium. */
-void run_stability_look(struct run *run, double load);
+/* Check a state of equilibrium. */
+void run_stability_check(struct run *run, double load);
 
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);

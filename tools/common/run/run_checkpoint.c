@@ -202,7 +202,7 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
     return STATUS_OK;
 }
 
-bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+bool run_checkpoint_step(struct run *run, const struct progress *progress)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
     const struct ranks *ranks = process_ranks();

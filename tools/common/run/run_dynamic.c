@@ -64,7 +64,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     }
 }
 
-static void tell_report(const struct run *run, const struct dynamics_report *report)
+static void print_report(const struct run *run, const struct dynamics_report *report)
 {
     const struct body *body = &run->model->system.body;
     fprintf(stderr, "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nforce evaluations\t%lld\n",
@@ -101,7 +101,7 @@ void run_dynamic(struct run *run)
         .most_steps = solver->max_steps,
         .frame_interval = output->frames > 0 ? solver->end_time / (double)output->frames : output->interval,
         .frame = run_put_frame,
-        .progress = run_tell,
+        .progress = run_progress,
         .context = run,
         .interrupted = run->checkpoint.interrupted,
         .restored = run_checkpoint_state(run)};
@@ -127,10 +127,10 @@ void run_dynamic(struct run *run)
     }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;
-    run_folds_look(run, run->u, report.time, true);
+    run_folds_check(run, run->u, report.time, true);
     judge(run, &report);
     energy_log_free(&log);
     if (run->verbose && !run->again) {
-        tell_report(run, &report);
+        print_report(run, &report);
     }
 }

@@ -1,4 +1,4 @@
-/* What is said of folds: where and from when on, at rest and at the end, with the remedy. */
+/* Messages on folds: where and from when on, at rest and at the end, with the remedy. */
 #include "run/run.h"
 
 #include <string.h>

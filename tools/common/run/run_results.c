@@ -55,7 +55,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
     put_field(run, &(struct moment){number, time}, u);
-    run_folds_look(run, u, time, true);
+    run_folds_check(run, u, time, true);
 }
 
 bool run_is_of_frames(const char *name)
@@ -227,7 +227,7 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 {
     struct run *run = context;
     run_put_frame(run, number, time, u);
-    run_stability_look(run, time);
+    run_stability_check(run, time);
     put_state(run, &(struct moment){number, time});
 }
 

@@ -88,7 +88,7 @@ void run_stability_follow(struct run *run, const struct progress *progress)
     stability->least *= progress->raised;
 }
 
-void run_stability_look(struct run *run, double load)
+void run_stability_check(struct run *run, double load)
 {
     struct run_stability *stability = &run->stability;
     const struct stability *found = &run->model->system.stability;
