@@ -250,7 +250,7 @@ int main(int argc, char *argv[])
     write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
-    run_start_free(&run);
+    stream_free(&run.start.stream);
     free(run.u);
     return tool_end(&tool);
 }

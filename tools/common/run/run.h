@@ -117,11 +117,9 @@ _Noreturn void run_fail(struct run *run, enum status status, const char *format,
     __attribute__((format(printf, 3, 4)));
 
 /* For --start: read the result from which the run starts, exits if it is not suitable; start a model at rest
- * from it. The identity is a checksum, 0 without start. */
+ * from it. */
 void run_start_read(struct run *run);
 void run_start(struct run *run);
-uint32_t run_start_identity(const struct run *run);
-void run_start_free(struct run *run);
 
 /* If parts of a body have passed through each other (run->again), and the scene has no contact between them:
  * add to the scene a contact of the whole boundary with itself, `facets = *, against = *`, remove the

@@ -112,7 +112,9 @@ void run_checkpoint_begin(struct run *run)
         if (run->parts->given) {
             checkpoint->identity.input = run->parts->identity;
         }
-        checkpoint->identity.input += run_start_identity(run);
+        if (run->start_file != NULL) {
+            checkpoint->identity.input += checkpoint_identify_input(&run->start.stream);
+        }
         compare_processes(run);
     }
     if (checkpoint->file != NULL) {
