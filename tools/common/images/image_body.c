@@ -207,7 +207,7 @@ static bool count_labels(const struct image *image, int which, struct label *lab
 }
 
 void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
-                        int dim)
+                          int dim)
 {
     struct label labels[LABELS_MOST];
     const char *unit = dim == 3 ? "ml" : "cm2";
