@@ -9,8 +9,12 @@
 
 /* ---- any section, by its entry in the table of sections ---- */
 
-/* The programs that make the sections, by enum section_stage. */
-static const char *const producers[] = {"nodes", "ipoints", "support", "shapefn", "mtled"};
+/* The program that makes a section. */
+static const char *producer(const struct section_kind *kind)
+{
+    static const char *const of_stages[] = {"nodes", "ipoints", "support", "shapefn", "mtled"};
+    return strncmp(kind->name, "part.", 5) == 0 ? "part" : of_stages[kind->stage];
+}
 
 /* The dimension, from the columns of coordinates; 0 if there are none. */
 static int find_dimension(const struct stream *stream)
@@ -44,8 +48,7 @@ enum status section_check_shape(const struct stream *stream, const struct sectio
     }
     if (section->rows != rows) {
         return fail(error, STATUS_INPUT, "%s: does not fit %s: %lld rows instead of %lld: run %s again",
-                    section->name, other->name, (long long)section->rows, (long long)rows,
-                    producers[kind->stage]);
+                    section->name, other->name, (long long)section->rows, (long long)rows, producer(kind));
     }
     return STATUS_OK;
 }
@@ -55,7 +58,7 @@ enum status stream_view(const struct stream *stream, const char *name, const str
 {
     const struct section_kind *kind = section_kind_of(name);
     *section = stream_find(stream, name);
-    return *section == NULL ? fail(error, STATUS_INPUT, "no section %s: run %s", name, producers[kind->stage])
+    return *section == NULL ? fail(error, STATUS_INPUT, "no section %s: run %s", name, producer(kind))
                             : section_check_shape(stream, *section, kind, error);
 }
 
@@ -305,7 +308,7 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
     *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
     if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
         return fail(error, STATUS_INPUT, "%s.ptr: does not fit its lists and %s.idx: run %s again", prefix,
-                    prefix, producers[section_stage(ptr->name)]);
+                    prefix, producer(section_kind_of(ptr->name)));
     }
     for (int64_t p = 0; p < rows; p++) {
         if (lists->ptr[p + 1] < lists->ptr[p]) {
