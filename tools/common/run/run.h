@@ -201,7 +201,7 @@ void run_append_row(const struct run *run, const char *name, double time, double
  * condition; for a frame, a row of reactions.frames and moments.frames. */
 void run_put_forces(struct run *run, const struct moment *moment);
 
-/* Add parameters.radius, by which other tools evaluate the field from its parameters (solved.h). */
+/* Add parameters.radius, by which other tools evaluate the field from its parameters (stages.h). */
 void run_put_supports(const struct run *run);
 
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
