@@ -176,7 +176,7 @@ even() {
     awk '/^# /{ on = $2 == "support.side" } on && /^[0-9]/ && !done { $0 = "-3"; done = 1 } { print }' lists.txt > damaged.txt
     refused 2 "support.side: row 0: no side -3" shapefn damaged.txt
     run -1 mts check damaged.txt
-    [[ $output == *"support.side: row 0: index -3"* ]]
+    [[ $output == *"support.side: row 0: no row -3 of cells"* ]]
 }
 
 # In 3D faces between cells share points at the middles of edges; those at an interface do not.

@@ -199,8 +199,8 @@ END
     interp nan.txt | mts print u | grep -c nan
     awk '/^# support.radius/ { at = 1; print; next } at && at++ == 70 { print "-1"; next } { print }' table.txt > bad.txt
     run -2 --separate-stderr interp bad.txt
-    [[ "$stderr" == *"support.radius: row 69: -1 is not a positive length"* ]]
+    [[ "$stderr" == *"support.radius: row 69: -1 is not finite and positive"* ]]
     awk '/^# support.radius/ { at = 1; $4--; print; next } at && at++ == 1 { next } { print }' table.txt > bad.txt
     run -2 --separate-stderr interp bad.txt
-    [[ "$stderr" == *"support.radius: "*" rows for "*" nodes"* ]]
+    [[ "$stderr" == *"support.radius: does not fit nodes.x: "*" rows instead of "* ]]
 }

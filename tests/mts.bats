@@ -161,17 +161,17 @@ violates() {
 
 @test "check finds each violation and names section and row" {
     violates 'nodes.x: row 3: nan is not finite' nodes.x 's/^0 1$/nan 1/'
-    violates 'cells: row 1: index 4 is not within the 4 of nodes.x' cells 's/^0 2 3/0 2 4/'
-    violates 'cells: row 0: index -1' cells 's/^0 1 2/-1 1 2/'
+    violates 'cells: row 1: no row 4 of nodes.x' cells 's/^0 2 3/0 2 4/'
+    violates 'cells: row 0: no row -1' cells 's/^0 1 2/-1 1 2/'
     violates 'cells: row 1: inverted or of no volume (-0.5)' cells 's/^0 2 3/0 3 2/'
     violates 'cells: type i8 instead of i4' cells 's/ i4 / i8 /'
     violates 'cells.region: row 1: no region 1 in names=' cells.region 's/,white//'
     violates 'cells.region: row 0: no region 0 in names=' cells.region 's/ names=.*//'
-    violates 'facets: row 0: index 9' facets 's/^0 1/0 9/'
+    violates 'facets: row 0: no row 9' facets 's/^0 1/0 9/'
     violates 'sets.ptr: does not fit its lists and sets.idx' sets.ptr 's/^2$/1/'
     violates 'sets.idx: row 1: 1 does not ascend to 1' sets.idx 's/^3$/1/'
     violates 'points.weight: row 1: 0 is not finite and positive' points.weight 's/^0.25/0/'
-    violates 'points.cell: row 1: index -2' points.cell 's/^-1/-2/'
+    violates 'points.cell: row 1: no row -2' points.cell 's/^-1/-2/'
     violates 'support.radius: row 0: inf' support.radius '2s/.*/inf/;s/^2$/inf/'
     violates 'nbr.ptr: row 2: decreases' nbr.ptr 's/^2$/7/'
     violates 'nbr.ptr: does not fit its lists and nbr.idx' nbr.ptr 's/^5/1/'
@@ -197,7 +197,7 @@ violates() {
     square | sed '/^# u /,$d' > damaged
     printf '# u f8 3 2 enc=text\n0 0\n0 0\n0 0\n\n\n# end 17\n' >> damaged
     run -1 mts check damaged
-    [ "$output" = "u: 3 rows, but nodes.x has 4" ]
+    [ "$output" = "u: does not fit nodes.x: 3 rows instead of 4: run mtled again" ]
     square | mts drop points.weight -t | sed '$d' > damaged
     printf '# points.weight f8 1 2\n0.5 0.25\n\n\n# end 17\n' >> damaged
     run -1 mts check damaged
@@ -206,7 +206,7 @@ violates() {
     square > whole
     shortened nbr.ptr whole > damaged
     run -1 mts check damaged
-    [ "${lines[0]}" = "nbr.ptr: 2 rows, but points.x has 2: need one more" ]
+    [ "${lines[0]}" = "nbr.ptr: does not fit points.x: 2 rows instead of 3: run support again" ]
     square | sed '/^# u /,$d' > damaged
     printf '# faces i4 2 2\n0 1\n0 2\n\n\n# faces.cell i4 2 2\n0 -1\n0 1\n\n\n' >> damaged
     printf '# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 19\n' >> damaged
@@ -238,7 +238,7 @@ violates() {
     [[ $output == *"edge.ptr: "*" rows, but the faces ask for "* ]]
     shortened faces.edge whole > damaged
     run -1 mts check damaged
-    [[ $output == *"faces.edge: "*" rows, but faces has "* ]]
+    [[ $output == *"faces.edge: does not fit faces: "* ]]
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
     run -1 mts check damaged
     [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]

@@ -176,7 +176,7 @@ cut_and_compute() {
     shortened facets.set square.dat > damaged.dat
     refused 2 "facets.set: does not fit facets" part -k 2 -v damaged.dat
     shortened cells.region square.dat > damaged.dat
-    refused 2 "cells.region: has 41 rows, cells 42: does not fit" part -k 2 -v damaged.dat
+    refused 2 "cells.region: does not fit cells: 41 rows instead of 42" part -k 2 -v damaged.dat
     part -t -k 2 -o part.%d.dat square.dat
     for section in part.node part.owner part.cell part.facet facets sets.idx sets.ptr; do
         for value in -1 900 2000000000; do

@@ -124,7 +124,7 @@ at_nodes() {
     for row in -1 0 nan inf; do
         awk -v row=$row '{ print } /^# parameters.radius/ { getline; print row }' u.dat > bad.dat
         run -2 --separate-stderr interp -p square.mts bad.dat
-        [[ "$stderr" == "interp: parameters.radius: row 0: "*" is not a positive length" ]]
+        [[ "$stderr" == "interp: parameters.radius: row 0: "*" is not finite and positive" ]]
         run -2 --separate-stderr fieldcmp square.mts bad.dat
         run -1 mts check bad.dat
     done
@@ -133,6 +133,6 @@ at_nodes() {
     [[ "$stderr" == "interp: parameters.radius: -b: "* ]]
     awk '/^# parameters.radius/ { $4--; print; getline; next } { print }' u.dat > bad.dat
     run -2 --separate-stderr interp -p square.mts bad.dat
-    [[ "$stderr" == "interp: parameters.radius: 35 rows for 36 nodes" ]]
+    [[ "$stderr" == "interp: parameters.radius: does not fit nodes.x: 35 rows instead of 36: run mtled again" ]]
     run -1 mts check bad.dat
 }

@@ -358,5 +358,5 @@ END
     two_triangles | sed '/^# cells.region/ { s/ 2 1 / 1 1 /; n; d }' > stream
     run --separate-stderr tovtk stream
     [ "$status" -eq 2 ]
-    [[ $stderr == *"cells.region: has 1 rows, cells 2"* ]]
+    [[ $stderr == *"cells.region: does not fit cells: 1 rows instead of 2"* ]]
 }

@@ -60,7 +60,7 @@ setup() {
 }
 
 # Options are asked for by name in the program's own file, or where several programs share them: of supports and shape functions, of
-# comparisons, of images; those of the parts of labels, too.
+# comparisons, of images; those of the parts of labels, too. -o and -t are looked at where a stream is written.
 @test "every option that a usage text declares is one that the program looks at" {
     for tool in "${tools[@]}"; do
         shared=()
@@ -69,7 +69,8 @@ setup() {
         grep -q tool_image_method "$top/tools/$tool.c" && shared+=("$top/tools/common/images/images.c")
         grep -q label_parts_make "$top/tools/$tool.c" && shared+=("$top/tools/common/images/label_part.c")
         for name in $("$tool" -h | sed -n '/^Options:/,/^$/s/^\(  -.,\|     \) --\([a-z-]*\).*/\2/p'); do
-            [ "$name" = output ] || sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | grep -q "\"$name\"" ||
+            [ "$name" = output ] || { [ "$name" = text ] && grep -qE 'tool_(write|copy)[(]|tool->text|comparison_parse' "$top/tools/$tool.c"; } ||
+                sed '/^static const char usage/,/;$/d' "$top/tools/$tool.c" "${shared[@]}" | grep -q "\"$name\"" ||
                 { echo "$tool: --$name"; false; }
         done
     done

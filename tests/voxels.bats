@@ -253,7 +253,7 @@ END
     for bad in 0 -1e-3 nan inf; do
         awk -v bad=$bad '/^# / { on = $2 == "size"; n = 0 } on && NF == 1 && ++n == 8 { $1 = bad } { print }' sizes.dat > bad.dat
         refused 2 "size: row 7: " voxels -h 4mm --sizes bad.dat image.nii.gz
-        [[ "$stderr" == *"is not a positive length"* ]]
+        [[ "$stderr" == *"is not finite and positive"* ]]
     done
     refused 2 "the sizes lie elsewhere" voxels -h 4mm --sizes <(cloud -d 3 -k regular -n 3 --box 1,2,1,2,1,2 -t |
         awk '/^# end/ { print "# size f8 27 1 enc=text unit=m"; for (i = 0; i < 27; i++) print 0.002; print "\n"; $3++ } { print }') image.nii.gz

@@ -225,7 +225,7 @@ setup_file() {
     sed '/^# u f8/{n;s/^[^ ]*/nan/}' u.dat > bad.dat
     refused 2 "u: row 0" warp "$scan" bad.dat
     shortened u u.dat > bad.dat
-    refused 2 "u: 2196 rows for 2197 nodes" warp "$scan" bad.dat
+    refused 2 "u: 2196 rows of 3 columns: not a field" warp "$scan" bad.dat
     mts drop cells u.dat > bad.dat
     refused 2 "no section cells" warp "$scan" bad.dat
     cloud -d 3 -k halton -n 50 --box 0,0.06,0,0.06,0,0.06 > points.mts

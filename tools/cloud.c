@@ -100,15 +100,15 @@ static struct cloud_options parse(const struct tool *tool)
     return cloud;
 }
 
-static enum status put_field(struct stream *stream, const struct cloud *cloud, enum cloud_function function,
-                             struct error *error)
+static void put_field(const struct tool *tool, struct stream *stream, const struct cloud *cloud,
+                      enum cloud_function function)
 {
     double *values;
-    RETURN_IF_ERROR(NEW_ARRAY(&values, cloud->node_count, error));
+    TOOL_TRY(tool, NEW_ARRAY(&values, cloud->node_count, &error));
     for (int64_t n = 0; n < cloud->node_count; n++) {
         values[n] = cloud_function_value(function, cloud->dim, &cloud->x[n * cloud->dim]);
     }
-    return stream_put(stream, "u", TYPE_F8, cloud->node_count, 1, "", values, true, error);
+    tool_put(tool, stream, "u", TYPE_F8, cloud->node_count, 1, "", values);
 }
 
 /* Put the cloud as a mesh of one region; region[cell_count] is zero and must outlive the stream. */
@@ -147,12 +147,11 @@ int main(int argc, char *argv[])
     }
     struct cells cells = {cloud.dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
     tool_note_thin(&tool, &cells);
-    SCRATCH int32_t *region = NULL;
-    TOOL_TRY(&tool, NEW_ARRAY(&region, cloud.cell_count, &error));
+    TOOL_SCRATCH(&tool, int32_t, region, cloud.cell_count);
     TOOL_TRY(&tool, put_cloud(&stream, &cloud, region, &error));
     if (tool_given(&tool, "field")) {
-        TOOL_TRY(&tool, put_field(&stream, &cloud, (enum cloud_function)function, &error));
+        put_field(&tool, &stream, &cloud, (enum cloud_function)function);
     }
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

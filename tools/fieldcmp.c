@@ -49,7 +49,6 @@ static const char usage[] =
     "  mtled brain2d.scene table.mts | fieldcmp -m difference.mts - reference.dat\n";
 
 #include "comparison.h"
-#include "overwrite.h"
 
 /* Print the error of the iteration, if it is known. */
 static void print_iteration(const char *name, const struct side *side)

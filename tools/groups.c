@@ -61,7 +61,6 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "groups/group_body.h"
-#include "groups/group_select.h"
 #include "tool.h"
 
 #include "base/box.h"
@@ -109,7 +108,6 @@ static enum status make_group(const struct request *request, enum group_kind kin
     const struct items *items = &body->items[kind];
     const char *expression = NULL;
     SCRATCH char *name = NULL;
-    SCRATCH bool *chosen = NULL;
     int64_t count = 0;
     RETURN_IF_ERROR(take_name(request, &name, &expression, error));
     RETURN_IF_ERROR(group_check_name(name, error));
@@ -119,7 +117,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
     if (group_find(&body->groups[kind], name) >= 0 && !request->replace) {
         return fail(error, STATUS_INPUT, "there is one of that name already: --replace replaces it");
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&chosen, items->count, error));
+    NEW_SCRATCH(bool, chosen, items->count, error);
     RETURN_IF_ERROR(group_select(body, kind, expression, request->unit, chosen, error));
     for (int64_t i = 0; i < items->count; i++) {
         count += chosen[i];
@@ -235,8 +233,7 @@ static int64_t count_marked(const struct group *group, const bool *marked)
 static enum status note_overlaps(const struct tool *tool, const struct group_body *body, struct error *error)
 {
     const struct group_list *list = &body->groups[GROUP_FACETS];
-    SCRATCH bool *marked = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&marked, body->boundary.count, error));
+    NEW_SCRATCH(bool, marked, body->boundary.count, error);
     for (int64_t g = 0; g < list->count; g++) {
         const struct group *fresh = &list->group[g];
         char others[256] = "";
@@ -356,6 +353,6 @@ int main(int argc, char *argv[])
         }
     }
     finish(&tool, &body, &stream, tool_given(&tool, "verbose"));
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

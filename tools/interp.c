@@ -44,7 +44,7 @@ static const char usage[] =
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "stage_options.h"
-#include "stages/solved.h"
+#include "stages/stages.h"
 
 #include "approx/field/field.h"
 #include "io/stream/sections.h"
@@ -56,7 +56,7 @@ static const char usage[] =
 
 /* Points with their neighbours and shape functions. */
 struct points {
-    struct solved solved; /* the computed field whose shape functions these are, if any */
+    struct recorded solved; /* the computed field whose shape functions these are, if any */
     int64_t count;
     double *x;    /* count * dim, m; owned */
     int64_t *row; /* count: of the file, with --skip-outside; owned */
@@ -126,9 +126,8 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
                                 bool skip, const char *file, struct points *points, struct error *error)
 {
     int dim = cells->dim;
-    SCRATCH bool *outside = NULL;
     int64_t kept = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, points->count, error));
+    NEW_SCRATCH(bool, outside, points->count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&points->row, points->count, error));
     RETURN_IF_ERROR(
         field_outside(cells, spacing, skip ? 0.0 : FIELD_MARGIN, points->count, points->x, outside, error));
@@ -159,20 +158,19 @@ static enum status drop_outside(const struct tool *tool, const struct cells *cel
 
 /* Make supports and shape functions at the points: integration points of the stream, or points of a file,
  * which may be outside; the shape functions are those of the computed field, or chosen by options. */
-static enum status make_table(const struct tool *tool, const struct solved *known,
+static enum status make_table(const struct tool *tool, const struct recorded *known,
                               const struct support_options *support, const struct stream *stream, bool skip,
                               const char *file, struct points *points, struct error *error)
 {
     struct cells cells;
-    SCRATCH double *spacing = NULL, *radius = NULL;
     const struct mls *shapes = NULL;
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells.node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells.node_count, error));
+    NEW_SCRATCH(double, spacing, cells.node_count, error);
+    NEW_SCRATCH(double, radius, cells.node_count, error);
     RETURN_IF_ERROR(field_spacing(&cells, spacing, error));
     if (known->radius != NULL) {
-        support = &known->recorded.support;
-        shapes = &known->recorded.shapes;
+        support = &known->support;
+        shapes = &known->shapes;
         memcpy(radius, known->radius, (size_t)cells.node_count * sizeof *radius);
     } else {
         RETURN_IF_ERROR(support_radii(support, cells.node_count, spacing, radius, error));
@@ -189,7 +187,7 @@ static enum status copy_points(const struct stream *stream, int dim, struct poin
                                struct error *error)
 {
     const struct section *x;
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, dim, "ipoints", &x, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.x", &x, error));
     points->count = x->rows;
     RETURN_IF_ERROR(NEW_ARRAY(&points->x, x->rows * dim, error));
     memcpy(points->x, x->data, (size_t)(x->rows * dim) * sizeof(double));
@@ -218,8 +216,7 @@ static void put_values(const struct tool *tool, const struct stream *stream, con
     const struct section *from = solved_parameters(stream, &points->solved, field);
     TOOL_TRY(tool, NEW_ARRAY(&values, points->count * field->cols, &error));
     evaluate(points, from, values);
-    TOOL_TRY(tool, stream_put(output, field->name, TYPE_F8, points->count, field->cols, field->attributes,
-                              values, true, &error));
+    tool_put(tool, output, field->name, TYPE_F8, points->count, field->cols, field->attributes, values);
 }
 
 static void put_all_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
@@ -239,8 +236,8 @@ static void put_all_fields(const struct tool *tool, const struct stream *stream,
 static void put_fields(const struct tool *tool, const struct stream *stream, int64_t node_count,
                        const char *names, const struct points *points, struct stream *output)
 {
-    char *list = tool_memory(tool, strdup(names)), *name;
-    for (char *rest = list; (name = strsep(&rest, ",")) != NULL;) {
+    SCRATCH char *list = tool_memory(tool, strdup(names));
+    for (char *rest = list, *name; (name = strsep(&rest, ",")) != NULL;) {
         const struct section *field = stream_find(stream, name);
         if (field == NULL || !is_field(field, node_count)) {
             tool_fail(tool, STATUS_INPUT,
@@ -254,7 +251,6 @@ static void put_fields(const struct tool *tool, const struct stream *stream, int
         }
         put_values(tool, stream, field, points, output);
     }
-    free(list);
 }
 
 /* Put x.deformed, the points moved by the displacement. */
@@ -264,19 +260,15 @@ static void put_deformed(const struct tool *tool, const struct stream *stream, i
     char attributes[64];
     const struct section *u;
     double *x;
-    TOOL_TRY(tool, stream_need(stream, "u", TYPE_F8, dim, "mtled", &u, &error));
-    if (u->rows != node_count) {
-        tool_fail(tool, STATUS_INPUT, "u: %lld rows for %lld nodes", (long long)u->rows,
-                  (long long)node_count);
-    }
+    TOOL_TRY(tool, stream_field(stream, "u", dim, node_count, &u, &error));
     TOOL_TRY(tool, NEW_ARRAY(&x, points->count * dim, &error));
     u = solved_parameters(stream, &points->solved, u);
     evaluate(points, u, x);
     for (int64_t i = 0; i < points->count * dim; i++) {
         x[i] += points->x[i];
     }
-    TOOL_TRY(tool, stream_put(output, "x.deformed", TYPE_F8, points->count, dim,
-                              vector_attributes(dim, "m", attributes), x, true, &error));
+    tool_put(tool, output, "x.deformed", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
+             x);
 }
 
 /* Find the points, those of the stream or of a file, with supports and shape functions. */
@@ -285,15 +277,15 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
     const char *file = tool_value(tool, "points");
     struct support_options support = parse(tool, dim);
     if (tool_first_given(tool, choose_supports) == NULL) {
-        TOOL_TRY(tool, supports_read(stream, "parameters", &points->solved, &error));
+        TOOL_TRY(tool, stage_recorded(stream, "parameters", &points->solved, &error));
     }
-    struct solved known = points->solved;
+    struct recorded known = points->solved;
     if (file == NULL) {
         const struct section *radius = stream_find(stream, "support.radius");
         stage_fill(tool, stream, "ipoints");
         TOOL_TRY(tool, copy_points(stream, dim, points, &error));
         if (known.radius == NULL && radius != NULL) {
-            TOOL_TRY(tool, supports_read(stream, "support", &known, &error));
+            TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
     } else if (tool_given(tool, "unit")) {
         read_table(tool, file, tool_value(tool, "unit"), dim, points);
@@ -309,16 +301,15 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
                          struct stream *output)
 {
     char attributes[64];
-    stream_init(output);
     stream_inherit(output, stream);
-    TOOL_TRY(tool, stream_put(output, "nodes.x", TYPE_F8, points->count, dim,
-                              vector_attributes(dim, "m", attributes), points->x, true, &error));
+    tool_put(tool, output, "nodes.x", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
+             points->x);
 }
 
 int main(int argc, char *argv[])
 {
     struct tool tool;
-    struct stream stream, output;
+    FREED_BY(stream_free) struct stream stream = {0}, output = {0};
     struct points points = {0};
     int dim;
     int64_t node_count;
@@ -338,13 +329,10 @@ int main(int argc, char *argv[])
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
     if (tool_given(&tool, "skip-outside")) {
-        TOOL_TRY(&tool,
-                 stream_put(&output, "points.row", TYPE_I8, points.count, 1, "", points.row, false, &error));
+        tool_put(&tool, &output, "points.row", TYPE_I8, points.count, 1, "", array_take(&points.row));
     }
-    tool_write(&tool, &output, tool_given(&tool, "text"));
+    tool_write(&tool, &output);
     field_table_free(&points.table);
-    stream_free(&output);
     free(points.row);
-    stream_free(&stream);
     return tool_end(&tool);
 }

@@ -91,10 +91,8 @@ static struct ipoints_options parse(const struct tool *tool, const struct mls *m
 /* The options for this stream, with its dimension and recorded shape functions. */
 static struct ipoints_options parse_for(const struct tool *tool, const struct stream *stream)
 {
-    int dim;
     struct recorded recorded;
-    TOOL_TRY(tool, stream_nodes(stream, &dim, NULL, NULL, &error));
-    TOOL_TRY(tool, stage_recorded(stream, "support", dim, &recorded, &error));
+    TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
     struct ipoints_options ipoints = parse(tool, &recorded.support.mls);
     ipoints.refinement.support.visibility = recorded.support.visibility;
     return ipoints;
@@ -118,6 +116,6 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "verbose")) {
         tool_note(&tool, "%lld points", (long long)stream_find(&stream, "points.x")->rows);
     }
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

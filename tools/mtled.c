@@ -70,7 +70,6 @@ static const char usage[] =
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
     "  mpirun -n 4 mtled -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
 
-#include "overwrite.h"
 #include "stage_options.h"
 #include "process.h"
 #include "run/run.h"
@@ -207,7 +206,7 @@ static void write_results(struct run *run)
     run_put_results(run);
     sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     double started = clock_seconds();
-    tool_write(run->tool, run->stream, run->text);
+    tool_write(run->tool, run->stream);
     run->write_seconds = clock_seconds() - started;
     run_checkpoint_remove(run);
     if (run->verbose) {
@@ -228,6 +227,7 @@ int main(int argc, char *argv[])
     process_begin(&argc, &argv);
     become_mpi(argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
+    tool.text = !tool_given(&tool, "binary");
     struct run run = {
         .tool = &tool,
         .scene = &scene,
@@ -235,7 +235,6 @@ int main(int argc, char *argv[])
         .stream = &stream,
         .parts = &parts,
         .verbose = tool_given(&tool, "verbose") && process_speaks(),
-        .text = !tool_given(&tool, "binary"),
         .start_file = tool_value(&tool, "start"),
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
@@ -251,7 +250,7 @@ int main(int argc, char *argv[])
     write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
-    run_start_free(&run);
+    stream_free(&run.start.stream);
     free(run.u);
     return tool_end(&tool);
 }

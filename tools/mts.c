@@ -41,8 +41,7 @@ static const char usage[] =
 
 #include "cell_report.h"
 #include "io/files/descriptor.h"
-#include "stages/check.h"
-#include "stages/views.h"
+#include "stages/stages.h"
 
 #include <fnmatch.h>
 #include <inttypes.h>
@@ -89,9 +88,9 @@ static int print(struct tool *tool)
 static int convert(struct tool *tool)
 {
     FREED_BY(stream_free) struct stream stream = {0};
-    bool text = strcmp(tool->operands[0], "text") == 0;
+    tool->text = strcmp(tool->operands[0], "text") == 0;
     tool_read(tool, tool->operands[1], &stream);
-    tool_copy(tool, &stream, text);
+    tool_copy(tool, &stream);
     return tool_end(tool);
 }
 
@@ -102,7 +101,7 @@ static void print_violation(void *context, const char *text)
 }
 
 /* Report on valid cells; returns the number of violations found. */
-static int tell_cells(const struct tool *tool, const struct stream *stream)
+static int print_cells(const struct tool *tool, const struct stream *stream)
 {
     struct cells cells;
     struct cell_report report;
@@ -137,7 +136,7 @@ static int check(struct tool *tool)
     tool_read(tool, tool->operands[1], &stream);
     int64_t count;
     TOOL_TRY(tool, stream_check(&stream, print_violation, NULL, &count, &error));
-    count += tell_cells(tool, &stream);
+    count += print_cells(tool, &stream);
     int status = tool_end(tool);
     return count > 0 ? (int)STATUS_VERDICT : status;
 }
@@ -153,7 +152,7 @@ static int recover(struct tool *tool)
         tool_note(tool, "%s: %s: took the %lld sections before", name, why.text,
                   (long long)stream.section_count);
     }
-    tool_write(tool, &stream, tool_given(tool, "text"));
+    tool_write(tool, &stream);
     return tool_end(tool);
 }
 
@@ -197,7 +196,7 @@ static int select_sections(struct tool *tool)
             tool_fail(tool, STATUS_INPUT, "no section matches '%s': see mts list", patterns[i]);
         }
     }
-    tool_write(tool, &stream, tool_given(tool, "text"));
+    tool_write(tool, &stream);
     return tool_end(tool);
 }
 

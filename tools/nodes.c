@@ -159,6 +159,6 @@ int main(int argc, char *argv[])
     }
     report(&tool, &mesh, tool_given(&tool, "verbose"));
     TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

@@ -70,10 +70,11 @@ static void print_report(const struct cut_body *whole, const struct report *repo
             report->most_work * parts / report->work - 1.0);
 }
 
-static void write_parts(const struct cut_body *whole, bool wanted, bool text, struct report *report)
+static void write_parts(const struct cut_body *whole, bool wanted, struct report *report)
 {
     FREED_BY(body_part_work_free) struct body_part_work work = {0};
     const char *name = whole->tool->output;
+    tool_provenance(whole->tool, whole->stream);
     for (int32_t k = 0; k < whole->partition.parts; k++) {
         FREED_BY(body_part_free) struct body_part body = {0};
         TOOL_TRY(whole->tool,
@@ -85,15 +86,14 @@ static void write_parts(const struct cut_body *whole, bool wanted, bool text, st
         add((double)body.others, &report->others, &report->most_others);
         add(body.work, &report->work, &report->most_work);
         if (wanted) {
-            cut_body_make_part(whole, k, &body);
+            struct stream part = {0};
             SCRATCH char *file = tool_numbered(whole->tool, "-o ", name, k);
+            cut_body_make_part(whole, k, &body, &part);
+            stream_inherit(&part, whole->stream);
             whole->tool->output = file;
-            if (k == 0) {
-                tool_write(whole->tool, whole->stream, text); /* adds the provenance for all parts */
-            } else {
-                tool_copy(whole->tool, whole->stream, text);
-            }
-            whole->tool->output = name;
+            tool_copy(whole->tool, &part);
+            stream_inherit(whole->stream, &part);
+            stream_free(&part);
         }
     }
 }
@@ -160,9 +160,9 @@ int main(int argc, char *argv[])
     support = support_defaults(whole.cells.dim);
     radius_parse(&tool, &support);
     cut(&whole, &support);
-    cut_body_keep_sections(&whole);
+    cut_body_drop_sections(&whole);
     struct report report = {0};
-    write_parts(&whole, tool.output != NULL, tool_given(&tool, "text"), &report);
+    write_parts(&whole, tool.output != NULL, &report);
     if (tool_given(&tool, "verbose")) {
         print_report(&whole, &report);
     }

@@ -65,7 +65,7 @@ struct request {
     enum image_method method;
     const char *at, *region, *points, *section; /* NULL: not given */
     double unit, outside;
-    bool has_outside, stiffness, text;
+    bool has_outside, stiffness;
     struct tissue tissue;
     int image_count;
 };
@@ -83,7 +83,6 @@ static void parse(const struct tool *tool, struct request *request)
                                 .outside = tool_number(tool, "outside", -DBL_MAX, DBL_MAX, 0),
                                 .has_outside = tool_given(tool, "outside"),
                                 .stiffness = tool_given(tool, "material") || tissue_count > 0,
-                                .text = tool_given(tool, "text"),
                                 .image_count = tissue_count > 0 ? tissue_count : 1};
     static const char *const exclusive[][2] = {{"material", "tissue"},
                                                {"points", "at"},
@@ -96,7 +95,7 @@ static void parse(const struct tool *tool, struct request *request)
     if (request->section != NULL && tool_given(tool, "unit")) {
         tool_fail(tool, STATUS_INPUT, "-u is for tables: it does not go with --section");
     }
-    if (request->text && request->section == NULL) {
+    if (tool->text && request->section == NULL) {
         tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");
     }
     if (request->at == NULL) {
@@ -211,7 +210,6 @@ static void find_moduli(const struct tool *tool, const struct tissue *tissue, st
         if (!tissue_moduli(tissue, rows->value + p * rows->cols, moduli[p], &beyond)) {
             char place[96];
             point_text(rows->dim, rows->x + p * rows->dim, place);
-            free(moduli);
             tool_fail(tool, STATUS_INPUT,
                       "%s: row %lld at %s m: no tissue has a probability above 0 there (--outside 1 gives "
                       "points outside "
@@ -273,10 +271,9 @@ int main(int argc, char *argv[])
         find_moduli(&tool, &request.tissue, &rows);
     }
     if (request.section != NULL) {
-        TOOL_TRY(&tool, stream_put(&stream, request.section, TYPE_F8, rows.count, rows.cols,
-                                   request.stiffness ? "cols=E,nu" : "", rows.value, true, &error));
-        rows.value = NULL;
-        tool_write(&tool, &stream, request.text);
+        tool_put(&tool, &stream, request.section, TYPE_F8, rows.count, rows.cols,
+                 request.stiffness ? "cols=E,nu" : "", array_take(&rows.value));
+        tool_write(&tool, &stream);
     } else {
         target_open(&tool, &target, tool.output);
         print_rows(target.file, &request, &rows);

@@ -37,21 +37,19 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     FREED_BY(stream_free) struct stream stream = {0};
-    int dim;
     struct mls mls = mls_default(0);
     struct recorded recorded;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     mls_parse(&tool, &mls);
     tool_read(&tool, tool.operands[0], &stream);
-    TOOL_TRY(&tool, stream_nodes(&stream, &dim, NULL, NULL, &error));
     stage_fill(&tool, &stream, "support");
-    TOOL_TRY(&tool, stage_recorded(&stream, "support", dim, &recorded, &error));
+    TOOL_TRY(&tool, stage_recorded(&stream, "support", &recorded, &error));
     recorded.shapes = recorded.support.mls;
     mls_parse(&tool, &recorded.shapes);
     TOOL_TRY(&tool, stage_shapefn(&stream, &recorded.shapes, &error));
     /* Other tools evaluate the shape functions by these settings. */
     const struct section *radius = stream_find(&stream, "support.radius");
     TOOL_TRY(&tool, stage_record(&stream, &recorded, radius->rows, radius->data, &error));
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

@@ -48,26 +48,6 @@ static const char usage[] =
 
 #include <string.h>
 
-/* The options. */
-struct request {
-    struct size_field_request sizes;
-    double unit; /* m */
-    const char *field;
-    bool verbose;
-};
-
-static struct request parse(const struct tool *tool)
-{
-    return (struct request){
-        .sizes = {.share = tool_number(tool, "share", 1e-6, 1e6, 0.25),
-                  .most_nodes = (double)tool_integer(tool, "nodes", 10, 100000000, 100000),
-                  .sag = tool_length(tool, "sag", 0.0),
-                  .least = tool_length(tool, "least", 0.0)},
-        .unit = tool_length_unit(tool, "unit", 1.0),
-        .field = tool_given(tool, "field") ? tool_value(tool, "field") : "u",
-        .verbose = tool_given(tool, "verbose")};
-}
-
 /* Errors of the cells of a field, from its recovered gradient. */
 static enum status recover(const struct stream *stream, const char *field, struct cells *cells,
                            double **squared, struct error *error)
@@ -75,9 +55,9 @@ static enum status recover(const struct stream *stream, const char *field, struc
     const struct section *section;
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
-    RETURN_IF_ERROR(stream_field(stream, field, cells->node_count, &section, error));
+    RETURN_IF_ERROR(stream_field(stream, field, 0, cells->node_count, &section, error));
     if (stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     }
     RETURN_IF_ERROR(NEW_ARRAY(squared, cells->count, error));
     return fail_in(error,
@@ -179,30 +159,28 @@ static void orient(struct layered *layered)
     layered->cells.count = kept;
 }
 
-static void write_sizes(const struct tool *tool, struct layered *layered, bool text)
+static void write_sizes(const struct tool *tool, struct layered *layered)
 {
     FREED_BY(stream_free) struct stream stream = {0};
     char attributes[64];
     const struct cells *cells = &layered->cells;
     orient(layered);
-    TOOL_TRY(tool, stream_put(&stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
-                              vector_attributes(cells->dim, "m", attributes), layered->x, false, &error));
-    TOOL_TRY(tool, stream_put(&stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", layered->node,
-                              false, &error));
-    TOOL_TRY(tool, stream_put(&stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", layered->size, false,
-                              &error));
-    tool_write(tool, &stream, text);
+    tool_put(tool, &stream, "nodes.x", TYPE_F8, cells->node_count, cells->dim,
+             vector_attributes(cells->dim, "m", attributes), array_take(&layered->x));
+    tool_put(tool, &stream, "cells", TYPE_I4, cells->count, cells->dim + 1, "", array_take(&layered->node));
+    tool_put(tool, &stream, "size", TYPE_F8, cells->node_count, 1, "unit=m", array_take(&layered->size));
+    tool_write(tool, &stream);
 }
 
-static void report(const struct request *request, const struct cells *cells, const struct size_field *field)
+static void report(const struct cells *cells, const struct size_field *field, double unit)
 {
     double least = field->size[0], most = field->size[0];
     for (int64_t n = 1; n < cells->node_count; n++) {
         least = field->size[n] < least ? field->size[n] : least;
         most = field->size[n] > most ? field->size[n] : most;
     }
-    fprintf(stderr, "least size\t%.4g\nlargest size\t%.4g\nnodes\t%.0f\n", least / request->unit,
-            most / request->unit, field->nodes);
+    fprintf(stderr, "least size\t%.4g\nlargest size\t%.4g\nnodes\t%.0f\n", least / unit, most / unit,
+            field->nodes);
 }
 
 int main(int argc, char *argv[])
@@ -214,29 +192,35 @@ int main(int argc, char *argv[])
     SCRATCH double *squared = NULL;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     tool_excludes(&tool, "binary", "text");
-    if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool_given(&tool, "text"))) {
+    if (tool_given(&tool, "unit") && (tool_given(&tool, "binary") || tool.text)) {
         tool_fail(&tool, STATUS_INPUT, "-u goes without -b and -t: a stream is in m");
     }
-    struct request request = parse(&tool);
+    double unit = tool_length_unit(&tool, "unit", 1.0);
+    struct size_field_request sizes = {.share = tool_number(&tool, "share", 1e-6, 1e6, 0.25),
+                                       .most_nodes =
+                                           (double)tool_integer(&tool, "nodes", 10, 100000000, 100000),
+                                       .sag = tool_length(&tool, "sag", 0.0),
+                                       .least = tool_length(&tool, "least", 0.0)};
     tool_read(&tool, tool.operands[0], &stream);
-    TOOL_TRY(&tool, recover(&stream, request.field, &cells, &squared, &error));
-    TOOL_TRY(&tool, size_field_build(&cells, squared, &request.sizes, &field, &error));
-    if (field.unbound > request.sizes.most_nodes) {
+    TOOL_TRY(&tool, recover(&stream, tool_given(&tool, "field") ? tool_value(&tool, "field") : "u", &cells,
+                            &squared, &error));
+    TOOL_TRY(&tool, size_field_build(&cells, squared, &sizes, &field, &error));
+    if (field.unbound > sizes.most_nodes) {
         tool_note(&tool, "these sizes ask for %.3g nodes: made larger for %.0f (-n)", field.unbound,
-                  request.sizes.most_nodes);
+                  sizes.most_nodes);
     }
     FREED_BY(layered_free) struct layered layered = {0};
     struct target target;
     TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
-    if (tool_given(&tool, "binary") || tool_given(&tool, "text")) {
-        write_sizes(&tool, &layered, tool_given(&tool, "text"));
+    if (tool_given(&tool, "binary") || tool.text) {
+        write_sizes(&tool, &layered);
     } else {
         target_open(&tool, &target, tool.output);
-        print_view(target.file, &layered, request.unit);
+        print_view(target.file, &layered, unit);
         target_end(&tool, &target);
     }
-    if (request.verbose) {
-        report(&request, &cells, &field);
+    if (tool_given(&tool, "verbose")) {
+        report(&cells, &field, unit);
     }
     return tool_end(&tool);
 }

@@ -124,6 +124,6 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "verbose")) {
         note_report(&tool, &report);
     }
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

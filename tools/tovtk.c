@@ -49,35 +49,33 @@ static const char usage[] =
 #include <string.h>
 
 /* Write one frame as a vtu file. */
-static enum status write_vtu(struct plot *plot, int64_t frame, bool text, FILE *file, struct error *error)
+static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, FILE *file,
+                             struct error *error)
 {
     RETURN_IF_ERROR(plot_choose(plot, frame, error));
     return vtu_write(file, &plot->mesh, plot->field_count, plot->fields, plot->number_count, plot->numbers,
-                     text, error);
+                     tool->text, error);
 }
 
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
-static void write_series(const struct tool *tool, struct plot *plot, bool text)
+static void write_series(const struct tool *tool, struct plot *plot)
 {
-    struct error error;
     struct target target;
     int64_t count = plot_state_count(plot);
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
     size_t folder = slash != NULL ? (size_t)(slash - tool->output) + 1 : 0;
-    SCRATCH char **paths = NULL,
-                 **names = NULL; /* the names are relative to the .pvd file: the ends of the paths */
-    SCRATCH double *times = NULL;
-    tool_check(tool, NEW_ARRAY(&paths, count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&names, count, &error), &error);
-    tool_check(tool, NEW_ARRAY(&times, count, &error), &error);
+    TOOL_SCRATCH(tool, char *, paths, count);
+    TOOL_SCRATCH(tool, char *, names, count); /* relative to the .pvd file: the ends of the paths */
+    TOOL_SCRATCH(tool, double, times, count);
+    struct error error;
     for (int64_t i = 0; i < count; i++) {
         int64_t frame = plot_frame(plot, i);
         tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);
         paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
                              frame == FRAME_NONE ? 0LL : (long long)frame);
         target_open(tool, &target, paths[i]);
-        target_close(tool, &target, write_vtu(plot, frame, text, target.file, &error), &error);
+        target_close(tool, &target, write_vtu(tool, plot, frame, target.file, &error), &error);
         names[i] = paths[i] + folder;
     }
     target_open(tool, &target, tool->output);
@@ -109,15 +107,14 @@ int main(int argc, char *argv[])
     tool_read(&tool, tool.operands[0], &plot.stream);
     tool_check(&tool, plot_find(&plot, &error), &error);
     if (is_series) {
-        write_series(&tool, &plot, tool_given(&tool, "text"));
+        write_series(&tool, &plot);
     } else {
         if (plot.frame_count > 0) {
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
         target_open(&tool, &target, tool.output);
-        target_close(&tool, &target,
-                     write_vtu(&plot, FRAME_NONE, tool_given(&tool, "text"), target.file, &error), &error);
+        target_close(&tool, &target, write_vtu(&tool, &plot, FRAME_NONE, target.file, &error), &error);
     }
     return tool_end(&tool);
 }

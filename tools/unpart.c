@@ -33,6 +33,6 @@ int main(int argc, char *argv[])
     rejoin_begin(&rejoin, &tool, tool.operands, tool.operand_count);
     rejoin_sections(&rejoin, &stream);
     stream_inherit(&stream, &rejoin.part[0].stream); /* all parts have the same provenance */
-    tool_write(&tool, &stream, tool_given(&tool, "text"));
+    tool_write(&tool, &stream);
     return tool_end(&tool);
 }

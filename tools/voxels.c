@@ -64,13 +64,9 @@ static const char usage[] =
     "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
-#include "images/label_mesh.h"
-#include "images/label_part.h"
-#include "images/label_sizes.h"
-#include "images/label_surface.h"
 #include "cell_report.h"
+#include "images/label_image.h"
 
-#include "approx/cells/cells.h"
 #include "approx/cells/parts.h"
 
 #include <ctype.h>
@@ -89,14 +85,12 @@ static double shown(int dim, double volume)
 static void report_labels(const struct tool *tool, const struct label_image *image,
                           const struct label_cells *result, const struct cells *cells, bool verbose)
 {
-    SCRATCH double *volume = NULL, *voxels = NULL;
-    SCRATCH int64_t *lost = NULL;
     int dim = result->dim;
     const char *unit = dim == 3 ? "ml" : "cm2";
-    TOOL_TRY(tool, NEW_ARRAY(&volume, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&lost, image->labels.count, &error));
+    TOOL_SCRATCH(tool, double, volume, image->labels.count);
+    TOOL_SCRATCH(tool, int64_t, lost, image->labels.count);
     TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&voxels, image->labels.count, &error));
+    TOOL_SCRATCH(tool, double, voxels, image->labels.count);
     for (int64_t c = 0; c < cells->count; c++) {
         volume[image->region[result->label[c]]] += cell_volume(cells, c);
     }
@@ -174,10 +168,9 @@ static void report_apart(const struct tool *tool, const struct label_image *imag
 static void report_bodies(const struct tool *tool, const struct label_image *image,
                           const struct label_cells *result, const struct cells *cells, bool verbose)
 {
-    SCRATCH int32_t *part = NULL;
     int32_t count = 0;
     double total = 0, first = 0;
-    TOOL_TRY(tool, NEW_ARRAY(&part, cells->count, &error));
+    TOOL_SCRATCH(tool, int32_t, part, cells->count);
     TOOL_TRY(tool, cells_parts(cells, part, &count, &error));
     for (int64_t c = 0; c < cells->count; c++) {
         double volume = cell_volume(cells, c);
@@ -253,12 +246,11 @@ static void report(const struct tool *tool, const struct label_image *image, con
 }
 
 static void write_stream(const struct tool *tool, const struct label_image *image,
-                         const struct label_cells *result, bool text)
+                         const struct label_cells *result)
 {
     FREED_BY(label_mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
-    stream_init(&stream);
     for (int32_t p = 0; p < image->part_count; p++) {
         bool found = false;
         for (int32_t s = 0; s < mesh.facet_sets.count; s++) {
@@ -269,7 +261,7 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
         }
     }
     TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
-    tool_write(tool, &stream, text);
+    tool_write(tool, &stream);
 }
 
 static void check_options(const struct tool *tool)
@@ -334,7 +326,7 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "surface")) {
         label_surface_write(&tool, &result, &surface);
     } else {
-        write_stream(&tool, &image, &result, tool_given(&tool, "text"));
+        write_stream(&tool, &image, &result);
     }
     stream_free(&sizes.stream);
     return tool_end(&tool);

@@ -51,8 +51,7 @@ static const char usage[] =
 
 #include "images/image_body.h"
 #include "images/images.h"
-#include "stages/solved.h"
-#include "stages/views.h"
+#include "stages/stages.h"
 #include "images/warp_voxels.h"
 
 #include "approx/field/motion.h"
@@ -93,11 +92,7 @@ static const double *find_field(const struct tool *tool, const struct stream *st
 {
     const struct section *u;
     TOOL_TRY(tool, stream_cells(stream, true, cells, &error));
-    TOOL_TRY(tool, stream_need(stream, name, TYPE_F8, cells->dim, "mtled", &u, &error));
-    if (u->rows != cells->node_count) {
-        tool_fail(tool, STATUS_INPUT, "%s: %lld rows for %lld nodes", name, (long long)u->rows,
-                  (long long)cells->node_count);
-    }
+    TOOL_TRY(tool, stream_field(stream, name, cells->dim, cells->node_count, &u, &error));
     const double *values = u->data;
     for (int64_t i = 0; i < u->rows * u->cols; i++) {
         if (!(fabs(values[i]) <= 1e100)) {
@@ -107,8 +102,9 @@ static const double *find_field(const struct tool *tool, const struct stream *st
     return values;
 }
 
-static void tell(const struct tool *tool, const struct warp_request *request, const struct motion *motion,
-                 const struct image *grid, const struct warp_report *report)
+static void print_report(const struct tool *tool, const struct warp_request *request,
+                         const struct motion *motion, const struct image *grid,
+                         const struct warp_report *report)
 {
     char text[128];
     int dim = motion->cells.dim;
@@ -184,7 +180,7 @@ static void new_result(const struct tool *tool, const struct image *source, cons
     result->version = grid->version;
 }
 
-static void tell_not_finite(const struct tool *tool, const struct image *image, const char *name)
+static void note_not_finite(const struct tool *tool, const struct image *image, const char *name)
 {
     size_t count = 0;
     for (size_t i = 0; i < image_voxels(image) * image->components; i++) {
@@ -201,12 +197,11 @@ static void build_motion(const struct tool *tool, const struct stream *stream, c
                          const struct cells *cells, const double *u, struct motion *motion)
 {
     struct error error;
-    struct solved solved;
-    tool_check(tool, supports_read(stream, "parameters", &solved, &error), &error);
+    struct recorded recorded;
+    tool_check(tool, stage_recorded(stream, "parameters", &recorded, &error), &error);
     const struct section *field = stream_find(stream, section);
-    const struct section *parameters = solved_parameters(stream, &solved, field);
-    struct motion_source source = {&solved.recorded.support, &solved.recorded.shapes, solved.radius,
-                                   parameters->data};
+    const struct section *parameters = solved_parameters(stream, &recorded, field);
+    struct motion_source source = {&recorded.support, &recorded.shapes, recorded.radius, parameters->data};
     enum status status = motion_build(cells, u, false, parameters != field ? &source : NULL, motion, &error);
     if (status == STATUS_VERDICT) {
         tool_note(tool, "displacement taken as linear in each cell: %s", error.text);
@@ -273,7 +268,7 @@ int main(int argc, char *argv[])
     SCRATCH int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
     if (!request.field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
-        tell_not_finite(&tool, &image, tool.operands[0]);
+        note_not_finite(&tool, &image, tool.operands[0]);
     }
     new_result(&tool, request.field ? NULL : &image, grid, &result);
     struct warp_job job = {.request = &request,
@@ -286,9 +281,9 @@ int main(int argc, char *argv[])
                            .result = &result};
     image_to_voxel(&image, job.source_voxel);
     warp_voxels(&job, &report);
-    tell(&tool, &request, &motion, grid, &report);
+    print_report(&tool, &request, &motion, grid, &report);
     if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
-        tell_label_volumes(&tool, &image, &result, cells.dim);
+        report_label_volumes(&tool, &image, &result, cells.dim);
     }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);

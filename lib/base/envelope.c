@@ -24,9 +24,8 @@ enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *column, int64_t *order,
                               int64_t *longs, struct error *error)
 {
-    SCRATCH bool *placed = NULL;
     int64_t count = 0, last = n;
-    RETURN_IF_ERROR(NEW_ARRAY(&placed, n, error));
+    NEW_SCRATCH(bool, placed, n, error);
     for (int64_t i = 0; i < n; i++) {
         placed[i] = (ptr[i + 1] - ptr[i]) * n > most_entries * ptr[n];
         if (placed[i]) {
@@ -89,10 +88,9 @@ static inline int threads_for(const struct envelope *factor, int64_t begin, int6
 static enum status fill(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
                         struct envelope *factor, struct error *error)
 {
-    SCRATCH int64_t *place = NULL;
     free(factor->value);
     factor->value = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&place, n, error));
+    NEW_SCRATCH(int64_t, place, n, error);
     for (int64_t i = 0; i < n; i++) {
         place[factor->order[i]] = i;
     }
@@ -238,12 +236,10 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
                               double least, struct envelope *factor, int64_t *kept, struct error *error)
 {
     int64_t count = factor->dropped, strong = 0, weak = 0;
-    SCRATCH int64_t *behind = NULL, *by_pivot = NULL;
-    SCRATCH double *matrix = NULL, *diagonal = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&behind, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&by_pivot, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&matrix, count * count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, count, error));
+    NEW_SCRATCH(int64_t, behind, count, error);
+    NEW_SCRATCH(int64_t, by_pivot, count, error);
+    NEW_SCRATCH(double, matrix, count *count, error);
+    NEW_SCRATCH(double, diagonal, count, error);
     for (int64_t i = 0; i < n; i++) {
         if (isinf(row_at(factor, i)[i])) {
             behind[weak++] = factor->order[i];
@@ -362,8 +358,7 @@ enum status envelope_share(const struct envelope *factor, const struct ranks *ra
                            struct error *error)
 {
     const int64_t *begin = factor->block, blocks = factor->block_count;
-    SCRATCH double *work = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&work, blocks, error));
+    NEW_SCRATCH(double, work, blocks, error);
     for (int64_t b = 0; b < blocks; b++) {
         work[b] = (double)(factor->start[begin[b + 1]] - factor->start[begin[b]]);
     }

@@ -59,6 +59,11 @@ void free_all(size_t count, void *const array[]);
 #define SCRATCH __attribute__((cleanup(scratch_free)))
 void scratch_free(void *pointer);
 
+/* Such an array that is allocated at once, of zeros; on failure, return its status. */
+#define NEW_SCRATCH(type, pointer, count, error)                                                             \
+    SCRATCH type *pointer = NULL;                                                                            \
+    RETURN_IF_ERROR(NEW_ARRAY(&pointer, (count), (error)))
+
 /* The same for another local variable, initialised as empty: function(&variable) is called when its function
  * is left. */
 #define FREED_BY(function) __attribute__((cleanup(function)))

@@ -130,11 +130,10 @@ static enum status gather(struct null_space *space, int32_t *of, struct error *e
 
 enum status null_space_impose(struct null_space *space, double least, struct error *error)
 {
-    SCRATCH double *v = NULL;
     int32_t of;
     RETURN_IF_ERROR(gather(space, &of, error));
     int columns = of < 0 ? 0 : space->columns[of];
-    RETURN_IF_ERROR(NEW_ARRAY(&v, columns, error));
+    NEW_SCRATCH(double, v, columns, error);
     for (int32_t i = 0; i < space->touched_count; i++) {
         int32_t b = space->touched[i];
         double *value = space->value + (int64_t)b * space->size;

@@ -256,12 +256,10 @@ enum status parse_length_unit(const char *text, const char *what, double *metres
         return STATUS_OK;
     }
     enum status status = parse_choice(text, what, units, 4, &index, error);
-    if (status == STATUS_OK) {
-        *metres = sizes[index];
-    } else {
-        snprintf(why.text, sizeof why.text, "%.400s", error->text);
-        return fail(error, status, "%s, nor a number of metres", why.text);
+    if (status != STATUS_OK) {
+        text_append(error->text, sizeof error->text, ", nor a number of metres");
     }
+    *metres = sizes[index];
     return status;
 }
 

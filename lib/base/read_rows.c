@@ -79,9 +79,8 @@ static int64_t length_of(const struct read_rows *rows, int64_t row)
 static enum status lay_out(const struct read_rows *rows, const bool *wanted, struct halo *halo,
                            struct sparse *fetched, struct error *error)
 {
-    SCRATCH double *length = NULL;
     int64_t at = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&length, rows->row_count, error));
+    NEW_SCRATCH(double, length, rows->row_count, error);
     for (int64_t f = 0; f < rows->row_count; f++) {
         length[f] = (double)length_of(rows, f);
     }
@@ -103,10 +102,8 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
                                 struct error *error)
 {
     const struct ranks *ranks = rows->ranks;
-    SCRATCH int64_t *send_first = NULL, *first = NULL;
-    SCRATCH char *sent = NULL, *got = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&send_first, ranks->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&first, ranks->count + 1, error));
+    NEW_SCRATCH(int64_t, send_first, ranks->count + 1, error);
+    NEW_SCRATCH(int64_t, first, ranks->count + 1, error);
     for (int r = 0; r < ranks->count; r++) {
         send_first[r + 1] = send_first[r];
         first[r + 1] = first[r];
@@ -117,8 +114,8 @@ static enum status send_entries(const struct read_rows *rows, const bool *wanted
             first[r + 1] += fetched->ptr[halo->receive[i] + 1] - fetched->ptr[halo->receive[i]];
         }
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&sent, send_first[ranks->count] * (int64_t)size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&got, first[ranks->count] * (int64_t)size, error));
+    NEW_SCRATCH(char, sent, send_first[ranks->count] * (int64_t)size, error);
+    NEW_SCRATCH(char, got, first[ranks->count] * (int64_t)size, error);
     char *at = sent;
     for (int64_t i = 0; i < halo->send_first[ranks->count]; i++) {
         size_t bytes = (size_t)length_of(rows, halo->send[i]) * size;

@@ -20,9 +20,8 @@ enum status sparse_new(int64_t row_count, int64_t column_count, int64_t entries,
 enum status sparse_transpose(const struct sparse *matrix, struct sparse *transposed, struct error *error)
 {
     int64_t entries = matrix->ptr[matrix->row_count];
-    SCRATCH int64_t *next = NULL;
     *transposed = (struct sparse){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&next, matrix->column_count + 1, error));
+    NEW_SCRATCH(int64_t, next, matrix->column_count + 1, error);
     RETURN_IF_ERROR(sparse_new(matrix->column_count, matrix->row_count, entries, transposed, error));
     for (int64_t i = 0; i < entries; i++) {
         transposed->ptr[matrix->idx[i] + 1]++;

@@ -1,9 +1,7 @@
-#include "stages/check.h"
+#include "stages/stages.h"
 
 #include "approx/cells/face_edges.h"
 #include "base/memory.h"
-#include "io/stream/sections.h"
-#include "stages/views.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,76 +11,14 @@ static const double unity_tolerance = 1e-9;
 
 /* ---- each section by itself ---- */
 
-/* The dimension, from the columns of coordinates; 0 if there are none. */
-static int find_dimension(const struct stream *stream)
-{
-    const struct section *nodes = stream_find(stream, "nodes.x"), *points = stream_find(stream, "points.x");
-    const struct section *x = nodes != NULL ? nodes : points;
-    return x != NULL && (x->cols == 2 || x->cols == 3) ? (int)x->cols : 0;
-}
-
-static enum status check_shape(const struct stream *stream, const struct section *section,
-                               const struct section_kind *kind, struct error *error)
-{
-    int dim = find_dimension(stream);
-    int64_t cols = kind->cols == COLS_DIM          ? dim
-                   : kind->cols == COLS_DIM_PLUS_1 ? dim + 1
-                   : kind->cols == COLS_ANY        ? section->cols
-                                                   : kind->cols;
-    const struct section *other = kind->rows_of != NULL ? stream_find(stream, kind->rows_of) : NULL;
-    int64_t more = kind->content == LIST ? 1 : 0;
-    if (section->type != kind->type) {
-        return fail(error, STATUS_INPUT, "%s: type %s instead of %s", section->name,
-                    element_type_name(section->type), element_type_name(kind->type));
-    }
-    if (kind->cols == COLS_DIM && section->cols != 2 && section->cols != 3) {
-        return fail(error, STATUS_INPUT, "%s: %lld columns instead of 2 or 3", section->name,
-                    (long long)section->cols);
-    }
-    if ((kind->cols > 0 || dim > 0) && section->cols != cols) {
-        return fail(error, STATUS_INPUT, "%s: %lld columns instead of %lld", section->name,
-                    (long long)section->cols, (long long)cols);
-    }
-    if (other != NULL && section->rows != other->rows + more) {
-        return fail(error, STATUS_INPUT, "%s: %lld rows, but %s has %lld%s", section->name,
-                    (long long)section->rows, other->name, (long long)other->rows,
-                    more > 0 ? ": need one more" : "");
-    }
-    return STATUS_OK;
-}
-
-static enum status check_numbers(const struct section *section, enum content content, struct error *error)
-{
-    static const char *const required[] = {[FINITE] = "finite",
-                                           [UNITY] = "finite",
-                                           [POSITIVE] = "finite and positive",
-                                           [AT_LEAST_ONE] = "finite and at least 1"};
-    const double *values = section->data;
-    for (int64_t i = 0; i < section->rows * section->cols; i++) {
-        double value = values[i];
-        if (!isfinite(value) || (content == POSITIVE && !(value > 0.0)) ||
-            (content == AT_LEAST_ONE && !(value >= 1.0))) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: %.17g is not %s", section->name,
-                        (long long)(i / section->cols), value, required[content]);
-        }
-    }
-    return STATUS_OK;
-}
-
 static enum status check_indices(const struct stream *stream, const struct section *section,
                                  const struct section_kind *kind, struct error *error)
 {
     const struct section *other = stream_find(stream, kind->index_of);
-    int64_t bound = other != NULL ? other->rows : INT32_MAX;
-    const int32_t *values = section->data;
-    for (int64_t i = 0; i < section->rows * section->cols; i++) {
-        if (values[i] < (kind->content == INDEX_OR_NONE ? -1 : 0) || values[i] >= bound) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: index %d is not within the %lld of %s",
-                        section->name, (long long)(i / section->cols), values[i], (long long)bound,
-                        kind->index_of);
-        }
-    }
-    return STATUS_OK;
+    char of[64];
+    snprintf(of, sizeof of, " of %s", kind->index_of);
+    return section_check_indices(section, kind->content == INDEX_OR_NONE ? -1 : 0,
+                                 other != NULL ? other->rows : INT32_MAX, "row", of, error);
 }
 
 static enum status check_section(const struct stream *stream, const struct section *section,
@@ -92,12 +28,13 @@ static enum status check_section(const struct stream *stream, const struct secti
     if (kind == NULL || (kind->content == ANY && kind->cols == COLS_ANY)) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(check_shape(stream, section, kind, error));
+    RETURN_IF_ERROR(section_check_shape(stream, section, kind, error));
     if (kind->index_of != NULL) {
         return check_indices(stream, section, kind, error);
     }
-    return kind->type == TYPE_F8 && kind->content != ANY ? check_numbers(section, kind->content, error)
-                                                         : STATUS_OK;
+    return kind->type == TYPE_F8 && kind->content != ANY
+               ? section_check_numbers(section, kind->content, error)
+               : STATUS_OK;
 }
 
 /* ---- sections together, each as the table says ---- */
@@ -150,7 +87,7 @@ static enum status check_groups(const struct stream *stream, const struct cells 
     FREED_BY(named_facets_free) struct named_facets facets = {0};
     FREED_BY(named_sets_free) struct named_sets sets = {0};
     if (cells->count > 0 && stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     }
     if (cells->node_count > 0) {
         RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
@@ -193,7 +130,7 @@ struct check {
     struct error error;
 };
 
-static void tell(struct check *check, enum status status, const struct error *error)
+static void record(struct check *check, enum status status, const struct error *error)
 {
     if (status == STATUS_INPUT) {
         check->report(check->context, error->text);
@@ -208,17 +145,17 @@ static void check_together(const struct stream *stream, struct check *check, str
 {
     struct cells cells = {0};
     if (stream_find(stream, "nodes.x") != NULL) {
-        tell(check, stream_cells(stream, false, &cells, error), error);
+        record(check, stream_cells(stream, false, &cells, error), error);
     }
     if (check->count > 0) {
         return;
     }
-    tell(check, check_groups(stream, &cells, error), error);
-    tell(check, check_faces(stream, &cells, error), error);
+    record(check, check_groups(stream, &cells, error), error);
+    record(check, check_faces(stream, &cells, error), error);
     for (int k = 0; k < SECTION_KINDS; k++) {
         const struct section_kind *kind = &section_kinds[k];
         if (kind->content == LIST && strcmp(kind->name, "sets.ptr") != 0) {
-            tell(check, check_lists(stream, kind->name, error), error);
+            record(check, check_lists(stream, kind->name, error), error);
         }
     }
 }
@@ -228,7 +165,7 @@ enum status stream_check(const struct stream *stream, violation_function *report
 {
     struct check check = {.report = report, .context = context};
     for (int64_t i = 0; i < stream->section_count; i++) {
-        tell(&check, check_section(stream, &stream->sections[i], error), error);
+        record(&check, check_section(stream, &stream->sections[i], error), error);
     }
     if (check.count == 0) {
         check_together(stream, &check, error);

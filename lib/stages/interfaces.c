@@ -19,7 +19,7 @@ enum status stage_interfaces(const struct stream *stream, const char *names, int
     *side = NULL;
     RETURN_IF_ERROR(list == NULL ? fail_memory(error, "regions") : STATUS_OK);
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
-    RETURN_IF_ERROR(stream_regions(stream, &cells, &regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     RETURN_IF_ERROR(NEW_ARRAY(&of_region, regions.names.count, error));
     for (char *name; (name = strsep(&rest, ",")) != NULL;) {
         int64_t region = names_find(&regions.names, name);
@@ -51,23 +51,13 @@ enum status stage_sides(const struct stream *stream, const char *prefix, const i
     if (stream_find(stream, name) == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I4, 1, "support", &section, error));
+    RETURN_IF_ERROR(stream_view(stream, name, &section, error));
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     *side = section->data;
-    for (int64_t c = 0; c < section->rows; c++) {
-        if ((*side)[c] < 0 || (*side)[c] >= cells.count) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: no side %d", name, (long long)c, (*side)[c]);
-        }
-    }
-    if (section->rows != cells.count) {
-        return fail(error, STATUS_INPUT, "%s: %lld rows for %lld cells: run support again", name,
-                    (long long)section->rows, (long long)cells.count);
-    }
-    return STATUS_OK;
+    return section_check_indices(section, 0, cells.count, "side", "", error);
 }
 
-enum status stage_own_part(const struct stream *stream, int64_t node_count, struct support_options *options,
-                           struct error *error)
+enum status stage_own_part(const struct stream *stream, struct support_options *options, struct error *error)
 {
     const struct section *node = stream_find(stream, "part.node"), *owner;
     char value[64];
@@ -75,11 +65,7 @@ enum status stage_own_part(const struct stream *stream, int64_t node_count, stru
     if (node == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "part.owner", TYPE_I4, 1, "part", &owner, error));
-    if (owner->rows != node_count) {
-        return fail(error, STATUS_INPUT, "part.owner: %lld rows for %lld nodes: cut again",
-                    (long long)owner->rows, (long long)node_count);
-    }
+    RETURN_IF_ERROR(stream_view(stream, "part.owner", &owner, error));
     if (!section_attribute(node, "part", value, sizeof value)) {
         return fail(error, STATUS_INPUT, "part.node: no part=: not written by part");
     }

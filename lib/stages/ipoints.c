@@ -94,11 +94,7 @@ static enum status adaptive_radii(const struct stream *stream, const struct ipoi
     if (recorded == NULL || options->given_radius) {
         return stage_radii(stream, &options->refinement.support, cells->node_count, cells->x, radius, error);
     }
-    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &recorded, error));
-    if (recorded->rows != cells->node_count) {
-        return fail(error, STATUS_INPUT, "support.radius: %lld rows for %lld nodes: run support again",
-                    (long long)recorded->rows, (long long)cells->node_count);
-    }
+    RETURN_IF_ERROR(stream_view(stream, "support.radius", &recorded, error));
     memcpy(radius, recorded->data, (size_t)recorded->rows * sizeof *radius);
     return STATUS_OK;
 }
@@ -107,8 +103,7 @@ static enum status adaptive_cell_points(const struct stream *stream, const struc
                                         const struct cells *cells, struct adaptive_points *points,
                                         struct error *error)
 {
-    SCRATCH double *radius = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells->node_count, error));
+    NEW_SCRATCH(double, radius, cells->node_count, error);
     RETURN_IF_ERROR(adaptive_radii(stream, options, cells, radius, error));
     return adaptive_points_build(&options->refinement, cells, radius, points, error);
 }
@@ -132,11 +127,10 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
 {
     int dim = cells->dim;
     FREED_BY(faces_free) struct faces faces = {0};
-    SCRATCH double *x = NULL;
     char attributes[64];
     RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
     int64_t count = faces.count, points = face_point_count(&faces);
-    RETURN_IF_ERROR(NEW_ARRAY(&x, points * dim, error));
+    NEW_SCRATCH(double, x, points *dim, error);
     face_points(&faces, cells->x, x);
     RETURN_IF_ERROR(
         stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));

@@ -2,9 +2,7 @@
 
 #include "approx/cells/face_edges.h"
 #include "base/memory.h"
-#include "io/stream/sections.h"
 
-#include <math.h>
 #include <string.h>
 
 /* The points of one section, and their lists of one prefix. */
@@ -21,20 +19,14 @@ static enum status view_points(const struct stream *stream, const char *section,
     int dim;
     const struct section *points, *radius;
     RETURN_IF_ERROR(stream_nodes(stream, &dim, &of->node_count, &of->nodes, error));
-    RETURN_IF_ERROR(stream_need(stream, section, TYPE_F8, dim, "ipoints", &points, error));
-    RETURN_IF_ERROR(stream_need(stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
+    RETURN_IF_ERROR(stream_view(stream, section, &points, error));
+    RETURN_IF_ERROR(stream_view(stream, "support.radius", &radius, error));
     RETURN_IF_ERROR(stream_neighbours(stream, prefix, points->rows, of->node_count, &of->lists, error));
-    if (radius->rows != of->node_count || of->lists.widen == NULL) {
-        return fail(error, STATUS_INPUT, "support.radius, %s.widen: do not fit: run support again", prefix);
+    if (of->lists.widen == NULL) {
+        return fail(error, STATUS_INPUT, "no section %s.widen: run support", prefix);
     }
-    RETURN_IF_ERROR(section_check_numbers(points, false, error));
-    RETURN_IF_ERROR(section_check_numbers(radius, true, error));
-    for (int64_t p = 0; p < points->rows; p++) {
-        if (!(of->lists.widen[p] >= 1.0) || !isfinite(of->lists.widen[p])) {
-            return fail(error, STATUS_INPUT, "%s.widen: row %lld: %g is no factor", prefix, (long long)p,
-                        of->lists.widen[p]);
-        }
-    }
+    RETURN_IF_ERROR(section_check_numbers(points, FINITE, error));
+    RETURN_IF_ERROR(section_check_numbers(radius, POSITIVE, error));
     of->x = points->data;
     of->radius = radius->data;
     of->section = section;
@@ -46,11 +38,11 @@ static enum status tabulate(struct stream *stream, const struct mls *mls, const 
                             const char *prefix, const char *phi_name, bool gradients, struct error *error)
 {
     struct tabulated of;
-    SCRATCH double *phi = NULL, *dphi = NULL;
+    SCRATCH double *dphi = NULL;
     char attributes[64];
     RETURN_IF_ERROR(view_points(stream, section, prefix, &of, error));
     int64_t pairs = of.lists.ptr[of.lists.count];
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, pairs, error));
+    NEW_SCRATCH(double, phi, pairs, error);
     if (gradients) {
         RETURN_IF_ERROR(NEW_ARRAY(&dphi, pairs * mls->dim, error));
     }
@@ -82,14 +74,13 @@ static enum status put_faces(struct stream *stream, const struct mls *mls, bool 
     struct faces faces;
     struct tabulated of;
     FREED_BY(shape_rows_free) struct shape_rows boundary = {0}, edges = {0};
-    SCRATCH double *phi = NULL;
     RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
     RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
     RETURN_IF_ERROR(view_points(stream, "facepoints.x", "facepoint", &of, error));
     if (of.lists.count != face_point_count(&faces)) {
         return fail(error, STATUS_INPUT, "facepoints.x: does not fit faces: run ipoints again");
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, of.lists.ptr[of.lists.count], error));
+    NEW_SCRATCH(double, phi, of.lists.ptr[of.lists.count], error);
     RETURN_IF_ERROR(shape_table(mls, of.nodes, of.radius, &of.lists, of.x, of.section, phi, NULL, error));
     if (smoothed) {
         RETURN_IF_ERROR(shape_on_edges(&of.lists, phi, &faces, &edges, error));
@@ -115,7 +106,7 @@ enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct e
 {
     const struct section *points;
     sections_remove(stream, MADE_WITH_SHAPES, MADE_WITH_SHAPES);
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, mls->dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
     bool smoothed = points_are_smoothed(points);
     if (stream_find(stream, "faces") != NULL || smoothed) {
         RETURN_IF_ERROR(put_faces(stream, mls, smoothed, error));

@@ -1,5 +1,6 @@
 /* The stages between a node cloud and a table of shape functions, on a stream: each adds its sections, and
- * removes those that were made from what it replaces. */
+ * removes those that were made from what it replaces. STATUS_INPUT for sections that are missing or do not
+ * fit. */
 #pragma once
 
 #include "stages/views.h"
@@ -51,8 +52,8 @@ MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char 
 
 /* For a part of a body (part.node): set owner and part of the options, so that supports of other parts'
  * points do not stop at interfaces. */
-MUST_CHECK enum status stage_own_part(const struct stream *stream, int64_t node_count,
-                                      struct support_options *options, struct error *error);
+MUST_CHECK enum status stage_own_part(const struct stream *stream, struct support_options *options,
+                                      struct error *error);
 
 /* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
  * facepoint and node. */
@@ -62,9 +63,18 @@ MUST_CHECK enum status stage_support(struct stream *stream, const struct support
 /* Add the sections of shapefn: edge.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);
 
-/* The settings recorded with the radii of supports. */
+/* The options of the shape functions as text; NULL: not given. `mu` is one value or one for each second-order
+ * monomial (3 in 2D: x2,xy,y2; 6 in 3D: x2,xy,xz,y2,yz,z2). With mls->dim 0, the dimension is not known yet,
+ * and either number is accepted. */
+struct mls_texts {
+    const char *basis, *weight, *mu, *mu_unit;
+};
+MUST_CHECK enum status mls_apply(const struct mls_texts *texts, struct mls *mls, struct error *error);
+
+/* The radii of supports, and the settings recorded with them. */
 struct recorded {
-    struct support_options support; /* of the lists; radius and factor are the defaults */
+    const double *radius; /* of the nodes, m; NULL: the stream has none, and the settings are defaults */
+    struct support_options support; /* of the lists; its radius and factor are the defaults */
     struct mls shapes;              /* of the shape functions, if different from support.mls */
 };
 
@@ -72,11 +82,37 @@ struct recorded {
 MUST_CHECK enum status stage_sides(const struct stream *stream, const char *prefix, const int32_t **side,
                                    struct error *error);
 
-/* The settings from the attributes of PREFIX.radius, and a view of PREFIX.side, if it exists, as
- * recorded->support.side. Settings that are not recorded are those of support_defaults(). */
-MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix, int dim,
+/* A view of PREFIX.radius, the settings from its attributes, and a view of PREFIX.side, if it exists, as
+ * recorded->support.side. Settings that are not recorded are those of support_defaults(). PREFIX is support;
+ * or parameters, for the field that mtled computed. */
+MUST_CHECK enum status stage_recorded(const struct stream *stream, const char *prefix,
                                       struct recorded *recorded, struct error *error);
 
 /* Put radius[node_count] as support.radius, with the settings. */
 MUST_CHECK enum status stage_record(struct stream *stream, const struct recorded *recorded,
                                     int64_t node_count, const double *radius, struct error *error);
+
+/* The field that mtled computed is u_h(x) = sum_j phi_j(x) d_j. Its results hold the parameters d_j in the
+ * sections parameters and parameters.frame.K, and the supports of phi_j in parameters.radius, as `recorded`.
+ * The section to evaluate for a field: for u and u.frame.K their parameters, if they exist and fit; else the
+ * field itself, whose values are taken as parameters. */
+const struct section *solved_parameters(const struct stream *stream, const struct recorded *recorded,
+                                        const struct section *field);
+
+/* Whether a section contains parameters, so that it is not a field itself. */
+bool solved_is_parameters(const struct section *section);
+
+/* Set the first part of *input, up to cell_side, as views of the cloud and the tables of shape functions in
+ * the stream, and complete it (assembly_complete). */
+struct assembly;
+MUST_CHECK enum status stage_tables(const struct stream *stream, struct assembly *input, struct error *error);
+
+/* Receives each violation as one line, "section: row: what", without newline. */
+typedef void violation_function(void *context, const char *text);
+
+/* Check every section that is in the table of sections. First each by itself: type, columns, rows and
+ * numbers. If these are right, sections together: positive volumes of cells, groups, faces, ascending lists,
+ * partition of unity within 1e-9. Only the first violation of a section is reported; *count: their number.
+ * Absent sections are no violation. STATUS_SYSTEM: memory. */
+MUST_CHECK enum status stream_check(const struct stream *stream, violation_function *report, void *context,
+                                    int64_t *count, struct error *error);

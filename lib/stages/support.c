@@ -10,8 +10,7 @@ static enum status local_radii(const struct stream *stream, const struct support
                                int64_t node_count, const double *x, double *radius, struct error *error)
 {
     struct cells cells;
-    SCRATCH double *spacing = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, node_count, error));
+    NEW_SCRATCH(double, spacing, node_count, error);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     if (cells.count > 0) {
         RETURN_IF_ERROR(cells_node_spacing(&cells, spacing, error));
@@ -32,10 +31,9 @@ enum status stage_radii(const struct stream *stream, const struct support_option
 static enum status put_radii(struct stream *stream, const struct support_options *options, int64_t node_count,
                              const double *x, struct error *error)
 {
-    SCRATCH double *radius = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
+    NEW_SCRATCH(double, radius, node_count, error);
     RETURN_IF_ERROR(stage_radii(stream, options, node_count, x, radius, error));
-    return stage_record(stream, &(struct recorded){*options, options->mls}, node_count, radius, error);
+    return stage_record(stream, &(struct recorded){NULL, *options, options->mls}, node_count, radius, error);
 }
 
 /* Points of one section in these cells, their lists PREFIX.ptr, .idx, .widen, and their name in the
@@ -80,7 +78,7 @@ static enum status put_lists(struct stream *stream, const struct support_options
 }
 
 /* The cells of the integration points; they are searched for if there is no such section. */
-static enum status places_of_points(const struct stream *stream, const struct cells *cells, int64_t points,
+static enum status places_of_points(const struct stream *stream, const struct cells *cells,
                                     struct visibility_places *places, struct error *error)
 {
     const struct section *section = stream_find(stream, "points.cell");
@@ -88,18 +86,10 @@ static enum status places_of_points(const struct stream *stream, const struct ce
     if (section == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &section, error));
-    if (section->rows != points) {
-        return fail(error, STATUS_INPUT, "points.cell: %lld rows for %lld points: run ipoints again",
-                    (long long)section->rows, (long long)points);
-    }
-    const int32_t *cell = section->data;
-    for (int64_t i = 0; i < points; i++) {
-        if (cell[i] < -1 || (cells->count > 0 && cell[i] >= cells->count)) {
-            return fail(error, STATUS_INPUT, "points.cell: row %lld: no cell %d", (long long)i, cell[i]);
-        }
-    }
-    *places = (struct visibility_places){.cell = cell, .points_per_row = 1};
+    RETURN_IF_ERROR(stream_view(stream, "points.cell", &section, error));
+    RETURN_IF_ERROR(
+        section_check_indices(section, -1, cells->count > 0 ? cells->count : INT32_MAX, "cell", "", error));
+    *places = (struct visibility_places){.cell = section->data, .points_per_row = 1};
     return STATUS_OK;
 }
 
@@ -139,7 +129,7 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     *report = (struct support_report){0};
     sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
-    RETURN_IF_ERROR(stream_need(stream, "points.x", TYPE_F8, cells.dim, "ipoints", &points, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
     if (cells.count == 0) {
         actual.visibility = VISIBILITY_DISTANCE;
     }
@@ -149,18 +139,17 @@ enum status stage_support(struct stream *stream, const struct support_options *o
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    RETURN_IF_ERROR(stage_own_part(stream, cells.node_count, &actual, error));
+    RETURN_IF_ERROR(stage_own_part(stream, &actual, error));
     RETURN_IF_ERROR(
         support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */
     if (!smoothed) {
         listed = (struct listed){.points = points, .prefix = "nbr", .called = "integration points"};
-        RETURN_IF_ERROR(places_of_points(stream, &cells, points->rows, &listed.places, error));
+        RETURN_IF_ERROR(places_of_points(stream, &cells, &listed.places, error));
         RETURN_IF_ERROR(put_lists(stream, &actual, &space, &listed, report, error));
     }
     if (stream_find(stream, "faces") != NULL || smoothed) {
-        RETURN_IF_ERROR(
-            stream_need(stream, "facepoints.x", TYPE_F8, cells.dim, "ipoints", &facepoints, error));
+        RETURN_IF_ERROR(stream_view(stream, "facepoints.x", &facepoints, error));
         listed = (struct listed){.points = facepoints, .prefix = "facepoint", .called = "points on faces"};
         RETURN_IF_ERROR(places_of_face_points(stream, &cells, facepoints->rows, &face_ptr, &face_cell,
                                               &listed.places, error));

@@ -7,29 +7,108 @@
 #include <stdio.h>
 #include <string.h>
 
+/* ---- any section, by its entry in the table of sections ---- */
+
+/* The program that makes a section. */
+static const char *producer(const struct section_kind *kind)
+{
+    static const char *const of_stages[] = {"nodes", "ipoints", "support", "shapefn", "mtled"};
+    return strncmp(kind->name, "part.", 5) == 0 ? "part" : of_stages[kind->stage];
+}
+
+/* The dimension, from the columns of coordinates; 0 if there are none. */
+static int find_dimension(const struct stream *stream)
+{
+    const struct section *nodes = stream_find(stream, "nodes.x"), *points = stream_find(stream, "points.x");
+    const struct section *x = nodes != NULL ? nodes : points;
+    return x != NULL && (x->cols == 2 || x->cols == 3) ? (int)x->cols : 0;
+}
+
+enum status section_check_shape(const struct stream *stream, const struct section *section,
+                                const struct section_kind *kind, struct error *error)
+{
+    int dim = find_dimension(stream);
+    int64_t cols = kind->cols == COLS_DIM          ? dim
+                   : kind->cols == COLS_DIM_PLUS_1 ? dim + 1
+                   : kind->cols == COLS_ANY        ? section->cols
+                                                   : kind->cols;
+    const struct section *other = kind->rows_of != NULL ? stream_find(stream, kind->rows_of) : NULL;
+    int64_t rows = other != NULL ? other->rows + (kind->content == LIST) : section->rows;
+    if (section->type != kind->type) {
+        return fail(error, STATUS_INPUT, "%s: type %s instead of %s", section->name,
+                    element_type_name(section->type), element_type_name(kind->type));
+    }
+    if (kind->cols == COLS_DIM && section->cols != 2 && section->cols != 3) {
+        return fail(error, STATUS_INPUT, "%s: %lld columns instead of 2 or 3", section->name,
+                    (long long)section->cols);
+    }
+    if ((kind->cols > 0 || dim > 0) && section->cols != cols) {
+        return fail(error, STATUS_INPUT, "%s: %lld columns instead of %lld", section->name,
+                    (long long)section->cols, (long long)cols);
+    }
+    if (section->rows != rows) {
+        return fail(error, STATUS_INPUT, "%s: does not fit %s: %lld rows instead of %lld: run %s again",
+                    section->name, other->name, (long long)section->rows, (long long)rows, producer(kind));
+    }
+    return STATUS_OK;
+}
+
+enum status stream_view(const struct stream *stream, const char *name, const struct section **section,
+                        struct error *error)
+{
+    const struct section_kind *kind = section_kind_of(name);
+    *section = stream_find(stream, name);
+    return *section == NULL ? fail(error, STATUS_INPUT, "no section %s: run %s", name, producer(kind))
+                            : section_check_shape(stream, *section, kind, error);
+}
+
+enum status section_check_numbers(const struct section *section, enum content content, struct error *error)
+{
+    static const char *const required[] = {[FINITE] = "finite",
+                                           [UNITY] = "finite",
+                                           [POSITIVE] = "finite and positive",
+                                           [AT_LEAST_ONE] = "finite and at least 1"};
+    const double *values = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        double value = values[i];
+        if (!isfinite(value) || (content == POSITIVE && !(value > 0.0)) ||
+            (content == AT_LEAST_ONE && !(value >= 1.0))) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: %.17g is not %s", section->name,
+                        (long long)(i / section->cols), value, required[content]);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status section_check_indices(const struct section *section, int64_t least, int64_t bound,
+                                  const char *what, const char *why, struct error *error)
+{
+    const int32_t *number = section->data;
+    for (int64_t i = 0; i < section->rows * section->cols; i++) {
+        if (number[i] < least || number[i] >= bound) {
+            return fail(error, STATUS_INPUT, "%s: row %lld: no %s %d%s", section->name,
+                        (long long)(i / section->cols), what, number[i], why);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- nodes, cells and groups ---- */
+
 enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count, const double **x,
                          struct error *error)
 {
     const struct section *nodes;
-    RETURN_IF_ERROR(stream_need(stream, "nodes.x", TYPE_F8, 0, "nodes", &nodes, error));
-    if ((nodes->cols != 2 && nodes->cols != 3) || nodes->rows < 1 || nodes->rows > INT32_MAX) {
-        return fail(error, STATUS_INPUT,
-                    "nodes.x: %lld rows of %lld columns: not a cloud in 2 or 3 dimensions",
-                    (long long)nodes->rows, (long long)nodes->cols);
+    RETURN_IF_ERROR(stream_view(stream, "nodes.x", &nodes, error));
+    if (nodes->rows < 1 || nodes->rows > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "nodes.x: %lld rows: not a cloud of nodes", (long long)nodes->rows);
     }
-    const double *place = nodes->data;
     *dim = (int)nodes->cols;
     if (node_count != NULL) {
         *node_count = nodes->rows;
-        *x = place;
+        *x = nodes->data;
     }
-    for (int64_t i = 0; i < nodes->rows * nodes->cols; i++) {
-        if (!isfinite(place[i])) {
-            return fail(error, STATUS_INPUT, "nodes.x: row %lld: not a finite coordinate",
-                        (long long)(i / nodes->cols));
-        }
-    }
-    return STATUS_OK;
+    return section_check_numbers(nodes, FINITE, error);
 }
 
 enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells, struct error *error)
@@ -40,29 +119,16 @@ enum status stream_cells(const struct stream *stream, bool needed, struct cells 
     if (section == NULL && !needed) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "cells", TYPE_I4, cells->dim + 1, "nodes", &section, error));
+    RETURN_IF_ERROR(stream_view(stream, "cells", &section, error));
     cells->count = section->rows;
     cells->node = section->data;
     return cells_check(cells, error);
 }
 
-enum status section_check_numbers(const struct section *section, bool positive, struct error *error)
-{
-    const double *values = section->data;
-    for (int64_t i = 0; i < section->rows * section->cols; i++) {
-        if (!isfinite(values[i]) || (positive && !(values[i] > 0.0))) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: %g is not a %s", section->name,
-                        (long long)(i / section->cols), values[i],
-                        positive ? "positive length" : "finite coordinate");
-        }
-    }
-    return STATUS_OK;
-}
-
-enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
+enum status stream_field(const struct stream *stream, const char *name, int cols, int64_t node_count,
                          const struct section **field, struct error *error)
 {
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, 0, "mtled", field, error));
+    RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, cols, "mtled", field, error));
     if ((*field)->cols > 3 || (*field)->rows != node_count) {
         return fail(error, STATUS_INPUT,
                     "%s: %lld rows of %lld columns: not a field of 1 to 3 columns on %lld nodes", name,
@@ -71,33 +137,47 @@ enum status stream_field(const struct stream *stream, const char *name, int64_t 
     return STATUS_OK;
 }
 
-/* Check that the numbers of a section are within [0, bound). `what` and `where` name them in messages. */
-static enum status check_numbers(const struct section *section, const char *what, const char *where,
-                                 int64_t bound, struct error *error)
+enum status names_of(const struct section *section, const char *key, struct names *names, struct error *error)
 {
-    const int32_t *number = section->data;
-    for (int64_t i = 0; i < section->rows * section->cols; i++) {
-        if (number[i] < 0 || number[i] >= bound) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: no %s %d%s", section->name,
-                        (long long)(i / section->cols), what, number[i], where);
-        }
+    size_t size = strlen(section->attributes) + 1;
+    *names = (struct names){0};
+    /* The list, followed by a copy that is cut at the commas. */
+    RETURN_IF_ERROR(NEW_ARRAY(&names->list, 2 * (int64_t)size, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&names->name, (int64_t)size, error));
+    char *rest = NULL;
+    if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
+        rest = memcpy(names->list + size, names->list, size);
+    }
+    while (rest != NULL) {
+        names->name[names->count++] = strsep(&rest, ",");
     }
     return STATUS_OK;
 }
 
-enum status stream_regions(const struct stream *stream, const struct cells *cells,
-                           struct cell_regions *regions, struct error *error)
+void names_free(struct names *names)
+{
+    FREE_ALL(names->list, names->name);
+    *names = (struct names){0};
+}
+
+int64_t names_find(const struct names *names, const char *name)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        if (strcmp(names->name[i], name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+enum status stream_regions(const struct stream *stream, struct cell_regions *regions, struct error *error)
 {
     const struct section *section;
     *regions = (struct cell_regions){0};
-    RETURN_IF_ERROR(stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &section, error));
-    if (section->rows != cells->count) {
-        return fail(error, STATUS_INPUT, "cells.region: has %lld rows, cells %lld: does not fit",
-                    (long long)section->rows, (long long)cells->count);
-    }
+    RETURN_IF_ERROR(stream_view(stream, "cells.region", &section, error));
     RETURN_IF_ERROR(names_of(section, "names", &regions->names, error));
     regions->of_cell = section->data;
-    return check_numbers(section, "region", " in names=", regions->names.count, error);
+    return section_check_indices(section, 0, regions->names.count, "region", " in names=", error);
 }
 
 enum status stream_facets(const struct stream *stream, bool needed, const struct cells *cells,
@@ -108,14 +188,11 @@ enum status stream_facets(const struct stream *stream, bool needed, const struct
     if (!needed && stream_find(stream, "facets") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "facets", TYPE_I4, cells->dim, "nodes", &facet, error));
-    RETURN_IF_ERROR(stream_need(stream, "facets.set", TYPE_I4, 1, "nodes", &group, error));
-    if (group->rows != facet->rows) {
-        return fail(error, STATUS_INPUT, "facets.set: does not fit facets");
-    }
-    RETURN_IF_ERROR(check_numbers(facet, "node", "", cells->node_count, error));
+    RETURN_IF_ERROR(stream_view(stream, "facets", &facet, error));
+    RETURN_IF_ERROR(stream_view(stream, "facets.set", &group, error));
+    RETURN_IF_ERROR(section_check_indices(facet, 0, cells->node_count, "node", "", error));
     RETURN_IF_ERROR(names_of(group, "names", &facets->names, error));
-    RETURN_IF_ERROR(check_numbers(group, "group", " in names=", facets->names.count, error));
+    RETURN_IF_ERROR(section_check_indices(group, 0, facets->names.count, "group", " in names=", error));
     facets->count = facet->rows;
     facets->facet = facet->data;
     facets->group = group->data;
@@ -130,7 +207,7 @@ enum status stream_sets(const struct stream *stream, bool needed, int64_t node_c
     if (!needed && stream_find(stream, "sets.ptr") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "sets.ptr", TYPE_I8, 1, "nodes", &ptr, error));
+    RETURN_IF_ERROR(stream_view(stream, "sets.ptr", &ptr, error));
     RETURN_IF_ERROR(names_of(ptr, "names", &sets->names, error));
     return stream_neighbours(stream, "sets", sets->names.count, node_count, &sets->lists, error);
 }
@@ -146,10 +223,7 @@ static enum status view_edges(const struct stream *stream, struct faces *faces, 
         faces->edge_count = faces->count;
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_need(stream, "faces.edge", TYPE_I4, 3, "ipoints", &edge, error));
-    if (edge->rows != faces->count) {
-        return fail(error, STATUS_INPUT, "faces.edge: does not fit faces: run ipoints again");
-    }
+    RETURN_IF_ERROR(stream_view(stream, "faces.edge", &edge, error));
     faces->edge = edge->data;
     for (int64_t i = 0; i < faces->count * 3; i++) {
         if (faces->edge[i] < 0 || faces->edge[i] > faces->edge_count) {
@@ -159,8 +233,7 @@ static enum status view_edges(const struct stream *stream, struct faces *faces, 
         }
         faces->edge_count += faces->edge[i] == faces->edge_count;
     }
-    SCRATCH int32_t *ends = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    NEW_SCRATCH(int32_t, ends, faces->edge_count * 2, error);
     return face_edges_ends(faces, ends, error);
 }
 
@@ -168,19 +241,14 @@ enum status stream_faces(const struct stream *stream, const struct cells *cells,
                          struct error *error)
 {
     const struct section *node, *cell;
-    RETURN_IF_ERROR(stream_need(stream, "faces", TYPE_I4, cells->dim, "ipoints", &node, error));
-    RETURN_IF_ERROR(stream_need(stream, "faces.cell", TYPE_I4, 2, "ipoints", &cell, error));
+    RETURN_IF_ERROR(stream_view(stream, "faces", &node, error));
+    RETURN_IF_ERROR(stream_view(stream, "faces.cell", &cell, error));
     *faces = (struct faces){.dim = cells->dim, .count = node->rows, .node = node->data, .cell = cell->data};
-    if (cell->rows != faces->count) {
-        return fail(error, STATUS_INPUT, "faces.cell: does not fit faces: run ipoints again");
-    }
-    RETURN_IF_ERROR(check_numbers(node, "node", "", cells->node_count, error));
+    RETURN_IF_ERROR(section_check_indices(node, 0, cells->node_count, "node", "", error));
+    RETURN_IF_ERROR(section_check_indices(cell, -1, cells->count, "cell", "", error));
     for (int64_t f = 0; f < faces->count; f++) {
-        for (int k = 0; k < 2; k++) {
-            int32_t at = faces->cell[2 * f + k];
-            if (at < -k || at >= cells->count) {
-                return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell %d", (long long)f, at);
-            }
+        if (faces->cell[2 * f] < 0) {
+            return fail(error, STATUS_INPUT, "faces.cell: row %lld: no cell -1", (long long)f);
         }
         if (faces->cell[2 * f + 1] < 0 && faces->boundary_count++ < f) {
             return fail(error, STATUS_INPUT,
@@ -197,65 +265,57 @@ bool points_are_smoothed(const struct section *points)
     return section_attribute(points, "rule", rule, sizeof rule) && strcmp(rule, "conforming") == 0;
 }
 
+/* *section: PREFIX.WHAT of lists; NULL if it does not exist and is not needed, or is none of these lists. */
+static enum status view_member(const struct stream *stream, const char *prefix, const char *what, bool needed,
+                               const struct section **section, struct error *error)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s.%s", prefix, what);
+    *section = NULL;
+    return !needed && (stream_find(stream, name) == NULL || section_kind_of(name) == NULL)
+               ? STATUS_OK
+               : stream_view(stream, name, section, error);
+}
+
 /* The sections PREFIX.around and .image, if they exist, of lists with `pairs` entries. */
 static enum status view_around(const struct stream *stream, const char *prefix, int64_t pairs,
                                struct around *around, struct error *error)
 {
-    char name[64];
-    int dim;
     const struct section *pair, *image;
     *around = (struct around){0};
-    snprintf(name, sizeof name, "%s.around", prefix);
-    if (stream_find(stream, name) == NULL) {
+    RETURN_IF_ERROR(view_member(stream, prefix, "around", false, &pair, error));
+    if (pair == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_nodes(stream, &dim, NULL, NULL, error));
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &pair, error));
-    snprintf(name, sizeof name, "%s.image", prefix);
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_F8, dim, "support", &image, error));
+    RETURN_IF_ERROR(view_member(stream, prefix, "image", true, &image, error));
     *around = (struct around){.count = pair->rows, .pair = pair->data, .offset = image->data};
-    if (image->rows != pair->rows) {
-        return fail(error, STATUS_INPUT, "%s: does not fit %s.around: run support again", name, prefix);
-    }
     for (int64_t i = 0; i < pair->rows; i++) {
         if (around->pair[i] < (i > 0 ? around->pair[i - 1] + 1 : 0) || around->pair[i] >= pairs) {
             return fail(error, STATUS_INPUT, "%s.around: row %lld: no neighbour %lld, or not ascending",
                         prefix, (long long)i, (long long)around->pair[i]);
         }
     }
-    for (int64_t i = 0; i < image->rows * dim; i++) {
-        if (!isfinite(around->offset[i])) {
-            return fail(error, STATUS_INPUT, "%s: row %lld: not a finite offset", name, (long long)(i / dim));
-        }
-    }
-    return STATUS_OK;
+    return section_check_numbers(image, FINITE, error);
 }
 
 enum status stream_neighbours(const struct stream *stream, const char *prefix, int64_t rows, int64_t columns,
                               struct neighbours *lists, struct error *error)
 {
-    char name[64];
-    const struct section *ptr, *idx, *widen;
-    snprintf(name, sizeof name, "%s.ptr", prefix);
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I8, 1, "support", &ptr, error));
-    snprintf(name, sizeof name, "%s.idx", prefix);
-    RETURN_IF_ERROR(stream_need(stream, name, TYPE_I4, 1, "support", &idx, error));
-    snprintf(name, sizeof name, "%s.widen", prefix);
-    widen = stream_find(stream, name);
+    const struct section *ptr, *idx, *widen = NULL;
+    RETURN_IF_ERROR(view_member(stream, prefix, "ptr", true, &ptr, error));
+    RETURN_IF_ERROR(view_member(stream, prefix, "idx", true, &idx, error));
+    RETURN_IF_ERROR(view_member(stream, prefix, "widen", false, &widen, error));
     *lists = (struct neighbours){.count = rows, .ptr = ptr->data, .idx = idx->data};
-    if (widen != NULL && widen->type == TYPE_F8 && widen->rows == rows) {
-        lists->widen = widen->data;
-    }
     if (ptr->rows != rows + 1 || lists->ptr[0] != 0 || lists->ptr[rows] != idx->rows) {
         return fail(error, STATUS_INPUT, "%s.ptr: does not fit its lists and %s.idx: run %s again", prefix,
-                    prefix, strcmp(prefix, "sets") == 0 ? "nodes" : "support");
+                    prefix, producer(section_kind_of(ptr->name)));
     }
     for (int64_t p = 0; p < rows; p++) {
         if (lists->ptr[p + 1] < lists->ptr[p]) {
             return fail(error, STATUS_INPUT, "%s.ptr: row %lld: decreases", prefix, (long long)p + 1);
         }
     }
-    RETURN_IF_ERROR(check_numbers(idx, "node", "", columns, error));
+    RETURN_IF_ERROR(section_check_indices(idx, 0, columns, "node", "", error));
     for (int64_t p = 0; p < rows; p++) {
         for (int64_t i = lists->ptr[p] + 1; i < lists->ptr[p + 1]; i++) {
             if (lists->idx[i] <= lists->idx[i - 1]) {
@@ -263,6 +323,10 @@ enum status stream_neighbours(const struct stream *stream, const char *prefix, i
                             (long long)i, lists->idx[i - 1], lists->idx[i]);
             }
         }
+    }
+    if (widen != NULL) {
+        RETURN_IF_ERROR(section_check_numbers(widen, AT_LEAST_ONE, error));
+        lists->widen = widen->data;
     }
     return view_around(stream, prefix, idx->rows, &lists->around, error);
 }

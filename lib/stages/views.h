@@ -4,7 +4,22 @@
 
 #include "approx/cells/cells.h"
 #include "approx/shape/shape.h"
-#include "stages/names.h"
+#include "io/stream/sections.h"
+
+/* A section that is in the table of sections, with the type, columns and rows that it states. */
+MUST_CHECK enum status stream_view(const struct stream *stream, const char *name,
+                                   const struct section **section, struct error *error);
+MUST_CHECK enum status section_check_shape(const struct stream *stream, const struct section *section,
+                                           const struct section_kind *kind, struct error *error);
+
+/* Check the numbers of a section of type f8: FINITE, POSITIVE or AT_LEAST_ONE. */
+MUST_CHECK enum status section_check_numbers(const struct section *section, enum content content,
+                                             struct error *error);
+
+/* Check that the numbers of a section of type i4 are within [least, bound). `what` names what they are in the
+ * message, which ends with `why`. */
+MUST_CHECK enum status section_check_indices(const struct section *section, int64_t least, int64_t bound,
+                                             const char *what, const char *why, struct error *error);
 
 /* Node coordinates, checked to be finite; or, with node_count and x NULL, only their dimension. */
 MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64_t *node_count,
@@ -14,21 +29,31 @@ MUST_CHECK enum status stream_nodes(const struct stream *stream, int *dim, int64
 MUST_CHECK enum status stream_cells(const struct stream *stream, bool needed, struct cells *cells,
                                     struct error *error);
 
-/* Check the numbers of a section of type f8: coordinates are finite, lengths positive as well. */
-MUST_CHECK enum status section_check_numbers(const struct section *section, bool positive,
-                                             struct error *error);
+/* A nodal field of so many columns; 0: of 1 to 3. */
+MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int cols,
+                                    int64_t node_count, const struct section **field, struct error *error);
 
-/* A nodal field of 1 to 3 columns. */
-MUST_CHECK enum status stream_field(const struct stream *stream, const char *name, int64_t node_count,
-                                    const struct section **field, struct error *error);
+/* The names in an attribute of a section: names= of groups, or another list such as rows=, separated by
+ * commas; to be freed also on failure. */
+struct names {
+    char *list; /* "body,lump", as in the section; "" if it has none */
+    int64_t count;
+    char **name; /* count */
+};
+MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
+                                struct error *error);
+void names_free(struct names *names);
+
+/* Index of `name`, or -1. */
+int64_t names_find(const struct names *names, const char *name);
 
 /* The region of each cell: of_cell[cells.count], each below names.count; to be freed, also on failure. */
 struct cell_regions {
     const int32_t *of_cell;
     struct names names;
 };
-MUST_CHECK enum status stream_regions(const struct stream *stream, const struct cells *cells,
-                                      struct cell_regions *regions, struct error *error);
+MUST_CHECK enum status stream_regions(const struct stream *stream, struct cell_regions *regions,
+                                      struct error *error);
 void cell_regions_free(struct cell_regions *regions);
 
 /* Named facets of the boundary: facet[count * dim] nodes of the cells, group[count] a name for each. Without

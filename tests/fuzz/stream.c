@@ -2,7 +2,7 @@
  * against its invariants, and comes back from both forms as it was. */
 #include "fuzz.h"
 
-#include "stages/check.h"
+#include "stages/stages.h"
 #include "io/stream/stream.h"
 
 #include <string.h>

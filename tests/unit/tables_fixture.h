@@ -4,8 +4,8 @@
 #include "unit.h"
 
 #include "approx/points/cloud.h"
+#include "solid/assembly/assembly.h"
 #include "stages/stages.h"
-#include "stages/tables.h"
 
 /* Tables on nodes with cells, in a stream, and what an assembly takes of both, in view. gauss_points of each
  * cell; 0: smoothed cells. factor: support radius by the local spacing. */

@@ -12,14 +12,10 @@
 enum status cell_report_make(const struct cells *cells, double bound, struct cell_report *report,
                              struct error *error)
 {
-    SCRATCH int32_t *part = NULL;
-    SCRATCH double *quality = NULL;
     *report = (struct cell_report){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->count, error));
+    NEW_SCRATCH(int32_t, part, cells->count, error);
     RETURN_IF_ERROR(cells_parts(cells, part, &report->bodies, error));
-    free(part);
-    part = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&quality, cells->count, error));
+    NEW_SCRATCH(double, quality, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
         quality[c] = cell_quality(cells, c);
         report->volume += cell_volume(cells, c);

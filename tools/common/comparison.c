@@ -23,24 +23,23 @@ struct comparison_request comparison_parse(const struct tool *tool)
                                        .region = tool_value(tool, "region"),
                                        .map = tool_value(tool, "map"),
                                        .skip_outside = tool_given(tool, "skip-outside"),
-                                       .percentiles = tool_given(tool, "percentiles"),
-                                       .text = tool_given(tool, "text")};
+                                       .percentiles = tool_given(tool, "percentiles")};
 }
 
 static enum status view_side(struct side *side, const char *field, struct error *error)
 {
     struct nodal_field *view = &side->field;
     RETURN_IF_ERROR(stream_cells(&side->stream, false, &view->cells, error));
-    RETURN_IF_ERROR(stream_field(&side->stream, field, view->cells.node_count, &side->section, error));
-    RETURN_IF_ERROR(supports_read(&side->stream, "parameters", &side->solved, error));
+    RETURN_IF_ERROR(stream_field(&side->stream, field, 0, view->cells.node_count, &side->section, error));
+    RETURN_IF_ERROR(stage_recorded(&side->stream, "parameters", &side->solved, error));
     const struct section *parameters = solved_parameters(&side->stream, &side->solved, side->section);
     view->cols = side->section->cols;
     view->values = side->section->data;
     if (parameters != side->section) {
         view->parameters = parameters->data;
         view->radius = side->solved.radius;
-        view->support = &side->solved.recorded.support;
-        view->shapes = &side->solved.recorded.shapes;
+        view->support = &side->solved.support;
+        view->shapes = &side->solved.shapes;
     }
     return STATUS_OK;
 }
@@ -75,51 +74,39 @@ static bool has_unknown(const struct tool *tool, const struct side *side, const 
     return false;
 }
 
-static enum status regions_read(const struct stream *stream, const struct cells *cells,
-                                struct regions *regions, struct error *error)
+/* Find the nodes of each region of A's cells, if there are any. */
+static enum status find_members(const struct side *a, struct findings *findings, struct error *error)
 {
-    struct cell_regions of;
+    const struct cells *cells = &a->field.cells;
     int corners = cells->dim + 1;
-    *regions = (struct regions){.node_count = cells->node_count};
-    if (stream_find(stream, "cells.region") == NULL || cells->count == 0) {
+    if (stream_find(&a->stream, "cells.region") == NULL || cells->count == 0) {
         return STATUS_OK;
     }
-    enum status status = stream_regions(stream, cells, &of, error);
-    regions->names = of.names;
-    RETURN_IF_ERROR(status);
-    int64_t count = of.names.count;
-    RETURN_IF_ERROR(NEW_ARRAY(&regions->member, cells->node_count * count, error));
+    RETURN_IF_ERROR(stream_regions(&a->stream, &findings->regions, error));
+    int64_t count = findings->regions.names.count;
+    RETURN_IF_ERROR(NEW_ARRAY(&findings->member, cells->node_count * count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
-        regions->member[cells->node[i] * count + of.of_cell[i / corners]] = true;
+        findings->member[cells->node[i] * count + findings->regions.of_cell[i / corners]] = true;
     }
     return STATUS_OK;
 }
 
-static void regions_free(struct regions *regions)
+/* (*chosen)[node_count], to be freed: the nodes of region `name`; NULL (all nodes) without a name. */
+static enum status choose_nodes(const struct findings *findings, int64_t node_count, const char *name,
+                                bool **chosen, struct error *error)
 {
-    names_free(&regions->names);
-    free(regions->member);
-    *regions = (struct regions){0};
-}
-
-/* (*chosen)[node_count], to be freed: the nodes of region `name`; NULL (all nodes) without a name.
- * STATUS_INPUT, with a list of the regions, if there is none of that name. */
-static enum status regions_choose(const struct regions *regions, const char *name, bool **chosen,
-                                  struct error *error)
-{
-    char list[256];
-    *chosen = NULL;
+    const struct names *names = &findings->regions.names;
     if (name == NULL) {
         return STATUS_OK;
     }
-    int64_t region = names_find(&regions->names, name);
+    int64_t region = names_find(names, name);
     if (region < 0) {
         return fail(error, STATUS_INPUT, "--region: no region '%s'; there are: %s", name,
-                    names_text(&regions->names, list));
+                    names->count > 0 ? names->list : "none");
     }
-    RETURN_IF_ERROR(NEW_ARRAY(chosen, regions->node_count, error));
-    for (int64_t n = 0; n < regions->node_count; n++) {
-        (*chosen)[n] = regions->member[n * regions->names.count + region];
+    RETURN_IF_ERROR(NEW_ARRAY(chosen, node_count, error));
+    for (int64_t n = 0; n < node_count; n++) {
+        (*chosen)[n] = findings->member[n * names->count + region];
     }
     return STATUS_OK;
 }
@@ -130,9 +117,10 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
     struct error why;
     struct field_comparison *comparison = &findings->comparison;
     SCRATCH bool *chosen = NULL;
+    *findings = (struct findings){.member = NULL};
     sides_check(tool, a, b, request->field);
-    TOOL_TRY(tool, regions_read(&a->stream, &a->field.cells, &findings->regions, &error));
-    TOOL_TRY(tool, regions_choose(&findings->regions, request->region, &chosen, &error));
+    TOOL_TRY(tool, find_members(a, findings, &error));
+    TOOL_TRY(tool, choose_nodes(findings, a->field.cells.node_count, request->region, &chosen, &error));
     enum status status = field_compare(&a->field, &b->field, chosen, request->skip_outside, comparison, &why);
     if (status != STATUS_OK) {
         tool_fail(tool, status, "%s%s", why.text,
@@ -148,7 +136,8 @@ void findings_make(const struct tool *tool, const struct comparison_request *req
 
 void findings_free(struct findings *findings)
 {
-    regions_free(&findings->regions);
+    cell_regions_free(&findings->regions);
+    free(findings->member);
     field_comparison_free(&findings->comparison);
     field_statistics_free(&findings->statistics);
 }
@@ -214,24 +203,23 @@ double iteration_error(const struct side *side)
 static enum status print_regions(const struct findings *findings, struct error *error)
 {
     const struct field_comparison *comparison = &findings->comparison;
-    const struct regions *regions = &findings->regions;
-    SCRATCH int64_t *node = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&node, comparison->count, error));
-    for (int64_t r = 0; r < regions->names.count; r++) {
+    const struct names *names = &findings->regions.names;
+    NEW_SCRATCH(int64_t, node, comparison->count, error);
+    for (int64_t r = 0; r < names->count; r++) {
         struct field_statistics statistics;
         int64_t count = 0;
         for (int64_t i = 0; i < comparison->count; i++) {
-            if (regions->member[comparison->node[i] * regions->names.count + r]) {
+            if (findings->member[comparison->node[i] * names->count + r]) {
                 node[count++] = comparison->node[i];
             }
         }
-        printf("n.%s\t%lld\n", regions->names.name[r], (long long)count);
+        printf("n.%s\t%lld\n", names->name[r], (long long)count);
         if (count > 0) {
             RETURN_IF_ERROR(field_statistics(count, node, comparison->difference, &statistics, error));
-            print_quantity("avg", regions->names.name[r], statistics.average);
-            print_quantity("max", regions->names.name[r], statistics.largest);
-            print_quantity("rmse", regions->names.name[r], statistics.rmse);
-            print_quantity("p95", regions->names.name[r], field_percentile(&statistics, 95));
+            print_quantity("avg", names->name[r], statistics.average);
+            print_quantity("max", names->name[r], statistics.largest);
+            print_quantity("rmse", names->name[r], statistics.rmse);
+            print_quantity("p95", names->name[r], field_percentile(&statistics, 95));
             field_statistics_free(&statistics);
         }
     }
@@ -239,8 +227,7 @@ static enum status print_regions(const struct findings *findings, struct error *
 }
 
 /* Write A's nodes and cells with a value at each node, section `name`, to a file. */
-static void write_map(struct tool *tool, struct side *a, const char *name, double *value, const char *file,
-                      bool text)
+static void write_map(struct tool *tool, struct side *a, const char *name, double *value, const char *file)
 {
     static const char *const kept[] = {"nodes.x", "cells", "cells.region"};
     struct stream *stream = &a->stream;
@@ -260,7 +247,7 @@ static void write_map(struct tool *tool, struct side *a, const char *name, doubl
     TOOL_TRY(tool, stream_put(stream, name, TYPE_F8, a->field.cells.node_count, 1, attributes, value, false,
                               &error));
     tool->output = file;
-    tool_write(tool, stream, text);
+    tool_write(tool, stream);
 }
 
 /* Whether a value is within its tolerance, which NaN is not; else note it. */
@@ -284,7 +271,7 @@ int comparison_end(struct tool *tool, const struct comparison_request *request, 
     good = is_within(tool, "avg", findings->statistics.average, request->tol_avg) && good;
     good = is_within(tool, "max", findings->statistics.largest, request->tol_max) && good;
     if (request->map != NULL) {
-        write_map(tool, a, name, findings->comparison.difference, request->map, request->text);
+        write_map(tool, a, name, findings->comparison.difference, request->map);
     }
     findings_free(findings);
     stream_free(&a->stream);

@@ -1,17 +1,10 @@
 /* The difference of nodal fields of two streams, and its output: shared by fieldcmp and fielderr. */
 #pragma once
 
-#include "stages/solved.h"
+#include "stages/stages.h"
 #include "tool.h"
 
 #include "approx/field/field_compare.h"
-
-/* The regions of a stream's cells, if there are any: their names, and the nodes of each. */
-struct regions {
-    int64_t node_count;
-    struct names names;
-    bool *member; /* node_count * names.count: a node belongs to the region of every cell at it */
-};
 
 /* A stream and its field. */
 struct side {
@@ -19,12 +12,13 @@ struct side {
     struct stream stream;
     const struct section *section; /* of the field */
     struct nodal_field field;
-    struct solved solved;
+    struct recorded solved; /* parameters of that field, if there are any */
 };
 
 /* The difference of two fields. */
 struct findings {
-    struct regions regions; /* of A */
+    struct cell_regions regions; /* of A's cells; none: no names */
+    bool *member; /* nodes * names.count: a node of A belongs to the region of every cell at it */
     struct field_comparison comparison;
     struct field_statistics statistics; /* of all nodes compared */
     double reference;                   /* largest norm of B's field */
@@ -36,7 +30,7 @@ struct comparison_request {
     const char *field;
     const char *region; /* NULL: all */
     const char *map;    /* the file; NULL: none */
-    bool skip_outside, percentiles, text;
+    bool skip_outside, percentiles;
 };
 
 /* Parse these options; exits for invalid values. */

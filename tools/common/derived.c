@@ -20,22 +20,18 @@ void derived_free(struct derived *derived)
     *derived = (struct derived){0};
 }
 
-/* Append a section of zeros, BASE.WHATtail, or WHATtail if base is NULL. Its data is in the last item. */
-static enum status append(struct derived *derived, const char *base, const char *what, const char *tail,
-                          enum element_type type, int64_t rows, int64_t cols, const char *attributes,
-                          struct error *error)
+/* Append a section of zeros, whose name is in two pieces. Its data is in the last item. */
+static enum status append(struct derived *derived, const char *name, const char *tail, enum element_type type,
+                          int64_t rows, int64_t cols, const char *attributes, struct error *error)
 {
     RETURN_IF_ERROR(RESIZE_ARRAY(&derived->items, derived->count + 1, error));
     struct section section = {.type = type, .rows = rows, .cols = cols};
     section.attributes = strdup(attributes);
     section.data = array_new(rows * cols, element_size(type));
-    if (asprintf(&section.name, "%s%s%s%s", base != NULL ? base : "", base != NULL ? "." : "", what, tail) <
-        0) {
-        section.name = NULL;
-    }
+    section.name = asprintf(&section.name, "%s%s", name, tail) < 0 ? NULL : section.name;
     derived->items[derived->count++] = section;
     if (section.attributes == NULL || section.data == NULL || section.name == NULL) {
-        return fail_memory(error, what);
+        return fail_memory(error, name);
     }
     return STATUS_OK;
 }
@@ -102,17 +98,17 @@ static void volume_ratio(const double A[9], double *row)
 }
 
 static const struct invariant {
-    const char *of, *base, *name; /* of section `of` and its frames: BASE.NAME, or NAME */
+    const char *of, *name; /* of section `of` and its frames */
     int cols;
     const char *attributes;
     const char *given; /* left out if the stream has this section */
     void (*compute)(const double A[9], double *row);
 } invariants[] = {
-    {"stress", "stress", "von_mises", 1, "unit=Pa", NULL, von_mises},
-    {"stress", "stress", "principal", 3, "unit=Pa cols=1,2,3", NULL, principal_values},
-    {"stress", NULL, "pressure", 1, "unit=Pa", "pressure", mean_pressure},
-    {"strain", "strain", "principal", 3, "unit=1 cols=1,2,3", NULL, principal_values},
-    {"strain", NULL, "J", 1, "unit=1", "volume_ratio", volume_ratio},
+    {"stress", "stress.von_mises", 1, "unit=Pa", NULL, von_mises},
+    {"stress", "stress.principal", 3, "unit=Pa cols=1,2,3", NULL, principal_values},
+    {"stress", "pressure", 1, "unit=Pa", "pressure", mean_pressure},
+    {"strain", "strain.principal", 3, "unit=1 cols=1,2,3", NULL, principal_values},
+    {"strain", "J", 1, "unit=1", "volume_ratio", volume_ratio},
 };
 
 /* Whether the stream has the section in the frame that `tail` names. */
@@ -138,7 +134,7 @@ enum status derived_add_invariants(const struct stream *stream, struct derived *
                 (what->given != NULL && has_section(stream, what->given, tail))) {
                 continue;
             }
-            RETURN_IF_ERROR(append(derived, what->base, what->name, tail, TYPE_F8, section->rows, what->cols,
+            RETURN_IF_ERROR(append(derived, what->name, tail, TYPE_F8, section->rows, what->cols,
                                    what->attributes, error));
             double *values = last_data(derived);
             for (int64_t row = 0; row < section->rows; row++) {
@@ -151,12 +147,12 @@ enum status derived_add_invariants(const struct stream *stream, struct derived *
     return STATUS_OK;
 }
 
-/* Append a section of zeros for each name: KIND.NAME. */
-static enum status append_groups(const struct names *names, const char *kind, int64_t node_count,
+/* Append a section of zeros for each name, behind the prefix. */
+static enum status append_groups(const struct names *names, const char *prefix, int64_t node_count,
                                  struct derived *derived, struct error *error)
 {
     for (int64_t i = 0; i < names->count; i++) {
-        RETURN_IF_ERROR(append(derived, kind, names->name[i], "", TYPE_I4, node_count, 1, "", error));
+        RETURN_IF_ERROR(append(derived, prefix, names->name[i], TYPE_I4, node_count, 1, "", error));
     }
     return STATUS_OK;
 }
@@ -172,7 +168,7 @@ static enum status add_facet_groups(const struct stream *stream, const struct ce
     FREED_BY(named_facets_free) struct named_facets facets = {0};
     int64_t first = derived->count;
     RETURN_IF_ERROR(stream_facets(stream, false, cells, &facets, error));
-    RETURN_IF_ERROR(append_groups(&facets.names, "facets", cells->node_count, derived, error));
+    RETURN_IF_ERROR(append_groups(&facets.names, "facets.", cells->node_count, derived, error));
     for (int64_t i = 0; i < facets.count * cells->dim; i++) {
         mark(derived, first + facets.group[i / cells->dim], facets.facet[i]);
     }
@@ -185,7 +181,7 @@ static enum status add_node_sets(const struct stream *stream, const struct cells
     FREED_BY(named_sets_free) struct named_sets sets = {0};
     int64_t first = derived->count;
     RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &sets, error));
-    RETURN_IF_ERROR(append_groups(&sets.names, "set", cells->node_count, derived, error));
+    RETURN_IF_ERROR(append_groups(&sets.names, "set.", cells->node_count, derived, error));
     for (int64_t s = 0; s < sets.lists.count; s++) {
         for (int64_t i = sets.lists.ptr[s]; i < sets.lists.ptr[s + 1]; i++) {
             mark(derived, first + s, sets.lists.idx[i]);

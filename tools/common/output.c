@@ -152,7 +152,7 @@ enum status output_end(struct output *output, enum status status, struct error *
 
 void target_open(const struct tool *tool, struct target *target, const char *name)
 {
-    *target = (struct target){.name = name, .file = stdout};
+    *target = (struct target){.name = name, .file = stdout, .output.descriptor = STDOUT_FILENO};
     if (name == NULL) {
         return;
     }

@@ -19,7 +19,7 @@ MUST_CHECK enum status output_open(struct output *output, const char *name, stru
  * The message of a failure begins with the name. */
 MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
 
-/* The file to which a tool prints: its output file, or standard output. */
+/* The file to which a tool prints: its output file, or standard output; or writes by its descriptor. */
 struct target {
     FILE *file;       /* to print to */
     const char *name; /* NULL: standard output */

@@ -1,4 +1,4 @@
-#include "overwrite.h"
+#include "tool.h"
 
 #include <stdio.h>
 #include <stdlib.h>

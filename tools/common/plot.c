@@ -190,7 +190,7 @@ static enum status find_mesh(struct plot *plot, struct error *error)
                                    .node = cells->count > 0 ? cells->node : NULL,
                                    .region_names = ""};
     if (cells->count > 0 && stream_find(&plot->stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(&plot->stream, cells, regions, error));
+        RETURN_IF_ERROR(stream_regions(&plot->stream, regions, error));
         plot->mesh.region = regions->of_cell;
         plot->mesh.region_names = regions->names.list;
     }

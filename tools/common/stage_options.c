@@ -1,6 +1,5 @@
 #include "stage_options.h"
 
-#include "stages/mls_settings.h"
 #include "stages/stages.h"
 
 #include <string.h>
@@ -23,28 +22,21 @@ void radius_parse(const struct tool *tool, struct support_options *support)
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
                      size_t size)
 {
-    struct error error;
-    enum status status;
-    int dim;
-    int64_t unresolved;
-    tool_check(tool, stream_nodes(stream, &dim, NULL, NULL, &error), &error);
+    struct recorded recorded;
+    TOOL_TRY(tool, stage_recorded(stream, "support", &recorded, &error));
     if (strcmp(stage, "ipoints") == 0) {
         const struct ipoints_options options = {.smoothed = true};
-        status = stage_ipoints(stream, &options, &unresolved, &error);
+        int64_t unresolved;
+        TOOL_TRY(tool, stage_ipoints(stream, &options, &unresolved, &error));
     } else if (strcmp(stage, "support") == 0) {
-        struct support_options options = support_defaults(dim);
+        struct support_options options = support_defaults(recorded.support.mls.dim);
         struct support_report report;
-        status = stage_support(stream, &options, &report, &error);
+        TOOL_TRY(tool, stage_support(stream, &options, &report, &error));
     } else {
-        struct recorded recorded;
-        status = stage_recorded(stream, "support", dim, &recorded, &error);
-        if (status == STATUS_OK) {
-            status = stage_shapefn(stream, &recorded.support.mls, &error);
-        }
+        TOOL_TRY(tool, stage_shapefn(stream, &recorded.support.mls, &error));
     }
-    tool_check(tool, status, &error);
     char *argv[] = {(char *)(uintptr_t)stage, NULL};
-    tool_check(tool, stream_add_provenance(stream, 1, argv, &error), &error);
+    TOOL_TRY(tool, stream_add_provenance(stream, 1, argv, &error));
     text_append(ran, size, "%s%s", ran[0] != '\0' ? ", " : "", stage);
 }
 

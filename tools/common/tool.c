@@ -1,7 +1,6 @@
 #include "tool.h"
 
 #include "output.h"
-#include "overwrite.h"
 #include "process.h"
 
 #include "io/files/descriptor.h"
@@ -18,7 +17,8 @@
 #include <unistd.h>
 
 /* State of the process, like the standard descriptors. */
-static char **arguments;         /* the command line, operands first; never freed */
+static char **arguments;         /* the command line, operands first; never freed, as is */
+static char **command;           /* the command line for the provenance, up to NULL */
 static const char *process_name; /* tool->name, for the handler of SIGBUS */
 static const char *main_input;   /* the operand that replaces standard input, or NULL */
 static bool stdin_read;          /* standard input has been read */
@@ -118,10 +118,10 @@ static _Noreturn void print_and_exit(const struct tool *tool, const char *text)
     exit(tool_end(tool));
 }
 
-static void parse_options(struct tool *tool)
+static void parse_options(struct tool *tool, int argc)
 {
     options_declare(&tool->options, tool->usage);
-    TOOL_TRY(tool, options_parse(&tool->options, tool->argc, arguments, &tool->operand_count, &error));
+    TOOL_TRY(tool, options_parse(&tool->options, argc, arguments, &tool->operand_count, &error));
     if (tool_given(tool, "help")) {
         print_and_exit(tool, tool->usage);
     }
@@ -134,6 +134,7 @@ static void parse_options(struct tool *tool)
         tool->output = tool_value(tool, "output");
         tool_leave_out(tool, "output");
     }
+    tool->text = options_has(&tool->options, "text") && tool_given(tool, "text");
 }
 
 /* SIGBUS: another program has cut a mapped input file short while it was read. */
@@ -141,10 +142,9 @@ static void on_lost_mapping(int number)
 {
     static const char message[] = ": an input file was cut short or could not be read while in use\n";
     (void)number;
-    if (write(STDERR_FILENO, process_name, strlen(process_name)) < 0 ||
-        write(STDERR_FILENO, message, sizeof message - 1) < 0) {
-        _exit((int)STATUS_SYSTEM);
-    }
+    ssize_t ignored = write(STDERR_FILENO, process_name, strlen(process_name)) +
+                      write(STDERR_FILENO, message, sizeof message - 1);
+    (void)ignored;
     _exit((int)STATUS_SYSTEM);
 }
 
@@ -160,12 +160,7 @@ static void on_foreign_exit(int status, void *unused)
 void tool_begin(struct tool *tool, const char *usage, int least, int most, int argc, char *argv[])
 {
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
-    *tool = (struct tool){.name = slash != NULL ? slash + 1
-                                  : argc > 0    ? argv[0]
-                                                : "",
-                          .usage = usage,
-                          .argc = argc,
-                          .argv = argv};
+    *tool = (struct tool){.name = slash != NULL ? slash + 1 : argc > 0 ? argv[0] : "", .usage = usage};
     fill_descriptors();
     gsl_set_error_handler_off(); /* its functions return errors */
     /* If the reader closes the pipe (head), end quietly, whatever the parent process has set. */
@@ -180,7 +175,9 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     (void)on_exit(on_foreign_exit, NULL);
     arguments = tool_memory(tool, array_new(argc + 1, sizeof *arguments));
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
-    parse_options(tool);
+    command = tool_memory(tool, array_new(argc + 1, sizeof *command));
+    memcpy(command, argv, (size_t)argc * sizeof *command);
+    parse_options(tool, argc);
     tool->operands = arguments + 1;
     tool->operands[tool->operand_count] = NULL;
     if (tool->operand_count > most) {
@@ -229,97 +226,88 @@ void tool_read(const struct tool *tool, const char *file, struct stream *stream)
     TOOL_TRY(tool, stream_read(stream, descriptor, name, &error));
 }
 
-/* The value of a silent option that is this argument or within it, or NULL. */
-static const char *silent_value(const struct tool *tool, const char *argument)
+/* Remove an argument from the command line of the provenance. */
+static void drop(int i)
 {
-    for (int i = 0; i < tool->silent_count; i++) {
-        if (tool->silent[i] >= argument && tool->silent[i] <= argument + strlen(argument)) {
-            return tool->silent[i];
+    for (; command[i] != NULL; i++) {
+        command[i] = command[i + 1];
+    }
+}
+
+void tool_leave_out(const struct tool *tool, const char *option)
+{
+    const char *value = tool_value(tool, option);
+    for (int i = 1; command[i] != NULL && value != NULL; i++) {
+        if (value < command[i] || value > command[i] + strlen(command[i])) {
+            continue;
+        }
+        size_t before = (size_t)(value - command[i]);
+        if (before == 0) { /* the option is the argument before */
+            drop(i--);
+            before = strlen(command[i]);
+        }
+        if (before > 2 && command[i][1] != '-') {
+            command[i][before - 1] = '\0'; /* "-to" or "-toFILE": "-t" remains */
+        } else {
+            drop(i);
+        }
+        return;
+    }
+}
+
+/* The command line has neither options that do not change the result, such as -o FILE, nor the operand that
+ * was read in place of standard input. So the same input gives the same bytes from any source and to any
+ * output. */
+void tool_provenance(const struct tool *tool, struct stream *stream)
+{
+    int count = 0;
+    for (; command[count] != NULL; count++) {
+        if (count > 0 && command[count] == main_input && !(stdin_read && strcmp(main_input, "-") != 0)) {
+            drop(count--);
         }
     }
-    return NULL;
+    TOOL_TRY(tool, stream_add_provenance(stream, count, command, &error));
 }
 
-/* The rest of an argument without the silent option in it, whose letter is the last of `length`: "-t" of
- * "-to" or "-toFILE"; NULL if nothing remains. */
-static char *without_silent(const struct tool *tool, const char *argument, size_t length)
+void tool_put(const struct tool *tool, struct stream *stream, const char *name, enum element_type type,
+              int64_t rows, int64_t cols, const char *attributes, void *data)
 {
-    if (length <= 2 || argument[1] == '-') {
-        return NULL;
-    }
-    return tool_memory(tool, strndup(argument, length - 1));
+    TOOL_TRY(tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
-/* Add the command line without options that do not change the result, such as -o FILE, and without the
- * operand that was read in place of standard input. So the same input gives the same bytes from any source
- * and to any output. */
-static void add_provenance(const struct tool *tool, struct stream *stream)
+static enum status close_stdout(struct error *error)
 {
-    int count = 0, rest_count = 0;
-    char *rests[TOOL_MOST_SILENT], **kept = tool_memory(tool, array_new(tool->argc + 1, sizeof *kept));
-    for (int i = 0; i < tool->argc; i++) {
-        char *argument = tool->argv[i];
-        const char *value = silent_value(tool, argument);
-        if (value != NULL) {
-            count -= value == argument; /* the option is the previous argument */
-            char *rest = value > argument ? without_silent(tool, argument, (size_t)(value - argument))
-                                          : without_silent(tool, kept[count], strlen(kept[count]));
-            if (rest != NULL) {
-                rests[rest_count++] = rest;
-                kept[count++] = rest;
-            }
-        } else if (i == 0 || argument != main_input || (stdin_read && strcmp(argument, "-") != 0)) {
-            kept[count++] = argument;
-        }
-    }
-    TOOL_TRY(tool, stream_add_provenance(stream, count, kept, &error));
-    while (rest_count > 0) {
-        free(rests[--rest_count]);
-    }
-    free(kept);
-}
-
-static void close_stdout(const struct tool *tool)
-{
-    if (close(STDOUT_FILENO) != 0) {
-        tool_fail(tool, STATUS_SYSTEM, "standard output: %s", strerror(errno));
-    }
-    stdout_closed = true;
-}
-
-void tool_write(const struct tool *tool, struct stream *stream, bool text)
-{
-    add_provenance(tool, stream);
-    tool_copy(tool, stream, text);
-}
-
-static enum status write_stdout(const struct stream *stream, bool text, struct error *error)
-{
-    if (!text && isatty(STDOUT_FILENO)) {
-        return fail(error, STATUS_INPUT,
-                    "no binary to a terminal: redirect it, name a file by -o, or ask for text");
-    }
-    RETURN_IF_ERROR(fail_in(error, stream_write(stream, STDOUT_FILENO, text, error), "standard output"));
     stdout_closed = close(STDOUT_FILENO) == 0;
     return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
 }
 
-static enum status write_output(const struct tool *tool, const struct stream *stream, bool text,
-                                struct error *error)
+void tool_write(const struct tool *tool, struct stream *stream)
+{
+    tool_provenance(tool, stream);
+    tool_copy(tool, stream);
+}
+
+static enum status write_output(const struct tool *tool, const struct stream *stream, struct error *error)
 {
     struct output output;
-    if (tool->output == NULL) {
-        return write_stdout(stream, text, error);
+    if (tool->output != NULL) {
+        RETURN_IF_ERROR(output_open(&output, tool->output, error));
+        return output_end(&output, stream_write(stream, output.descriptor, tool->text, error), error);
     }
-    RETURN_IF_ERROR(output_open(&output, tool->output, error));
-    return output_end(&output, stream_write(stream, output.descriptor, text, error), error);
+    if (!tool->text && isatty(STDOUT_FILENO)) {
+        return fail(error, STATUS_INPUT,
+                    "no binary to a terminal: redirect it, name a file by -o, or ask for text");
+    }
+    RETURN_IF_ERROR(
+        fail_in(error, stream_write(stream, STDOUT_FILENO, tool->text, error), "standard output"));
+    return close_stdout(error);
 }
 
 /* The first of several processes writes; all get its status. */
-void tool_copy(const struct tool *tool, const struct stream *stream, bool text)
+void tool_copy(const struct tool *tool, const struct stream *stream)
 {
     struct error error = {""};
-    enum status status = process_speaks() ? write_output(tool, stream, text, &error) : STATUS_OK;
+    enum status status = process_speaks() ? write_output(tool, stream, &error) : STATUS_OK;
     tool_check(tool, (enum status)ranks_most(process_ranks(), (int64_t)status), &error);
 }
 
@@ -335,19 +323,19 @@ static int open_part(const char *output)
     return open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text)
+void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason)
 {
     struct error ignored;
     if (!process_speaks()) {
         return;
     }
     int descriptor = tool->output != NULL ? open_part(tool->output) : STDOUT_FILENO;
-    if (descriptor < 0 || (tool->output == NULL && !text && isatty(STDOUT_FILENO))) {
+    if (descriptor < 0 || (tool->output == NULL && !tool->text && isatty(STDOUT_FILENO))) {
         return;
     }
     signal(SIGPIPE, SIG_IGN); /* exit with our own status */
-    add_provenance(tool, stream);
-    if (stream_write_stopped(stream, reason, descriptor, text, &ignored) == STATUS_OK) {
+    tool_provenance(tool, stream);
+    if (stream_write_stopped(stream, reason, descriptor, tool->text, &ignored) == STATUS_OK) {
         (void)fsync(descriptor);
     }
     close(descriptor);
@@ -355,17 +343,13 @@ void tool_write_stopped(const struct tool *tool, struct stream *stream, const ch
 
 int tool_end(const struct tool *tool)
 {
+    bool failed = !stdout_closed && ferror(stdout) != 0;
     ending = true;
-    if (stdout_closed) {
-        process_end();
-        return (int)STATUS_OK;
-    }
-    bool failed = ferror(stdout) != 0;
     errno = 0;
-    if (fflush(stdout) != 0 || failed) {
+    if (!stdout_closed && (fflush(stdout) != 0 || failed)) {
         tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
     }
-    close_stdout(tool);
+    TOOL_TRY(tool, stdout_closed ? STATUS_OK : close_stdout(&error));
     process_end();
     return (int)STATUS_OK;
 }

@@ -9,20 +9,14 @@
 
 #include <stdio.h>
 
-/* Most options of a tool that are left out of the provenance, including -o. */
-#define TOOL_MOST_SILENT 4
-
 struct tool {
     const char *name;       /* argv[0] without folders */
     const char *usage;      /* the text at the top of the tool's file, which declares the options */
     struct options options; /* as given */
-    int argc;               /* the command line as given, for provenance */
-    char **argv;
-    char **operands; /* operand_count operands, and NULL */
+    char **operands;        /* operand_count operands, and NULL */
     int operand_count;
-    const char *output;                   /* value of -o, NULL: standard output */
-    const char *silent[TOOL_MOST_SILENT]; /* values of -o and of other options left out, pointers into argv */
-    int silent_count;
+    const char *output; /* value of -o, NULL: standard output */
+    bool text;          /* streams are written as text: -t, if there is such an option; a tool may set it */
 };
 
 /* Parse the command line by the options that the usage text declares (options_declare). Handles --help and
@@ -60,7 +54,7 @@ void tool_excludes(const struct tool *tool, const char *option, const char *othe
 void tool_requires(const struct tool *tool, const char *option, const char *other);
 
 /* Leave an option out of the provenance: its value does not change the result. */
-void tool_leave_out(struct tool *tool, const char *option);
+void tool_leave_out(const struct tool *tool, const char *option);
 
 /* Unless `status` is STATUS_OK, print "name: message" on standard error and exit with it. */
 void tool_check(const struct tool *tool, enum status status, const struct error *error);
@@ -71,6 +65,11 @@ void tool_check(const struct tool *tool, enum status status, const struct error 
         struct error error;                                                                                  \
         tool_check((tool), (expression), &error);                                                            \
     } while (0)
+
+/* A local array of zeros that is freed wherever its function is left; exits if there is no memory. */
+#define TOOL_SCRATCH(tool, type, pointer, count)                                                             \
+    SCRATCH type *pointer = NULL;                                                                            \
+    TOOL_TRY(tool, NEW_ARRAY(&pointer, (count), &error))
 
 /* Return memory; exits if it is NULL. */
 void *tool_memory(const struct tool *tool, void *memory);
@@ -102,18 +101,37 @@ void tool_names_input(const char *operand);
 /* Read a stream from a file (NULL or "-": standard input); exits on failure with a message naming it. */
 void tool_read(const struct tool *tool, const char *file, struct stream *stream);
 
+/* Put a section into a stream, which takes the data; exits on failure. */
+void tool_put(const struct tool *tool, struct stream *stream, const char *name, enum element_type type,
+              int64_t rows, int64_t cols, const char *attributes, void *data);
+
+/* Append the tool's provenance line. */
+void tool_provenance(const struct tool *tool, struct stream *stream);
+
 /* Append the tool's provenance line and write the stream to tool->output (under a temporary name in the same
  * folder, renamed when complete) or standard output. Refuses to write binary to a terminal; reports delayed
  * write errors; exits on failure. */
-void tool_write(const struct tool *tool, struct stream *stream, bool text);
+void tool_write(const struct tool *tool, struct stream *stream);
 
 /* The same without a provenance line, for a change of only the form of a stream. */
-void tool_copy(const struct tool *tool, const struct stream *stream, bool text);
+void tool_copy(const struct tool *tool, const struct stream *stream);
 
 /* Write an incomplete result (see stream_write_stopped) to standard output, or to the name of tool->output
  * with ".part" appended. Failures are ignored, as the program already ends with an error. */
-void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason, bool text);
+void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason);
 
 /* Close standard output and report delayed write errors; for tools that print with stdio. Returns STATUS_OK,
  * or exits with 3. */
 int tool_end(const struct tool *tool);
+
+/* ---- outputs that would replace an input of the same run ---- */
+
+/* Whether two names refer to one file, which need not exist yet. */
+bool overwrite_is_same(const char *name, const char *other);
+
+/* Whether a file is a stream, which a filter may replace by its output. */
+bool overwrite_is_stream(const char *name);
+
+/* Exits if the file named by `option`, with `suffix` appended, is an operand or the value of another option
+ * except -o. A stream that is the only file among the operands may be replaced by the output. */
+void overwrite_refuse(const struct tool *tool, const char *option, const char *suffix);

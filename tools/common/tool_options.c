@@ -1,7 +1,5 @@
 #include "tool.h"
 
-#include <assert.h>
-
 bool tool_given(const struct tool *tool, const char *option)
 {
     return options_find(&tool->options, option)->given;
@@ -118,14 +116,5 @@ void tool_requires(const struct tool *tool, const char *option, const char *othe
     const struct option *second = options_find(&tool->options, other);
     if (first->given && !second->given) {
         tool_fail(tool, STATUS_INPUT, "%s goes with %s", option_text(first, one), option_text(second, two));
-    }
-}
-
-void tool_leave_out(struct tool *tool, const char *option)
-{
-    const char *value = tool_value(tool, option);
-    if (value != NULL) {
-        assert(tool->silent_count < TOOL_MOST_SILENT);
-        tool->silent[tool->silent_count++] = value;
     }
 }

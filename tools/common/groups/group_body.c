@@ -78,8 +78,7 @@ static enum status find_facets(struct group_body *body, const struct named_facet
                                struct error *error)
 {
     int dim = body->cells.dim;
-    SCRATCH int64_t *found = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&found, named->count, error));
+    NEW_SCRATCH(int64_t, found, named->count, error);
     RETURN_IF_ERROR(faces_find(&body->boundary, named->count, named->facet, found, error));
     for (int64_t i = 0; i < named->count; i++) {
         if (found[i] < 0) {
@@ -97,9 +96,8 @@ static enum status read_facets(const struct stream *stream, struct group_body *b
 {
     FREED_BY(named_facets_free) struct named_facets named = {0};
     struct group_list *list = &body->groups[GROUP_FACETS];
-    SCRATCH int32_t *facet = NULL;
     RETURN_IF_ERROR(stream_facets(stream, false, &body->cells, &named, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&facet, named.count, error));
+    NEW_SCRATCH(int32_t, facet, named.count, error);
     RETURN_IF_ERROR(find_facets(body, &named, facet, error));
     RETURN_IF_ERROR(add_named(list, &named.names, error));
     return sort_items(list, named.count, named.group, facet, error);
@@ -128,7 +126,7 @@ static enum status read_regions(const struct stream *stream, struct group_body *
     if (stream_find(stream, "cells.region") == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stream_regions(stream, &body->cells, &regions, error));
+    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
     RETURN_IF_ERROR(add_named(list, &regions.names, error));
     return sort_items(list, body->cells.count, regions.of_cell, NULL, error);
 }
@@ -214,11 +212,10 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     struct group_list *list = &body->groups[kind];
     int64_t place = group_find(list, name);
     int64_t count = 0;
-    SCRATCH int32_t *item = NULL;
     for (int64_t i = 0; i < body->items[kind].count; i++) {
         count += chosen[i];
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&item, count, error));
+    NEW_SCRATCH(int32_t, item, count, error);
     count = 0;
     for (int64_t i = 0; i < body->items[kind].count; i++) {
         if (chosen[i]) {

@@ -1,4 +1,5 @@
-/* The groups of a stream as modifiable lists: facet groups, node sets, regions. */
+/* The groups of a stream as modifiable lists: facet groups, node sets, regions; and expressions that choose
+ * their items. */
 #pragma once
 
 #include "approx/cells/cells.h"
@@ -54,3 +55,13 @@ MUST_CHECK enum status group_check_name(const char *name, struct error *error);
 /* Put the modified lists into the stream. STATUS_INPUT if a cell belongs to no region. */
 MUST_CHECK enum status group_body_write(const struct group_body *body, struct stream *stream,
                                         struct error *error);
+
+/* Evaluate an expression (the usage text of groups has the grammar) for a kind of items:
+ * chosen[body->items[kind].count]. Its lengths are in `unit` metres. The message of an error begins with the
+ * faulty term. */
+MUST_CHECK enum status group_select(const struct group_body *body, enum group_kind kind,
+                                    const char *expression, double unit, bool *chosen, struct error *error);
+
+/* The same of one term, KIND:ARGUMENTS. */
+MUST_CHECK enum status group_term(const struct group_body *body, enum group_kind kind, const char *term,
+                                  double unit, bool *chosen, struct error *error);

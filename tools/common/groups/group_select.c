@@ -1,4 +1,4 @@
-#include "groups/group_select.h"
+#include "groups/group_body.h"
 
 #include "approx/cells/parts.h"
 #include "base/memory.h"
@@ -87,11 +87,10 @@ static enum status evaluate(const struct group_body *body, enum group_kind kind,
 enum status group_select(const struct group_body *body, enum group_kind kind, const char *expression,
                          double unit, bool *chosen, struct error *error)
 {
-    SCRATCH bool *term = NULL;
     SCRATCH char *copy = strdup(expression);
     if (copy == NULL) {
         return fail_memory(error, "an expression");
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&term, body->items[kind].count, error));
+    NEW_SCRATCH(bool, term, body->items[kind].count, error);
     return evaluate(body, kind, copy, unit, chosen, term, error);
 }

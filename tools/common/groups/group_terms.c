@@ -1,11 +1,176 @@
-#include "groups/group_terms.h"
+/* Terms of the expressions that choose facets, nodes or cells. */
+#include "groups/group_body.h"
 
 #include "approx/cells/parts.h"
+#include "base/box.h"
 #include "base/memory.h"
+#include "base/options.h"
 #include "base/vector.h"
+#include "io/files/surface.h"
+#include "io/files/table.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
+
+enum { MOST_NUMBERS = 7 };
+
+/* A term, and the input of its evaluation. */
+struct term {
+    const struct group_body *body;
+    enum group_kind kind;
+    const char *text;      /* the whole term */
+    const char *arguments; /* behind its colon */
+    int count;             /* of numbers in the arguments, if these are numbers */
+    double value[MOST_NUMBERS];
+    double unit; /* m */
+    bool *chosen;
+    struct error *error;
+};
+
+/* Points within this share of the body's diagonal of a shape belong to it, for round-off. */
+#define SLACK 1e-9
+/* Default distance of corners of facets from a plane, as a share of the diagonal. */
+#define FLATNESS 1e-6
+
+static enum status check_direction(const struct term *term, const double *direction)
+{
+    double square = vector_dot(term->body->cells.dim, direction, direction);
+    if (!(square > 0) || !isfinite(square)) {
+        return fail(term->error, STATUS_INPUT, "%.100s: the direction has no length", term->text);
+    }
+    return STATUS_OK;
+}
+
+/* ---- by place ---- */
+
+static enum status choose_box(const struct term *term)
+{
+    int dim = term->body->cells.dim;
+    struct shape shape = {.kind = SHAPE_BOX, .slack = SLACK * term->body->diagonal};
+    for (int k = 0; k < dim; k++) {
+        shape.a[k] = term->value[k] * term->unit;
+        shape.b[k] = term->value[dim + k] * term->unit;
+        if (!(shape.a[k] <= shape.b[k])) {
+            return fail(term->error, STATUS_INPUT,
+                        "%.100s: the box is inside out along %c: the low corner comes first", term->text,
+                        "xyz"[k]);
+        }
+    }
+    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
+    return STATUS_OK;
+}
+
+static enum status choose_ball(const struct term *term)
+{
+    int dim = term->body->cells.dim;
+    struct shape shape = {.kind = SHAPE_BALL, .slack = SLACK * term->body->diagonal};
+    for (int k = 0; k < dim; k++) {
+        shape.a[k] = term->value[k] * term->unit;
+    }
+    shape.size = term->value[dim] * term->unit;
+    if (!(shape.size > 0)) {
+        return fail(term->error, STATUS_INPUT, "%.100s: the radius is not positive", term->text);
+    }
+    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
+    return STATUS_OK;
+}
+
+/* half:POINT,NORMAL and plane:POINT,NORMAL[,DISTANCE] */
+static enum status choose_plane(const struct term *term)
+{
+    int dim = term->body->cells.dim;
+    bool half = term->text[0] == 'h';
+    struct shape shape = {.kind = half ? SHAPE_HALF : SHAPE_PLANE, .slack = SLACK * term->body->diagonal};
+    for (int k = 0; k < dim; k++) {
+        shape.a[k] = term->value[k] * term->unit;
+        shape.b[k] = term->value[dim + k];
+    }
+    RETURN_IF_ERROR(check_direction(term, shape.b));
+    shape.size = half ? 0 : FLATNESS * term->body->diagonal;
+    if (term->count > 2 * dim) {
+        shape.size = term->value[2 * dim] * term->unit;
+        if (!(shape.size >= 0)) {
+            return fail(term->error, STATUS_INPUT, "%.100s: the distance is negative", term->text);
+        }
+    }
+    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
+    return STATUS_OK;
+}
+
+/* low:AXIS,PART% and high:AXIS,PART%: all within a share of the body's box from one of its ends. */
+static enum status choose_end(const struct term *term)
+{
+    static const char *const axes[] = {"x", "y", "z", "long"};
+    int dim = term->body->cells.dim;
+    bool low = term->text[0] == 'l';
+    struct box box = box_of(dim, term->body->cells.node_count, term->body->cells.x);
+    struct shape shape = {.kind = SHAPE_HALF, .slack = SLACK * term->body->diagonal};
+    struct error why;
+    double percent = 0;
+    int axis = 4;
+    char part[32] = "";
+    size_t length = strcspn(term->arguments, ",");
+    const char *behind = term->arguments + length + (term->arguments[length] == ',');
+    size_t digits = strcspn(behind, "%");
+    for (int a = 0; a < 4; a++) {
+        bool same = strlen(axes[a]) == length && strncmp(term->arguments, axes[a], length) == 0;
+        axis = same && (a < dim || a == 3) ? a : axis;
+    }
+    memcpy(part, behind, digits < sizeof part ? digits : 0);
+    if (axis == 4 || strcmp(behind + digits, "%") != 0 ||
+        parse_double(part, "", 0, 100, &percent, &why) != STATUS_OK) {
+        return fail(term->error, STATUS_INPUT, "%.100s: takes AXIS,PART%%, such as x,12%%; axes are %slong",
+                    term->text, dim == 2 ? "x, y, " : "x, y, z, ");
+    }
+    if (axis == 3) {
+        axis = 0;
+        for (int a = 1; a < dim; a++) { /* equal sides differ by round-off: take the first of them */
+            bool longer = box.high[a] - box.low[a] > (box.high[axis] - box.low[axis]) * (1 + 1e-6);
+            axis = longer ? a : axis;
+        }
+    }
+    double depth = percent / 100 * (box.high[axis] - box.low[axis]);
+    shape.a[axis] = low ? box.low[axis] + depth : box.high[axis] - depth;
+    shape.b[axis] = low ? -1 : 1;
+    items_in_shape(&term->body->items[term->kind], &shape, term->chosen);
+    return STATUS_OK;
+}
+
+/* ---- by a file ---- */
+
+/* near:DISTANCE,FILE (points) and along:DISTANCE,FILE (a surface) */
+static enum status choose_near(const struct term *term)
+{
+    int dim = term->body->cells.dim;
+    bool surface = term->text[0] == 'a';
+    FREED_BY(table_free) struct table table = {0};
+    struct pieces pieces = {.dim = dim, .corners = surface ? dim : 1};
+    SCRATCH double *x = NULL;
+    double reach = 0;
+    char number[64] = "";
+    struct error why;
+    size_t length = strcspn(term->arguments, ",");
+    memcpy(number, term->arguments, length < sizeof number ? length : 0);
+    if (term->arguments[length] != ',' || term->arguments[length + 1] == '\0' ||
+        parse_double(number, "", DBL_MIN, 1e12, &reach, &why) != STATUS_OK) {
+        return fail(term->error, STATUS_INPUT, "%.100s: takes DISTANCE,FILE with a positive distance",
+                    term->text);
+    }
+    const char *path = term->arguments + length + 1;
+    if (surface) {
+        RETURN_IF_ERROR(surface_facets(path, dim, term->unit, &x, &pieces.count, term->error));
+    } else {
+        RETURN_IF_ERROR(table_read(path, dim, dim, &table, term->error));
+        x = array_take(&table.values);
+        pieces.count = table.rows;
+        for (int64_t i = 0; i < table.rows * dim; i++) {
+            x[i] *= term->unit;
+        }
+    }
+    pieces.x = x;
+    return items_near(&term->body->items[term->kind], &pieces, reach * term->unit, term->chosen, term->error);
+}
 
 /* ---- items of one kind by those of another ---- */
 
@@ -64,15 +229,11 @@ static enum status check_degrees(const struct term *term, double degrees)
 static enum status choose_normal(const struct term *term)
 {
     int dim = term->body->cells.dim;
-    double values[4];
-    int count;
     SCRATCH bool *facing = NULL;
-    RETURN_IF_ERROR(term_numbers(term, dim + 1, dim + 1, dim == 2 ? "NX,NY,DEGREES" : "NX,NY,NZ,DEGREES",
-                                 values, &count));
-    RETURN_IF_ERROR(term_check_direction(term, values));
-    RETURN_IF_ERROR(check_degrees(term, values[dim]));
+    RETURN_IF_ERROR(check_direction(term, term->value));
+    RETURN_IF_ERROR(check_degrees(term, term->value[dim]));
     RETURN_IF_ERROR(NEW_ARRAY(&facing, term->body->boundary.count, term->error));
-    items_facing(&term->body->items[GROUP_FACETS], values, values[dim], facing);
+    items_facing(&term->body->items[GROUP_FACETS], term->value, term->value[dim], facing);
     return choose_by(term, GROUP_FACETS, facing);
 }
 
@@ -100,29 +261,24 @@ static enum status choose_part(const struct term *term)
     int dim = body->cells.dim;
     bool side = term->text[0] == 's';
     const struct items *items = &body->items[side ? GROUP_FACETS : GROUP_REGION];
-    const char *form =
-        side ? (dim == 2 ? "K,DEGREES or X,Y,DEGREES" : "K,DEGREES or X,Y,Z,DEGREES") : "K or a point";
-    double values[4];
-    int count;
+    bool by_point = term->count == dim + side;
+    double point[3];
     int32_t parts;
     SCRATCH int32_t *part = NULL;
     SCRATCH bool *in = NULL;
-    RETURN_IF_ERROR(term_numbers(term, 1 + side, dim + side, form, values, &count));
-    if (count != 1 + side && count != dim + side) {
-        return fail(term->error, STATUS_INPUT, "%.100s: takes the numbers %s", term->text, form);
-    }
-    double degrees = side ? values[count - 1] : 0;
+    double degrees = side ? term->value[term->count - 1] : 0, number = term->value[0];
     RETURN_IF_ERROR(check_degrees(term, degrees));
     RETURN_IF_ERROR(NEW_ARRAY(&part, items->count, term->error));
     RETURN_IF_ERROR(NEW_ARRAY(&in, items->count, term->error));
     RETURN_IF_ERROR(side ? boundary_sides(body->cells.x, &body->boundary, degrees, part, &parts, term->error)
                          : cells_parts(&body->cells, part, &parts, term->error));
-    bool by_point = count == dim + side;
-    if (!by_point && !(values[0] >= 1 && values[0] <= parts && values[0] == floor(values[0]))) {
+    if (!by_point && !(number >= 1 && number <= parts && number == floor(number))) {
         return fail(term->error, STATUS_INPUT, "%.100s: there are %d, counted from 1", term->text, parts);
     }
-    term_scale(by_point ? dim : 0, values, term->unit);
-    int32_t wanted = by_point ? part[nearest(items, values)] : (int32_t)values[0] - 1;
+    for (int k = 0; k < dim; k++) {
+        point[k] = term->value[k] * term->unit;
+    }
+    int32_t wanted = by_point ? part[nearest(items, point)] : (int32_t)number - 1;
     for (int64_t i = 0; i < items->count; i++) {
         in[i] = part[i] == wanted;
     }
@@ -159,16 +315,48 @@ static enum status choose_named(const struct term *term, enum group_kind from, c
     return choose_by(term, from, in);
 }
 
+/* Terms KIND:ARGUMENTS. Numbers in their arguments: `axes` for each axis and `more`; one more if it is
+ * optional; or one in place of those for the axes. */
+static const struct {
+    const char *name;
+    enum status (*choose)(const struct term *term);
+    int axes, more;
+    const char *forms[2]; /* in 2D and 3D, for messages; NULL: other arguments */
+    bool optional, by_number;
+} terms[] = {
+    {"box", choose_box, 2, 0, {"X0,Y0,X1,Y1", "X0,Y0,Z0,X1,Y1,Z1"}, false, false},
+    {"ball", choose_ball, 1, 1, {"X,Y,RADIUS", "X,Y,Z,RADIUS"}, false, false},
+    {"half", choose_plane, 2, 0, {"X,Y,NX,NY", "X,Y,Z,NX,NY,NZ"}, false, false},
+    {"plane", choose_plane, 2, 0, {"X,Y,NX,NY[,DISTANCE]", "X,Y,Z,NX,NY,NZ[,DISTANCE]"}, true, false},
+    {"normal", choose_normal, 1, 1, {"NX,NY,DEGREES", "NX,NY,NZ,DEGREES"}, false, false},
+    {"side", choose_part, 1, 1, {"K,DEGREES or X,Y,DEGREES", "K,DEGREES or X,Y,Z,DEGREES"}, false, true},
+    {"body", choose_part, 1, 0, {"K or a point", "K or a point"}, false, true},
+    {"low", choose_end, 0, 0, {NULL}, false, false},
+    {"high", choose_end, 0, 0, {NULL}, false, false},
+    {"near", choose_near, 0, 0, {NULL}, false, false},
+    {"along", choose_near, 0, 0, {NULL}, false, false}};
+enum { TERMS = sizeof terms / sizeof *terms };
+
+/* Evaluate term t of the table, after its numbers are parsed. */
+static enum status choose_term(struct term *term, int t)
+{
+    int dim = term->body->cells.dim, count = terms[t].axes * dim + terms[t].more;
+    const char *form = terms[t].forms[dim - 2];
+    if (form != NULL) {
+        enum status status = parse_double_list(term->arguments, term->text, -DBL_MAX, DBL_MAX, MOST_NUMBERS,
+                                               term->value, &term->count, term->error);
+        bool fits = term->count == count || (terms[t].optional && term->count == count + 1) ||
+                    (terms[t].by_number && term->count == 1 + terms[t].more);
+        if (status != STATUS_OK || !fits) {
+            return fail(term->error, STATUS_INPUT, "%.100s: takes the numbers %s", term->text, form);
+        }
+    }
+    return terms[t].choose(term);
+}
+
 enum status group_term(const struct group_body *body, enum group_kind kind, const char *text, double unit,
                        bool *chosen, struct error *error)
 {
-    static const struct {
-        const char *name;
-        enum status (*choose)(const struct term *term);
-    } terms[] = {{"box", term_box},     {"ball", term_ball},  {"half", term_plane},
-                 {"plane", term_plane}, {"low", term_end},    {"high", term_end},
-                 {"near", term_near},   {"along", term_near}, {"normal", choose_normal},
-                 {"side", choose_part}, {"body", choose_part}};
     size_t length = strcspn(text, ":");
     struct term term = {
         .body = body, .kind = kind, .text = text, .unit = unit, .chosen = chosen, .error = error};
@@ -182,9 +370,9 @@ enum status group_term(const struct group_body *body, enum group_kind kind, cons
     if (text[length] != ':') {
         return choose_named(&term, kind, text);
     }
-    for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
-        if (strlen(terms[i].name) == length && strncmp(text, terms[i].name, length) == 0) {
-            return terms[i].choose(&term);
+    for (int t = 0; t < TERMS; t++) {
+        if (strlen(terms[t].name) == length && strncmp(text, terms[t].name, length) == 0) {
+            return choose_term(&term, t);
         }
     }
     for (int from = 0; from < GROUP_KINDS; from++) {

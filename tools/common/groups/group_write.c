@@ -35,7 +35,6 @@ static enum status write_facets(const struct group_body *body, struct stream *st
     int dim = body->boundary.dim;
     int64_t count = item_count(list);
     int64_t at = 0;
-    SCRATCH int32_t *node = NULL;
     SCRATCH int32_t *set = NULL;
     SCRATCH char *names = NULL;
     if (count == 0) {
@@ -43,7 +42,7 @@ static enum status write_facets(const struct group_body *body, struct stream *st
         stream_remove(stream, "facets.set");
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&node, count * dim, error));
+    NEW_SCRATCH(int32_t, node, count * dim, error);
     RETURN_IF_ERROR(NEW_ARRAY(&set, count, error));
     RETURN_IF_ERROR(names_attribute(list, &names, error));
     for (int64_t g = 0; g < list->count; g++) {

@@ -206,8 +206,8 @@ static bool count_labels(const struct image *image, int which, struct label *lab
     return true;
 }
 
-void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
-                        int dim)
+void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
+                          int dim)
 {
     struct label labels[LABELS_MOST];
     const char *unit = dim == 3 ? "ml" : "cm2";

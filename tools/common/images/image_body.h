@@ -37,5 +37,5 @@ double least_step(const struct image *image, int dim);
 
 /* Report the volume of each label before and after; nothing if values are not integers, or there are too
  * many. */
-void tell_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
-                        int dim);
+void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
+                          int dim);

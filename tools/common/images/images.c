@@ -35,14 +35,11 @@ void tool_check_image_output(const struct tool *tool)
 
 void tool_write_image(const struct tool *tool, const struct image *image)
 {
-    struct output output;
-    if (tool->output == NULL) {
-        TOOL_TRY(tool, fail_in(&error, image_write(image, STDOUT_FILENO, true, &error), "standard output"));
-        return;
-    }
-    bool gzip = !text_ends(tool->output, ".nii");
-    TOOL_TRY(tool, output_open(&output, tool->output, &error));
-    TOOL_TRY(tool, output_end(&output, image_write(image, output.descriptor, gzip, &error), &error));
+    struct target target;
+    struct error error;
+    bool gzip = tool->output == NULL || !text_ends(tool->output, ".nii");
+    target_open(tool, &target, tool->output);
+    target_close(tool, &target, image_write(image, target.output.descriptor, gzip, &error), &error);
 }
 
 const char *image_text(const struct image *image, char text[128])

@@ -130,8 +130,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
                        const char *table)
 {
     int64_t count = (int64_t)image_voxels(source);
-    SCRATCH struct values *values = NULL;
-    TOOL_TRY(tool, NEW_ARRAY(&values, 1, &error));
+    TOOL_SCRATCH(tool, struct values, values, 1);
     collect_values(tool, source, values);
     if (table == NULL) {
         name_values(tool, values, &image->table);
@@ -165,10 +164,7 @@ static int grid_axis(const struct tool *tool, const struct image *image, int wor
     int found = 3;
     bool oblique = false;
     for (int e = 0; e < 3; e++) {
-        double length = sqrt(image->to_world[0][e] * image->to_world[0][e] +
-                             image->to_world[1][e] * image->to_world[1][e] +
-                             image->to_world[2][e] * image->to_world[2][e]);
-        double along = fabs(image->to_world[world][e]) / length;
+        double along = fabs(image->to_world[world][e]) / image_step(image, e);
         if (along > 1 - 1e-6) {
             found = e;
         }

@@ -1,11 +1,14 @@
-/* A label image as the labels of the library; a table names, merges and omits its values. */
+/* A label image as the labels of the library; a table names, merges and omits its values. Then its parts, the
+ * sizes of its cells, and the cells as a mesh or surface. */
 #pragma once
 
 #include "tool.h"
 
-#include "approx/labels/labels.h"
+#include "approx/cells/cells.h"
+#include "approx/labels/label_cells.h"
 #include "io/image/image.h"
 #include "io/image/label_table.h"
+#include "io/mesh/msh.h"
 
 struct label_image_options {
     const char *table; /* file of the table of names; NULL: each value is the region label_VALUE */
@@ -41,3 +44,50 @@ const char *label_image_name(const struct label_image *image, int32_t label);
 
 /* The label with this name; -1: none. */
 int32_t label_image_find(const struct label_image *image, const char *name);
+
+/* Split kept labels by the uses of --part: NAME=ball:X,Y,Z,RADIUS (2D: X,Y,RADIUS), lengths with a unit, or
+ * NAME=IMAGE with the nonzero voxels of an image. Voxels of a part get a label of their own in the same
+ * region. Where parts overlap, the later one counts. Exits for other expressions, a repeated name, and a part
+ * without a voxel of a kept label. */
+void label_parts_make(const struct tool *tool, struct label_image *image);
+
+/* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
+ * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
+bool *label_fine_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                       double spacing, double *finest);
+
+/* Sizes at the nodes of cells, as views of a stream, which is to be freed. */
+struct label_sizes {
+    struct stream stream;
+    struct cells cells;
+    const double *size; /* cells.node_count, m, positive; NULL: no sizes */
+};
+
+/* Read the sections nodes.x, cells and size of the stream `file` (NULL: no sizes), in the dimension of the
+ * image. Exits on failure. */
+void label_sizes_read(const struct tool *tool, const struct label_image *image, const char *file,
+                      struct label_sizes *sizes);
+
+/* The mesh that goes into a stream. Regions are the labels with cells. Facets are the boundary, oriented
+ * outward, in groups A|B with the label A within and B beyond, or with the name of a part. Node sets are the
+ * interfaces A|B between two regions, A the lower label. The mesh borrows the nodes and cells of *result:
+ * release it by label_mesh_free. */
+MUST_CHECK enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,
+                                       struct mesh *mesh, struct error *error);
+void label_mesh_free(struct mesh *mesh);
+
+/* The surface of labels as a table for the rigid bodies of scenes: the facets, and their move outward. */
+struct label_surface_options {
+    int32_t inner, outer; /* labels within and beyond; outer -1: any */
+    double gap;           /* distance by which facets are moved outward, m */
+};
+
+/* Read "A" or "A|B", B a label or outside. Exits for other names. */
+void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
+                         struct label_surface_options *options);
+
+/* Write the facets to tool->output or standard output, m. 3D: the corners of a triangle in each row, with the
+ * right-hand normal outward from A. 2D: curves with A on the left, a point in each row, a blank line between
+ * curves. Exits on failure, also if there is no such facet. */
+void label_surface_write(const struct tool *tool, const struct label_cells *mesh,
+                         const struct label_surface_options *options);

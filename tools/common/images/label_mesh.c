@@ -1,6 +1,5 @@
-#include "images/label_mesh.h"
+#include "images/label_image.h"
 
-#include "approx/cells/cells.h"
 #include "base/lists.h"
 
 #include <stdlib.h>
@@ -37,8 +36,7 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
 static enum status make_regions(const struct label_image *image, const struct label_cells *result,
                                 struct mesh *mesh, struct error *error)
 {
-    SCRATCH int32_t *region = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&region, image->labels.count, error));
+    NEW_SCRATCH(int32_t, region, image->labels.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, result->cell_count, error));
     for (int64_t c = 0; c < result->cell_count; c++) {
         region[image->region[result->label[c]]] = 1;
@@ -59,8 +57,7 @@ static enum status make_facets(const struct label_image *image, const struct lab
                                struct mesh *mesh, struct error *error)
 {
     int dim = result->dim;
-    SCRATCH struct member *member = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&member, result->facet_count, error));
+    NEW_SCRATCH(struct member, member, result->facet_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, result->facet_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, result->facet_count, error));
     for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
@@ -114,18 +111,15 @@ static enum status make_sets(const struct label_image *image, const struct label
                              struct mesh *mesh, struct error *error)
 {
     struct cells cells = label_cells_view(result);
-    SCRATCH int32_t *across = NULL;
-    SCRATCH struct member *member = NULL;
-    SCRATCH int32_t *region = NULL;
     int64_t kept = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&across, cells.count * (cells.dim + 1), error));
+    NEW_SCRATCH(int32_t, across, cells.count * (cells.dim + 1), error);
     RETURN_IF_ERROR(cells_across(&cells, across, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&region, cells.count, error));
+    NEW_SCRATCH(int32_t, region, cells.count, error);
     for (int64_t c = 0; c < cells.count; c++) {
         region[c] = image->region[result->label[c]];
     }
     int64_t count = find_interfaces(&cells, region, across, NULL);
-    RETURN_IF_ERROR(NEW_ARRAY(&member, count, error));
+    NEW_SCRATCH(struct member, member, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
     find_interfaces(&cells, region, across, member);

@@ -1,4 +1,4 @@
-#include "images/label_part.h"
+#include "images/label_image.h"
 
 #include "images/images.h"
 
@@ -39,7 +39,8 @@ static bool is_within(const struct place *place, const struct labels *labels, co
 static void parse_ball(const struct tool *tool, const char *text, int dim, struct place *place)
 {
     double value[4] = {0};
-    char *copy = tool_memory(tool, strdup(text)), *rest = copy;
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *rest = copy;
     int count = 0;
     for (const char *word = strsep(&rest, ","); word != NULL; word = strsep(&rest, ",")) {
         if (count == dim + 1) {
@@ -53,7 +54,6 @@ static void parse_ball(const struct tool *tool, const char *text, int dim, struc
     }
     memcpy(place->ball.centre, value, sizeof place->ball.centre);
     place->ball.radius = value[dim];
-    free(copy);
 }
 
 static void check_name(const struct tool *tool, const struct label_image *image, const char *name)
@@ -81,23 +81,13 @@ static int32_t part_label(const struct tool *tool, const struct label_ball *ball
             return l;
         }
     }
-    bool grown = count < UINT16_MAX;
-    int32_t **indices[2] = {&image->region, &image->part_of};
-    for (int i = 0; i < 2; i++) {
-        int32_t *array = array_grow(*indices[i], count + 1, sizeof *array);
-        grown = grown && array != NULL;
-        *indices[i] = array != NULL ? array : *indices[i];
-    }
-    bool *keep = array_grow(image->keep, count + 1, sizeof *keep);
-    double *volume = array_grow(image->volume, count + 1, sizeof *volume);
-    struct label_ball *balls = array_grow(image->ball, count + 1, sizeof *balls);
-    if (!grown || keep == NULL || volume == NULL || balls == NULL) {
-        TOOL_TRY(tool, fail_memory(&error, "labels"));
-    }
-    image->keep = keep;
-    image->volume = volume;
-    image->ball = balls;
-    image->labels.ball = balls;
+    TOOL_TRY(tool, count < UINT16_MAX ? STATUS_OK : fail_memory(&error, "labels"));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->region, count + 1, &error));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->part_of, count + 1, &error));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->keep, count + 1, &error));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->volume, count + 1, &error));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->ball, count + 1, &error));
+    image->labels.ball = image->ball;
     image->ball[count] = *ball;
     image->keep[count] = true;
     image->volume[count] = 0;
@@ -136,10 +126,8 @@ static void add_part(const struct tool *tool, const char *text, struct label_ima
         tool_fail(tool, STATUS_INPUT, "--part: '%.60s' is not NAME=ball:X,Y,Z,RADIUS or NAME=IMAGE", text);
     }
     const char *expression = text + length + 1;
-    char *name = strndup(text, length);
-    char **part = array_grow(image->part, image->part_count + 1, sizeof *part);
-    TOOL_TRY(tool, name == NULL || part == NULL ? fail_memory(&error, "a part") : STATUS_OK);
-    image->part = part;
+    char *name = tool_memory(tool, strndup(text, length));
+    TOOL_TRY(tool, RESIZE_ARRAY(&image->part, image->part_count + 1, &error));
     check_name(tool, image, name);
     image->part[image->part_count++] = name;
     if (strncmp(expression, "ball:", 5) == 0) {

@@ -1,4 +1,4 @@
-#include "images/label_sizes.h"
+#include "images/label_image.h"
 
 #include "stages/views.h"
 
@@ -9,7 +9,8 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
                        double spacing, double *finest)
 {
     bool *fine = NULL;
-    char *copy = tool_memory(tool, strdup(text)), *names = copy;
+    SCRATCH char *copy = tool_memory(tool, strdup(text));
+    char *names = copy;
     const char *length = strsep(&names, ":");
     TOOL_TRY(tool, parse_length(length, "--fine", finest, &error));
     if (*finest >= spacing) {
@@ -28,7 +29,6 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
             fine[l] = fine[l] || image->region[l] == label;
         }
     }
-    free(copy);
     return fine;
 }
 
@@ -52,5 +52,5 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
                   (long long)sizes->cells.node_count);
     }
     sizes->size = section->data;
-    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, true, &error), "--sizes"));
+    TOOL_TRY(tool, fail_in(&error, section_check_numbers(section, POSITIVE, &error), "--sizes"));
 }

@@ -1,8 +1,7 @@
-#include "images/label_surface.h"
+#include "images/label_image.h"
 
 #include "output.h"
 
-#include "approx/cells/cells.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -121,12 +120,10 @@ static void print_surface(const struct tool *tool, FILE *file, const struct labe
                           const struct label_surface_options *options)
 {
     int dim = mesh->dim;
-    SCRATCH int64_t *next = NULL;
-    SCRATCH double *mean = NULL, *least = NULL, *place = NULL;
-    TOOL_TRY(tool, NEW_ARRAY(&mean, mesh->node_count * dim, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&least, mesh->node_count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&place, mesh->node_count * dim, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&next, mesh->node_count, &error));
+    TOOL_SCRATCH(tool, double, mean, mesh->node_count *dim);
+    TOOL_SCRATCH(tool, double, least, mesh->node_count);
+    TOOL_SCRATCH(tool, double, place, mesh->node_count *dim);
+    TOOL_SCRATCH(tool, int64_t, next, mesh->node_count);
     move_outward(mesh, options, mean, least, place);
     if (dim == 3) {
         print_triangles(file, mesh, options, place);

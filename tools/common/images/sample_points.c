@@ -24,31 +24,24 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
 static void choose_regions(const struct tool *tool, const struct stream *stream, char *list,
                            struct sample_points *rows)
 {
-    FREED_BY(names_free) struct names names = {0};
-    const struct section *cell, *region;
-    SCRATCH bool *wanted = NULL;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    const struct names *names = &regions.names;
+    const struct section *cell;
     int64_t kept = 0;
-    TOOL_TRY(tool, stream_need(stream, "points.cell", TYPE_I4, 1, "ipoints", &cell, &error));
-    TOOL_TRY(tool, stream_need(stream, "cells.region", TYPE_I4, 1, "nodes", &region, &error));
-    if (cell->rows != rows->count) {
-        tool_fail(tool, STATUS_INPUT, "points.cell: not one row per point: run ipoints again");
-    }
-    TOOL_TRY(tool, names_of(region, "names", &names, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&wanted, names.count, &error));
+    TOOL_TRY(tool, stream_view(stream, "points.cell", &cell, &error));
+    TOOL_TRY(tool, stream_regions(stream, &regions, &error));
+    TOOL_TRY(tool, section_check_indices(cell, 0, stream_find(stream, "cells.region")->rows, "cell",
+                                         " of a region", &error));
+    TOOL_SCRATCH(tool, bool, wanted, names->count);
     for (char *name; (name = strsep(&list, ",")) != NULL;) {
-        int64_t index = names_find(&names, name);
+        int64_t index = names_find(names, name);
         if (index < 0) {
-            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names.list);
+            tool_fail(tool, STATUS_INPUT, "-r: no region '%s': there are %s", name, names->list);
         }
         wanted[index] = true;
     }
     for (int64_t q = 0; q < rows->count; q++) {
-        int64_t c = ((const int32_t *)cell->data)[q];
-        int64_t r = c >= 0 && c < region->rows ? ((const int32_t *)region->data)[c] : -1;
-        if (r < 0 || r >= names.count) {
-            tool_fail(tool, STATUS_INPUT, "points.cell: row %lld: no cell of a region", (long long)q);
-        }
-        if (wanted[r]) {
+        if (wanted[regions.of_cell[((const int32_t *)cell->data)[q]]]) {
             memmove(rows->x + kept++ * rows->dim, rows->x + q * rows->dim,
                     (size_t)rows->dim * sizeof *rows->x);
         }

@@ -1,8 +1,7 @@
 /* Joins a stream (cloud, tables of shape functions) and a scene into a system ready for time stepping. */
 #pragma once
 
-#include "stages/tables.h"
-#include "stages/views.h"
+#include "stages/stages.h"
 
 #include "base/memory.h"
 #include "io/scene/scene.h"

@@ -44,13 +44,11 @@ enum status model_between(struct model *model, const struct scene_contact *secti
     struct facet_set sets[2] = {{0}}, lists[2];
     int dim = model->assembly.cells.dim;
     int64_t common = 0;
-    SCRATCH int64_t *face = NULL;
-    SCRATCH uint8_t *listed = NULL;
     int32_t *kept;
     RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &sets[0], error));
     RETURN_IF_ERROR(model_facets(model, &section->label, &section->against, &sets[1], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&listed, boundary->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error));
+    NEW_SCRATCH(uint8_t, listed, boundary->count, error);
+    NEW_SCRATCH(int64_t, face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error);
     for (int list = 0; list < 2; list++) {
         RETURN_IF_ERROR(MODEL_ARRAY(model, &kept, sets[list].count * dim, error));
         RETURN_IF_ERROR(faces_find(boundary, sets[list].count, sets[list].facet, face, error));

@@ -27,7 +27,6 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
 {
     const struct faces *boundary = &model->assembly.boundary;
     FREED_BY(named_facets_free) struct named_facets facets = {0};
-    SCRATCH bool *wanted = NULL;
     int32_t *chosen;
     int dim = model->assembly.cells.dim;
     *set = (struct facet_set){0};
@@ -40,7 +39,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
                     label->where);
     }
     RETURN_IF_ERROR(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, facets.names.count, error));
+    NEW_SCRATCH(bool, wanted, facets.names.count, error);
     RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
     for (int64_t f = 0; f < facets.count; f++) {
@@ -60,7 +59,6 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
                         const int32_t **nodes, int64_t *count, struct error *error)
 {
     FREED_BY(named_sets_free) struct named_sets sets = {0};
-    SCRATCH bool *wanted = NULL, *member = NULL;
     int32_t *chosen;
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
@@ -68,9 +66,9 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
         return fail(error, STATUS_INPUT, "%s: no node sets: run groups -n", label->where);
     }
     RETURN_IF_ERROR(stream_sets(model->stream, true, node_count, &sets, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, sets.names.count, error));
+    NEW_SCRATCH(bool, wanted, sets.names.count, error);
     RETURN_IF_ERROR(choose(label, names, "node set", &sets.names, wanted, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&member, node_count, error));
+    NEW_SCRATCH(bool, member, node_count, error);
     for (int64_t set = 0; set < sets.lists.count; set++) {
         for (int64_t k = sets.lists.ptr[set]; k < sets.lists.ptr[set + 1] && wanted[set]; k++) {
             member[sets.lists.idx[k]] = true;

@@ -69,10 +69,9 @@ enum status model_interfaces(struct model *model, struct error *error)
     const struct scene_output *output = &model->scene->output;
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     char order[256];
-    SCRATCH double *modulus = NULL;
     struct worst crossed = {.ratio = 1.0}, softer = {.ratio = 1.0};
-    RETURN_IF_ERROR(stream_regions(model->stream, &input->cells, &regions, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&modulus, regions.names.count, error));
+    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+    NEW_SCRATCH(double, modulus, regions.names.count, error);
     for (int32_t c = 0; c < input->cells.count; c++) {
         modulus[regions.of_cell[c]] = modulus_of(&input->materials, c);
     }

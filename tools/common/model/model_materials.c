@@ -98,9 +98,8 @@ static enum status materials_of_cells(struct model *model, struct error *error)
 {
     const struct cells *cells = &model->assembly.cells;
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    SCRATCH int32_t *material = NULL;
-    RETURN_IF_ERROR(stream_regions(model->stream, cells, &regions, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&material, regions.names.count, error));
+    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+    NEW_SCRATCH(int32_t, material, regions.names.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&model->assembly.materials.of_cell, cells->count, error));
     RETURN_IF_ERROR(materials_of_regions(model->scene, &regions.names, material, error));
     for (int64_t c = 0; c < cells->count; c++) {

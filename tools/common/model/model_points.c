@@ -1,20 +1,17 @@
 /* Measured points of a section: their table, and the field there. */
 #include "model/model.h"
 
-#include "stages/stages.h"
-
 #include "approx/field/field.h"
 #include "io/files/table.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* One section of measured points. */
 struct point_section {
     struct model *model;
     const struct scene_displacement *section;
     struct condition *condition;
-    struct table table;
+    struct table *table;
 };
 
 /* "FILE:LINE: [displacement NAME]: points TABLE:LINE: ..." */
@@ -24,7 +21,7 @@ static enum status fail_at(const struct point_section *p, int64_t row, struct er
     char place[96];
     point_text(measured->dim, measured->x + row * measured->dim, place);
     return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->section->label.where,
-                p->section->table, (long long)p->table.line[row], place, what);
+                p->section->table, (long long)p->table->line[row], place, what);
 }
 
 static enum status read_section(struct point_section *p, struct error *error)
@@ -32,13 +29,13 @@ static enum status read_section(struct point_section *p, struct error *error)
     int dim = p->model->assembly.cells.dim;
     double *values;
     double unit = p->section->table_unit;
-    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, &p->table, error));
-    int64_t rows = p->table.rows, cols = p->table.cols;
+    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
+    int64_t rows = p->table->rows, cols = p->table->cols;
     RETURN_IF_ERROR(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
     p->condition->measured = (struct measured){dim, rows, x, u, deviation};
     for (int64_t i = 0; i < rows; i++) {
-        const double *row = p->table.values + i * cols;
+        const double *row = p->table->values + i * cols;
         int open = 0;
         for (int a = 0; a < dim; a++) {
             x[i * dim + a] = unit * row[a];
@@ -60,23 +57,12 @@ static enum status read_section(struct point_section *p, struct error *error)
 /* Give the arrays of the field to the model and the condition. */
 static enum status keep_field(struct point_section *p, struct field_table *field, struct error *error)
 {
-    enum status status = STATUS_OK;
-    void *arrays[] = {field->lists.ptr, field->lists.idx, field->phi};
     p->condition->field =
         (struct neighbours){.count = field->lists.count, .ptr = field->lists.ptr, .idx = field->lists.idx};
     p->condition->field_phi = field->phi;
-    field->lists.ptr = NULL;
-    field->lists.idx = NULL;
-    field->phi = NULL;
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        if (status == STATUS_OK) {
-            status = model_own(p->model, arrays[i], error);
-        } else {
-            free(arrays[i]);
-        }
-    }
-    field_table_free(field);
-    return status;
+    RETURN_IF_ERROR(model_own(p->model, array_take(&field->lists.ptr), error));
+    RETURN_IF_ERROR(model_own(p->model, array_take(&field->lists.idx), error));
+    return model_own(p->model, array_take(&field->phi), error);
 }
 
 /* Refuse points that are too far from the body, and set the field at the others. */
@@ -84,14 +70,12 @@ static enum status find_field(struct point_section *p, struct error *error)
 {
     const struct cells *cells = &p->model->assembly.cells;
     const struct measured *measured = &p->condition->measured;
-    const struct section *radius;
     struct recorded recorded;
     SCRATCH double *reach = NULL;
     double given = p->section->reach;
-    SCRATCH bool *outside = NULL;
-    struct field_table field = {0};
+    FREED_BY(field_table_free) struct field_table field = {0};
     RETURN_IF_ERROR(NEW_ARRAY(&reach, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, measured->count, error));
+    NEW_SCRATCH(bool, outside, measured->count, error);
     RETURN_IF_ERROR(field_spacing(cells, reach, error));
     for (int64_t n = 0; n < cells->node_count && given > 0.0; n++) {
         reach[n] = given;
@@ -105,12 +89,11 @@ static enum status find_field(struct point_section *p, struct error *error)
                                          "wrong place?");
         }
     }
-    RETURN_IF_ERROR(stream_need(p->model->stream, "support.radius", TYPE_F8, 1, "support", &radius, error));
-    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", cells->dim, &recorded, error));
-    if (radius->rows != cells->node_count) {
-        return fail(error, STATUS_INPUT, "support.radius: does not fit the nodes: run support again");
+    RETURN_IF_ERROR(stage_recorded(p->model->stream, "support", &recorded, error));
+    if (recorded.radius == NULL) {
+        return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
-    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, radius->data,
+    RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, recorded.radius,
                                       measured->count, measured->x, p->section->table, &field, error));
     return keep_field(p, &field, error);
 }
@@ -118,15 +101,11 @@ static enum status find_field(struct point_section *p, struct error *error)
 enum status model_points(struct model *model, const struct scene_displacement *section,
                          struct condition *condition, struct error *error)
 {
-    enum status status;
-    struct point_section p = {model, section, condition, {0}};
+    FREED_BY(table_free) struct table table = {0};
+    struct point_section p = {model, section, condition, &table};
     condition->model_error = section->model_error;
-    TRY(read_section(&p, error));
-    TRY(find_field(&p, error));
-    condition->line = p.table.line;
-    p.table.line = NULL;
-    TRY(model_own(model, (void *)condition->line, error));
-done:
-    table_free(&p.table);
-    return status;
+    RETURN_IF_ERROR(read_section(&p, error));
+    RETURN_IF_ERROR(find_field(&p, error));
+    condition->line = table.line;
+    return model_own(model, array_take(&table.line), error);
 }

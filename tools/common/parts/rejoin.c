@@ -63,22 +63,6 @@ static void view_part(struct rejoin *rejoin, struct rejoin_part *part)
         numbers(rejoin, part, "part.cell", part->cells.count, 0, attribute(rejoin, part, "cells"), true);
 }
 
-/* Exit if one of the numbers 0 to parts - 1 belongs to none of the parts that were read. */
-static void check_numbers(const struct rejoin *rejoin)
-{
-    int64_t parts = rejoin->part[0].parts, number = 0;
-    for (bool found = true; found && number < parts; number += found) {
-        found = false;
-        for (int64_t k = 0; k < rejoin->part_count && !found; k++) {
-            found = rejoin->part[k].number == number;
-        }
-    }
-    if (number < parts) {
-        tool_fail(rejoin->tool, STATUS_INPUT, "part %lld of %lld is missing", (long long)number,
-                  (long long)parts);
-    }
-}
-
 /* The version in a provenance line of this program, "PROGRAM VERSION ..."; NULL: another program. */
 static const char *version_of(const char *line, const char *program, size_t *length)
 {
@@ -109,14 +93,22 @@ static void check_versions(const struct rejoin *rejoin, const struct rejoin_part
     }
 }
 
-/* Sort the parts by their numbers; exit if one is repeated. */
+static int compare_parts(const void *left, const void *right)
+{
+    const struct rejoin_part *a = left, *b = right;
+    return a->number != b->number ? (a->number > b->number) - (a->number < b->number)
+                                  : strcmp(a->file, b->file);
+}
+
+/* Sort the parts by their numbers; exit if these are not all parts of one cut. */
 static void sort_parts(struct rejoin *rejoin)
 {
     const struct tool *tool = rejoin->tool;
-    struct rejoin_part *sorted, *first = &rejoin->part[0];
+    const struct rejoin_part *first = &rejoin->part[0];
+    int64_t parts = first->parts;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
-        if (strcmp(part->cut, first->cut) != 0 || part->parts != first->parts ||
+        if (strcmp(part->cut, first->cut) != 0 || part->parts != parts ||
             attribute(rejoin, part, "nodes") != attribute(rejoin, first, "nodes") ||
             attribute(rejoin, part, "cells") != attribute(rejoin, first, "cells") ||
             part->cells.dim != first->cells.dim) {
@@ -124,24 +116,22 @@ static void sort_parts(struct rejoin *rejoin)
                       part->file);
         }
         check_versions(rejoin, part);
-        for (int64_t i = 0; i < k; i++) {
-            if (rejoin->part[i].number == part->number) {
-                tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", rejoin->part[i].file,
-                          part->file, (long long)part->number);
-            }
-        }
-        if (part->number >= part->parts) {
+        if (part->number >= parts) {
             tool_fail(tool, STATUS_INPUT, "%s: part.node: part %lld of %lld", part->file,
-                      (long long)part->number, (long long)part->parts);
+                      (long long)part->number, (long long)parts);
         }
     }
-    check_numbers(rejoin);
-    TOOL_TRY(tool, NEW_ARRAY(&sorted, first->parts, &error));
-    for (int64_t k = 0; k < rejoin->part_count; k++) {
-        sorted[rejoin->part[k].number] = rejoin->part[k];
+    qsort(rejoin->part, (size_t)rejoin->part_count, sizeof *rejoin->part, compare_parts);
+    for (int64_t k = 0; k < parts || k < rejoin->part_count; k++) {
+        const struct rejoin_part *part = &rejoin->part[k];
+        if (k == rejoin->part_count || part->number > k) {
+            tool_fail(tool, STATUS_INPUT, "part %lld of %lld is missing", (long long)k, (long long)parts);
+        }
+        if (part->number < k) {
+            tool_fail(tool, STATUS_INPUT, "%s and %s are the same part, %lld", part[-1].file, part->file,
+                      (long long)part->number);
+        }
     }
-    free(rejoin->part);
-    rejoin->part = sorted;
 }
 
 int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, enum rows_of kind,
@@ -154,7 +144,6 @@ int32_t *rejoin_new_rows(const struct rejoin *rejoin, struct rejoin_part *part, 
 
 void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const char *called)
 {
-    SCRATCH bool *found = NULL;
     int64_t total = 0;
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
@@ -166,7 +155,7 @@ void rejoin_check_rows(const struct rejoin *rejoin, enum rows_of kind, const cha
         tool_fail(rejoin->tool, STATUS_INPUT, "%s: %lld rows in all parts, not %lld: cut again", called,
                   (long long)total, (long long)rejoin->rows[kind]);
     }
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&found, total, &error));
+    TOOL_SCRATCH(rejoin->tool, bool, found, total);
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         const struct rejoin_part *part = &rejoin->part[k];
         for (int64_t i = 0; i < part->count[kind]; i++) {
@@ -221,15 +210,13 @@ static void map_body(struct rejoin *rejoin)
 static void find_edges(struct rejoin *rejoin)
 {
     int vertices = rejoin->dim + 1;
-    SCRATCH int32_t *degree = NULL;
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&degree, rejoin->rows[ROWS_NODES], &error));
+    TOOL_SCRATCH(rejoin->tool, int32_t, degree, rejoin->rows[ROWS_NODES]);
     for (int64_t i = 0; i < rejoin->rows[ROWS_CELLS] * vertices; i++) {
         degree[rejoin->cell[i]]++;
     }
     for (int64_t k = 0; k < rejoin->part_count; k++) {
         struct rejoin_part *part = &rejoin->part[k];
-        SCRATCH int32_t *here = NULL;
-        TOOL_TRY(rejoin->tool, NEW_ARRAY(&here, part->cells.node_count, &error));
+        TOOL_SCRATCH(rejoin->tool, int32_t, here, part->cells.node_count);
         TOOL_TRY(rejoin->tool, NEW_ARRAY(&part->at_edge, part->cells.node_count, &error));
         for (int64_t i = 0; i < part->cells.count * vertices; i++) {
             here[part->cells.node[i]]++;
@@ -268,8 +255,8 @@ static void map_listed(struct rejoin *rejoin, enum rows_of kind, const char *nam
 /* Map the integration points, which belong to the parts of their cells. */
 static void map_points(struct rejoin *rejoin)
 {
-    int64_t *begin, cells = rejoin->rows[ROWS_CELLS];
-    TOOL_TRY(rejoin->tool, NEW_ARRAY(&begin, cells + 2, &error));
+    int64_t cells = rejoin->rows[ROWS_CELLS];
+    TOOL_SCRATCH(rejoin->tool, int64_t, begin, cells + 2);
     for (int pass = 0; pass < 2; pass++) {
         for (int64_t k = 0; k < rejoin->part_count; k++) {
             struct rejoin_part *part = &rejoin->part[k];
@@ -301,7 +288,6 @@ static void map_points(struct rejoin *rejoin)
         }
         rejoin->rows[ROWS_POINTS] = pass == 0 ? begin[cells + 1] : rejoin->rows[ROWS_POINTS];
     }
-    free(begin);
 }
 
 void rejoin_begin(struct rejoin *rejoin, const struct tool *tool, char *const files[], int64_t count)

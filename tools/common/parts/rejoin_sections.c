@@ -67,12 +67,6 @@ static const struct section *section_of(const struct rejoin *rejoin, int64_t k, 
     return section;
 }
 
-static void put(const struct rejoin *rejoin, struct stream *stream, const char *name, enum element_type type,
-                int64_t rows, int64_t cols, const char *attributes, void *data)
-{
-    TOOL_TRY(rejoin->tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error));
-}
-
 /* Turn numbers of nodes or cells of a part into those of the whole. */
 static void renumber(const struct rejoin *rejoin, const struct rejoin_part *part,
                      const struct section_kind *kind, int32_t *value, int64_t count)
@@ -135,7 +129,7 @@ static void put_rows(const struct rejoin *rejoin, struct stream *stream, const c
             }
         }
     }
-    put(rejoin, stream, name, first->type, total, first->cols, first->attributes, data);
+    tool_put(rejoin->tool, stream, name, first->type, total, first->cols, first->attributes, data);
 }
 
 /* ---- lists ---- */
@@ -258,7 +252,7 @@ static void put_around(const struct rejoin *rejoin, struct stream *stream, const
         }
     }
     if (count > 0) {
-        put(rejoin, stream, member(lists, "around", name), TYPE_I8, count, 1, "", pair);
+        tool_put(rejoin->tool, stream, member(lists, "around", name), TYPE_I8, count, 1, "", pair);
         put_rows(rejoin, stream, member(lists, "image", name), lists->rows, &around);
     } else {
         free(pair);
@@ -338,7 +332,7 @@ static void put_sets(const struct rejoin *rejoin, struct stream *stream, const s
     for (int64_t s = 0; s + 1 < first->rows; s++) {
         ptr[s + 1] += ptr[s];
     }
-    put(rejoin, stream, first->name, TYPE_I8, first->rows, 1, first->attributes, ptr);
+    tool_put(rejoin->tool, stream, first->name, TYPE_I8, first->rows, 1, first->attributes, ptr);
 }
 
 /* ---- all sections ---- */

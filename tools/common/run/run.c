@@ -19,13 +19,13 @@ static void show_progress(struct display *display, const struct progress *progre
     }
 }
 
-bool run_tell(void *context, const struct progress *progress)
+bool run_progress(void *context, const struct progress *progress)
 {
     struct run *run = context;
     show_progress(&run->display, progress);
-    run_folds_look(run, progress->u, progress->time, false);
+    run_folds_check(run, progress->u, progress->time, false);
     run_stability_follow(run, progress);
-    return run_checkpoint_tell(run, progress);
+    return run_checkpoint_step(run, progress);
 }
 
 void run_clear_progress(const struct display *display)
@@ -70,7 +70,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
             run_put_frame(run, next_frame(run->stream), run->last_good, run->u);
         }
         sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
-        tool_write_stopped(run->tool, run->stream, reason.text, run->text);
+        tool_write_stopped(run->tool, run->stream, reason.text);
     }
     tool_exit(status);
 }
@@ -78,7 +78,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
 void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols, const char *attributes,
              double *values)
 {
-    TOOL_TRY(run->tool, stream_put(run->stream, name, TYPE_F8, rows, cols, attributes, values, true, &error));
+    tool_put(run->tool, run->stream, name, TYPE_F8, rows, cols, attributes, values);
 }
 
 double *run_new_values(const struct run *run, int64_t count)

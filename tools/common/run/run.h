@@ -5,11 +5,14 @@
 #include "model/model.h"
 #include "parts/parts_input.h"
 #include "process.h"
-#include "run/run_checkpoint.h"
-#include "run/run_folds.h"
-#include "run/run_stability.h"
+#include "approx/support/support_space.h"
 #include "base/clock.h"
+#include "base/state.h"
+#include "io/checkpoint/checkpoint.h"
+#include "solid/folds/folds.h"
 #include "solid/system/progress.h"
+
+#include <signal.h>
 
 /* Progress on a terminal: one line, updated a few times a second. */
 struct display {
@@ -17,18 +20,83 @@ struct display {
     double started, last; /* s */
 };
 
+/* Checkpoints: written at intervals and on interruption, and restored by the same command. */
+struct run_checkpoint {
+    const char *file; /* NULL: none */
+    double interval;  /* s */
+    double last;      /* time when the last one was written, or the run began, s */
+    bool is_ours;     /* FILE is complete and of this run, so it is kept as FILE.old */
+    struct checkpoint_identity identity;
+    struct stream restored; /* the checkpoint that was read; owns the frames */
+    struct state state;     /* the state in it */
+    bool is_restored;
+    const volatile sig_atomic_t *interrupted; /* number of the signal, or 0 */
+    enum status status;                       /* of writing when interrupted */
+    struct error error;
+};
+
+/* Consecutive searches that find a fold. */
+struct fold_spell {
+    bool seen;
+    double since, until; /* times as in struct progress; until: INFINITY while it lasts */
+    struct fold fold;    /* at the first of them */
+    bool counts;         /* reported also when it has ended: a frame shows it, or the run is dynamic */
+    int64_t kept[5];     /* the fold's whole numbers, as they are kept in a checkpoint: never negative */
+};
+
+/* FOLDED: the map of the body is no longer one-to-one, a verdict. NOTED: cells that are
+ * just inverted, or else a free side beyond the plane of a support, which the scene as it is does not forbid.
+ */
+enum { FOLDED, NOTED, FOLD_SPELLS };
+
+struct run_folds {
+    struct folds folds;
+    bool *held, *slides; /* whether the displacement is prescribed at each face of the boundary; along its
+                            normal alone */
+    double *field;       /* scratch: node_count * dim */
+    int64_t *node_first; /* the nodes at which each process evaluates it */
+    bool *stopped, *in_contact, *turned; /* scratch: node_count */
+    int32_t *flat;                       /* scratch: cell_count */
+    bool has_space;
+    struct support_space space; /* for the field within cells, made when it is needed */
+    bool reported;              /* in the message that ends the run */
+    struct fold_spell now[FOLD_SPELLS];
+    struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
+};
+
+/* Whether the equilibria of a quasi-static run are stable: a body that is compressed far enough buckles,
+ * wrinkles or creases. Then either the state that was found is unstable, or the body has gone over to another
+ * state. */
+
+/* Looks whose largest move counts: one alone may catch a node that turns back. */
+enum { RUN_STABILITY_SAMPLES = 4 };
+
+struct run_stability {
+    /* The state nearest to equilibrium since the load is held; while no contact has
+     * pressed. */
+    double load;                        /* that is held */
+    double move[RUN_STABILITY_SAMPLES]; /* of the last samples, m: in turn */
+    int64_t samples;                    /* since then */
+    double least;                       /* the smallest value so far of the largest of these moves, m */
+    double *near;                       /* the parameters when `least` was found, node_count * dim */
+    /* What was seen first. */
+    bool left;     /* the body has left `near`, which is kept, */
+    bool negative; /* or: the stiffness has a negative eigenvalue */
+    double since;  /* load */
+    int64_t node;  /* negative: where its mode moves most */
+};
+
 struct run {
     const struct tool *tool;
     struct scene *scene; /* see run_again */
     struct model *model;
     const struct parts_input *parts;
-    struct stream *stream; /* receives what the scene's [output] asks for */
+    struct stream *stream; /* receives what the scene's [output] requests */
     struct display display;
     struct run_checkpoint checkpoint;
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
-    bool text;              /* the form of what is written */
     bool again;             /* the run ended so that run_again can repeat it */
     bool touches_itself;    /* run_again has added a contact of the body with itself; state of the run */
     const char *start_file; /* result from whose field the run starts; NULL: none */
@@ -40,7 +108,7 @@ struct run {
 };
 
 /* A progress_function, whose context is the struct run: shows progress and writes checkpoints. */
-bool run_tell(void *context, const struct progress *progress);
+bool run_progress(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* End the run without result: print a message and exit with `status`, see tool_fail. If the scene requests
@@ -49,11 +117,9 @@ _Noreturn void run_fail(struct run *run, enum status status, const char *format,
     __attribute__((format(printf, 3, 4)));
 
 /* For --start: read the result from which the run starts, exits if it is not suitable; start a model at rest
- * from it. The identity is a checksum, 0 without start. */
+ * from it. */
 void run_start_read(struct run *run);
 void run_start(struct run *run);
-uint32_t run_start_identity(const struct run *run);
-void run_start_free(struct run *run);
 
 /* If parts of a body have passed through each other (run->again), and the scene has no contact between them:
  * add to the scene a contact of the whole boundary with itself, `facets = *, against = *`, remove the
@@ -127,17 +193,93 @@ struct moment {
     double time;
 };
 
-/* Append a row, the time and values[count], to the table over frames in section `name`. */
-void run_append_row(const struct run *run, const char *name, double time, const double *values, int64_t count,
+/* Append a row, the time and values[count], which are freed, to the table over frames in section `name`. */
+void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
                     const char *attributes);
 
 /* Add the sections reactions and moments, if requested, of the system's last evaluation, at u: a row for each
  * condition; for a frame, a row of reactions.frames and moments.frames. */
 void run_put_forces(struct run *run, const struct moment *moment);
 
-/* Add parameters.radius, by which other tools evaluate the field from its parameters (solved.h). */
+/* Add parameters.radius, by which other tools evaluate the field from its parameters (stages.h). */
 void run_put_supports(const struct run *run);
 
 /* Add u at the nodes and the optional outputs of the final state: stress, strain, reactions, gaps, and
  * in a quasi-static run its energy. */
 void run_put_results(struct run *run);
+
+/* ---- checkpoints ---- */
+
+/* Before the first step: catch signals, and read the checkpoint file, if there is one; its frames are put
+ * into run->stream. The model must be built. Exits if the file is of another run. */
+void run_checkpoint_begin(struct run *run);
+
+/* The state from which the run continues, or NULL. */
+const struct state *run_checkpoint_state(const struct run *run);
+
+/* After a step: write a checkpoint if it is due. False if a signal ends the run. */
+bool run_checkpoint_step(struct run *run, const struct progress *progress);
+
+/* After the last step: restore the default actions of signals. */
+void run_checkpoint_end(void);
+
+/* Report that the run was interrupted after `steps` steps, and exit with 128 + the number of the signal. */
+_Noreturn void run_checkpoint_stop(struct run *run, int64_t steps);
+
+/* Remove the checkpoints: the results are complete. */
+void run_checkpoint_remove(struct run *run);
+
+/* ---- folds (see solid/folds/folds.h): searched for while the run lasts, reported at its end ---- */
+
+/* Before the first step; the model must be built. With a checkpoint: what was seen before it. */
+void run_folds_begin(struct run *run);
+void run_folds_free(struct run *run);
+
+/* Bodies that interpenetrate at rest are an error, unless the scene allows folds. */
+void run_folds_at_rest(const struct run *run);
+
+/* Search the state of parameters u at a time of the run; `is_frame`: the state is given as a frame. */
+void run_folds_check(struct run *run, const double *u, double time, bool is_frame);
+
+/* What was seen, as state of the run. */
+MUST_CHECK enum status run_folds_state(struct run *run, const struct state *state, struct error *error);
+
+/* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
+void run_folds_describe(const struct run *run, int which, char *text, size_t size);
+
+/* Whether the scene lets parts of the boundary touch, and not all of it. */
+bool run_touches_in_part(const struct run *run);
+
+/* Whether parts of the boundary have passed through each other though the scene lets some touch: it should
+ * let all. */
+bool run_folds_touch_in_part(const struct run *run);
+
+/* Forget what was seen. */
+void run_folds_forget(struct run *run);
+
+/* Whether parts of the boundary have passed through each other, and contact would hold them apart: notes so,
+ * and the run is to end without a verdict (run->again). */
+bool run_folds_let_touch(struct run *run);
+
+/* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
+ * be noted is. */
+void run_folds_judge(struct run *run);
+
+/* ---- stability: checked while the run lasts, reported at its end ---- */
+
+/* Before the first step; with a checkpoint: what was seen before it. */
+void run_stability_begin(struct run *run);
+void run_stability_free(struct run *run);
+
+/* Check a state on the way. */
+void run_stability_follow(struct run *run, const struct progress *progress);
+
+/* Check a state of equilibrium. */
+void run_stability_check(struct run *run, double load);
+
+/* What was seen, as state of the run. */
+MUST_CHECK enum status run_stability_state(struct run *run, const struct state *state, struct error *error);
+
+/* What was seen up to the final state run->u, into text[size]; empty when all is stable. True where that is a
+ * note: the body has buckled, which is a matter of its shape, and the state that it has come to is stable. */
+bool run_stability_describe(const struct run *run, char *text, size_t size);

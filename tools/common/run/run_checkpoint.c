@@ -112,7 +112,9 @@ void run_checkpoint_begin(struct run *run)
         if (run->parts->given) {
             checkpoint->identity.input = run->parts->identity;
         }
-        checkpoint->identity.input += run_start_identity(run);
+        if (run->start_file != NULL) {
+            checkpoint->identity.input += checkpoint_identify_input(&run->start.stream);
+        }
         compare_processes(run);
     }
     if (checkpoint->file != NULL) {
@@ -146,7 +148,7 @@ static void put_view(struct run *run, const struct progress *progress, struct st
     }
     double *field = run_new_values(run, nodes * dim);
     assembly_nodal_field(&run->model->assembly, progress->u, field);
-    TOOL_TRY(run->tool, stream_put(stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field, true, &error));
+    tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
 }
 
 /* The state of the run, and of the checks of this program. */
@@ -202,7 +204,7 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
     return STATUS_OK;
 }
 
-bool run_checkpoint_tell(struct run *run, const struct progress *progress)
+bool run_checkpoint_step(struct run *run, const struct progress *progress)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
     const struct ranks *ranks = process_ranks();

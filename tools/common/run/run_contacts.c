@@ -288,9 +288,9 @@ static enum status find_core(const struct run *run, bool **core, struct error *e
     const struct faces *boundary = &input->boundary;
     int dim = run->scene->dim;
     int64_t node_count = input->cells.node_count;
-    SCRATCH bool *held = NULL, *inside = NULL;
+    SCRATCH bool *held = NULL;
     RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &held, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&inside, node_count, error));
+    NEW_SCRATCH(bool, inside, node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(core, node_count, error));
     memset(inside, true, (size_t)node_count * sizeof *inside);
     for (int64_t i = 0; i < boundary->count * dim; i++) {

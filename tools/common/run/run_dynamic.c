@@ -64,7 +64,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     }
 }
 
-static void tell_report(const struct run *run, const struct dynamics_report *report)
+static void print_report(const struct run *run, const struct dynamics_report *report)
 {
     const struct body *body = &run->model->system.body;
     fprintf(stderr, "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nforce evaluations\t%lld\n",
@@ -101,14 +101,14 @@ void run_dynamic(struct run *run)
         .most_steps = solver->max_steps,
         .frame_interval = output->frames > 0 ? solver->end_time / (double)output->frames : output->interval,
         .frame = run_put_frame,
-        .progress = run_tell,
+        .progress = run_progress,
         .context = run,
         .interrupted = run->checkpoint.interrupted,
         .restored = run_checkpoint_state(run)};
     struct dynamics_report report;
     struct energy_log log = {0};
     struct error error;
-    double *velocity = NULL;
+    SCRATCH double *velocity = NULL;
     if (run->scene->initial.table != NULL) {
         velocity = run_new_values(run, run->model->system.node_count * run->scene->dim);
         tool_check(run->tool, model_initial(run->model, run->u, velocity, &error), &error);
@@ -121,17 +121,16 @@ void run_dynamic(struct run *run)
                                       output->energy ? &log : NULL, &report, &error);
     run->solve_seconds += clock_seconds() - started;
     run_clear_progress(&run->display);
-    free(velocity);
     tool_check(run->tool, status, &error);
     if (output->energy) {
         put_energy(run, &log);
     }
     run->last_good = report.last_good;
     run->evaluations = report.force_evaluations;
-    run_folds_look(run, run->u, report.time, true);
+    run_folds_check(run, run->u, report.time, true);
     judge(run, &report);
     energy_log_free(&log);
     if (run->verbose && !run->again) {
-        tell_report(run, &report);
+        print_report(run, &report);
     }
 }

@@ -116,22 +116,20 @@ static void evaluate_field(const struct assembly *input, const double *u, struct
 
 /* Mark the cells, of the `count` in folds->flat, in which the field of the parameters u keeps its
  * orientation; none without radii of supports, or where a support is unfit. */
-static enum status ask_field(struct run *run, int64_t count, const double *u, struct error *error)
+static enum status find_upright_cells(struct run *run, int64_t count, const double *u, struct error *error)
 {
     struct run_folds *folds = &run->folds;
     const struct cells *cells = &run->model->assembly.cells;
-    const struct section *radius = stream_find(run->stream, "support.radius");
     struct recorded recorded;
-    SCRATCH double *least = NULL;
-    if (radius == NULL || radius->rows != cells->node_count) {
+    RETURN_IF_ERROR(stage_recorded(run->stream, "support", &recorded, error));
+    if (recorded.radius == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(stage_recorded(run->stream, "support", cells->dim, &recorded, error));
     if (!folds->has_space) {
-        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, radius->data, &folds->space, error));
+        RETURN_IF_ERROR(support_space_build(&recorded.support, cells, recorded.radius, &folds->space, error));
         folds->has_space = true;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&least, count, error));
+    NEW_SCRATCH(double, least, count, error);
     enum status status = field_least_determinants(&recorded.support, &recorded.shapes, &folds->space, count,
                                                   folds->flat, u, least, error);
     for (int64_t i = 0; i < count && status == STATUS_OK; i++) {
@@ -149,13 +147,13 @@ static struct fold find(struct run *run, const double *u)
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     int64_t count = fold.kind == FOLD_CELL ? folds_list_flat(&folds->folds, folds->flat) : 0;
     if (count > 0) {
-        TOOL_TRY(run->tool, ask_field(run, count, u, &error));
+        TOOL_TRY(run->tool, find_upright_cells(run, count, u, &error));
         fold = folds_find(&folds->folds, folds->field, folds->stopped);
     }
     return fold;
 }
 
-void run_folds_look(struct run *run, const double *u, double time, bool is_frame)
+void run_folds_check(struct run *run, const double *u, double time, bool is_frame)
 {
     struct run_folds *folds = &run->folds;
     bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
@@ -179,7 +177,7 @@ void run_folds_look(struct run *run, const double *u, double time, bool is_frame
     note(folds, NOTED, &beyond, time, counts);
 }
 
-/* A spell. */
+/* A spell as state of the run. */
 static enum status spell_state(struct fold_spell *spell, const char *prefix, const struct state *state,
                                struct error *error)
 {

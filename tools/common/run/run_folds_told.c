@@ -1,7 +1,5 @@
-/* What is said of folds: where and from when on, at rest and at the end, with the remedy. */
+/* Messages on folds: where and from when on, at rest and at the end, with the remedy. */
 #include "run/run.h"
-
-#include "stages/names.h"
 
 #include <string.h>
 
@@ -60,16 +58,42 @@ static const struct fold_spell *spell_of(const struct run *run, int which)
     return folds->now[which].seen ? &folds->now[which] : &folds->past[which];
 }
 
+/* Words for a kind of fold: between the time and the cell or facet, between that and its place, and behind.
+ * With `last` the second facet is named, between the two. */
+static const struct {
+    const char *first, *second, *third, *last;
+} words[] = {
+    [FOLD_CELL] = {": ", " at ", " is turned over", NULL},
+    [FOLD_CREASE] = {": facets of ", " that meet at ", " pass through each other", NULL},
+    [FOLD_CROSSING] = {": ", " at ", " goes through ", ""},
+    [FOLD_WITHIN] = {": ", " at ", " is within another one", NULL},
+    [FOLD_REVERSED] = {": ", " at ", " is turned over, through the plane that it slides on", NULL},
+    [FOLD_FLAT] =
+        {", cells are inverted between their nodes, by less than a tenth of their size, or flat ones "
+         "across which the field bends: ",
+         " at ", "", NULL},
+    [FOLD_SUPPORT] = {", ", " at ", " is beyond the plane of ", ", where nothing in the scene stops it"},
+    [FOLD_CLOSED] =
+        {", ", " at ",
+         " has creased: there are other states, with more or fewer creases, whose forces differ by "
+         "some percent",
+         NULL},
+    [FOLD_WRAPPED] = {
+        ", a lip of another body has turned round the corner of ", " at ",
+        ", where both ended at rest: there are other states, with lips elsewhere or none, whose "
+        "forces differ by some percent",
+        NULL}};
+
 void run_folds_describe(const struct run *run, int which, char *text, size_t size)
 {
     const struct fold_spell *spell = spell_of(run, which);
+    const struct fold *fold = &spell->fold;
     bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
-    char place[96], one[64], other[64], when[96];
+    char place[96], one[64], other[64] = "", when[96];
     text[0] = '\0';
-    if (!spell->seen) {
+    if (!spell->seen || fold->kind == FOLD_NONE) {
         return;
     }
-    const struct fold *fold = &spell->fold;
     point_text(run->scene->dim, fold->place, place);
     snprintf(when, sizeof when,
              dynamic              ? "from t = %.4g s on"
@@ -80,61 +104,20 @@ void run_folds_describe(const struct run *run, int which, char *text, size_t siz
         snprintf(when, sizeof when, dynamic ? "from t = %.4g to %.4g s" : "from %.4g to %.4g of the load",
                  spell->since, spell->until);
     }
-    if (fold->facet[0] >= 0) {
+    if (fold->kind == FOLD_FLAT) {
+        snprintf(one, sizeof one, "%lld, the first one cell %lld", (long long)fold->count,
+                 (long long)fold->cell);
+    } else if (fold->kind == FOLD_CELL || fold->kind == FOLD_WITHIN) {
+        snprintf(one, sizeof one, "cell %lld", (long long)fold->cell);
+    } else {
         name_facet(run, fold->facet[0], one, sizeof one);
     }
-    if (fold->facet[1] >= 0) {
+    if (words[fold->kind].last != NULL && fold->facet[1] >= 0) {
         name_facet(run, fold->facet[1], other, sizeof other);
     }
-    switch (fold->kind) {
-    case FOLD_CELL:
-        snprintf(text, size, "the body folds %s: cell %lld at %s is turned over", when, (long long)fold->cell,
-                 place);
-        return;
-    case FOLD_CREASE:
-        snprintf(text, size, "the body folds %s: facets of %s that meet at %s pass through each other", when,
-                 one, place);
-        return;
-    case FOLD_CROSSING:
-        snprintf(text, size, "the body folds %s: %s at %s goes through %s", when, one, place, other);
-        return;
-    case FOLD_WITHIN:
-        snprintf(text, size, "the body folds %s: cell %lld at %s is within another one", when,
-                 (long long)fold->cell, place);
-        return;
-    case FOLD_REVERSED:
-        snprintf(text, size,
-                 "the body folds %s: %s at %s is turned over, through the plane that it slides on", when, one,
-                 place);
-        return;
-    case FOLD_FLAT:
-        snprintf(
-            text, size,
-            "%s, cells are inverted between their nodes, by less than a tenth of their size, or flat ones "
-            "across which the field bends: %lld, the first one cell %lld at %s",
-            when, (long long)fold->count, (long long)fold->cell, place);
-        return;
-    case FOLD_SUPPORT:
-        snprintf(text, size, "%s, %s at %s is beyond the plane of %s, where nothing in the scene stops it",
-                 when, one, place, other);
-        return;
-    case FOLD_CLOSED:
-        snprintf(text, size,
-                 "%s, %s at %s has creased: there are other states, with more or fewer creases, whose forces "
-                 "differ by some percent",
-                 when, one, place);
-        return;
-    case FOLD_WRAPPED:
-        snprintf(
-            text, size,
-            "%s, a lip of another body has turned round the corner of %s at %s, where both ended at rest: "
-            "there are other states, with lips elsewhere or none, whose forces differ by some percent",
-            when, one, place);
-        return;
-    case FOLD_NONE:
-    default:
-        return;
-    }
+    snprintf(text, size, "%s%s%s%s%s%s%s%s%s", which == FOLDED ? "the body folds " : "", when,
+             words[fold->kind].first, one, words[fold->kind].second, place, words[fold->kind].third, other,
+             words[fold->kind].last != NULL ? words[fold->kind].last : "");
 }
 
 /* Whether parts of the boundary pass through each other, which contact stops. */

@@ -131,7 +131,6 @@ static void put_vectors(const struct run *run, const struct moment *moment, cons
     SCRATCH char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
     if (in_one_row) {
         run_append_row(run, name_of_frames, moment->time, values, rows * each, attributes);
-        free(values);
     } else {
         run_put(run, name, rows, each, attributes, values);
     }
@@ -159,13 +158,14 @@ void run_put_forces(struct run *run, const struct moment *moment)
         free(totals.force);
     }
     if (output->moments) {
-        int at = snprintf(more, sizeof more, " about=%.12g,%.12g", output->about[0], output->about[1]);
-        if (is_plane) {
-            snprintf(more + at, sizeof more - (size_t)at, "%s", moment->frame == FRAME_NONE ? " cols=z" : "");
-        } else {
-            snprintf(more + at, sizeof more - (size_t)at, ",%.12g%s", output->about[2],
-                     moment->frame == FRAME_NONE ? " cols=x,y,z" : "");
+        snprintf(more, sizeof more, " about=%.12g,%.12g", output->about[0], output->about[1]);
+        if (!is_plane) {
+            text_append(more, sizeof more, ",%.12g", output->about[2]);
         }
+        text_append(more, sizeof more, "%s",
+                    moment->frame != FRAME_NONE ? ""
+                    : is_plane                  ? " cols=z"
+                                                : " cols=x,y,z");
         put_vectors(run, moment, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
                     is_plane ? "z" : "xyz", rows, totals.moment);
     } else {

@@ -100,7 +100,7 @@ void run_quasi_static(struct run *run)
         .most_steps = solver->max_steps,
         .frames = run->scene->output.frames,
         .frame = run_put_equilibrium,
-        .progress = run_tell,
+        .progress = run_progress,
         .context = run,
         .interrupted = run->checkpoint.interrupted,
         .folded = run->scene->output.folds_allowed ? NULL : &run->folds.now[FOLDED].seen,
@@ -116,8 +116,8 @@ void run_quasi_static(struct run *run)
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
     run->evaluations = report.force_evaluations;
-    run_folds_look(run, run->u, report.load, true);
-    run_stability_look(run, report.load);
+    run_folds_check(run, run->u, report.load, true);
+    run_stability_check(run, report.load);
     judge(run, &report);
     if (run->again) {
         if (run->verbose) {

@@ -55,7 +55,7 @@ void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
     put_field(run, &(struct moment){number, time}, u);
-    run_folds_look(run, u, time, true);
+    run_folds_check(run, u, time, true);
 }
 
 bool run_is_of_frames(const char *name)
@@ -151,7 +151,7 @@ static void put_point_fields(struct run *run, const struct moment *moment)
     }
 }
 
-void run_append_row(const struct run *run, const char *name, double time, const double *values, int64_t count,
+void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
                     const char *attributes)
 {
     const struct section *before = stream_find(run->stream, name);
@@ -163,6 +163,7 @@ void run_append_row(const struct run *run, const char *name, double time, const 
     }
     row[0] = time;
     memcpy(row + 1, values, (size_t)count * sizeof *row);
+    free(values);
     run_put(run, name, rows + 1, count + 1, attributes, table);
 }
 
@@ -195,17 +196,17 @@ static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
     bool is_plane = run->scene->dim == 2;
-    double values[2] = {energy_internal(system, run->u), energy_contact(system)};
-    if (moment->frame != FRAME_NONE) {
+    double *values = run_new_values(run, 2);
+    values[0] = energy_internal(system, run->u);
+    values[1] = energy_contact(system);
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, "energy", 1, 2,
+                is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", values);
+    } else {
         run_append_row(run, "energy.frames", moment->time, values, 2,
                        is_plane ? "unit=1,J/m,J/m cols=time,internal,contact"
                                 : "unit=1,J,J cols=time,internal,contact");
-        return;
     }
-    double *row = run_new_values(run, 2);
-    memcpy(row, values, sizeof values);
-    run_put(run, "energy", 1, 2,
-            is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", row);
 }
 
 /* Put the requested output besides u, for the state run->u at which the system was evaluated last. */
@@ -226,18 +227,17 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 {
     struct run *run = context;
     run_put_frame(run, number, time, u);
-    run_stability_look(run, time);
+    run_stability_check(run, time);
     put_state(run, &(struct moment){number, time});
 }
 
 void run_put_results(struct run *run)
 {
     struct model *model = run->model;
-    double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
+    SCRATCH double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
     /* Evaluate F, stresses and gaps at the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
-    free(scratch);
     put_state(run, &(struct moment){.frame = FRAME_NONE});
     put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
 }

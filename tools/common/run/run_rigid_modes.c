@@ -64,10 +64,9 @@ static bool hold_each_other(struct bodies *bodies, const struct contact *contact
 static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
                                  struct error *error)
 {
-    SCRATCH bool *there = NULL;
     bool more = true;
     int all = system->dim == 2 ? 3 : 6;
-    RETURN_IF_ERROR(NEW_ARRAY(&there, bodies->count, error));
+    NEW_SCRATCH(bool, there, bodies->count, error);
     for (int64_t c = 0; c < system->contact_count; c++) {
         if (system->contacts[c].between == NULL) {
             mark_bodies(bodies, &system->contact_points[c], bodies->touches);
@@ -159,7 +158,7 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     snprintf(text, 256, "the body");
     if (bodies->count > 1) {
-        RETURN_IF_ERROR(stream_regions(model->stream, &model->assembly.cells, &regions, error));
+        RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
         point_text(model->assembly.cells.dim, bodies->modes[b].centre, place);
         snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
                  regions.names.name[regions.of_cell[bodies->cell[b]]], place);
@@ -228,7 +227,7 @@ static void note_hinged(const struct run *run, const struct bodies *bodies)
         char what[512], place[96], more[64] = "";
         modes_text(cells->dim, model->assembly.extent, &hinged.modes[first], what, sizeof what);
         point_text(cells->dim, hinged.modes[first].centre, place);
-        TOOL_TRY(run->tool, stream_regions(model->stream, cells, &regions, &error));
+        TOOL_TRY(run->tool, stream_regions(model->stream, &regions, &error));
         if (count > 1) {
             snprintf(more, sizeof more, "; %d such parts in all", count);
         }

@@ -88,7 +88,7 @@ void run_stability_follow(struct run *run, const struct progress *progress)
     stability->least *= progress->raised;
 }
 
-void run_stability_look(struct run *run, double load)
+void run_stability_check(struct run *run, double load)
 {
     struct run_stability *stability = &run->stability;
     const struct stability *found = &run->model->system.stability;
@@ -162,8 +162,8 @@ static bool is_of_shape(const struct run *run, int64_t node)
 {
     const struct cells *cells = &run->model->assembly.cells;
     int dim = cells->dim;
-    double *near = run_new_values(run, parameter_count(run)),
-           *move = run_new_values(run, parameter_count(run));
+    SCRATCH double *near = run_new_values(run, parameter_count(run)),
+                   *move = run_new_values(run, parameter_count(run));
     double stretch = INFINITY, change = 0.0;
     assembly_nodal_field(&run->model->assembly, run->stability.near, near);
     assembly_nodal_field(&run->model->assembly, run->u, move);
@@ -182,8 +182,6 @@ static bool is_of_shape(const struct run *run, int64_t node)
         }
     }
     bool is_long = change < most_change * vector_length(dim, move + node * dim);
-    free(near);
-    free(move);
     return stretch > crease_stretch || is_long;
 }
 

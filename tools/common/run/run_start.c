@@ -2,8 +2,6 @@
  * materials or loads. */
 #include "run/run.h"
 
-#include "io/checkpoint/checkpoint.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -31,11 +29,6 @@ void run_start_read(struct run *run)
     }
 }
 
-uint32_t run_start_identity(const struct run *run)
-{
-    return run->start_file != NULL ? checkpoint_identify_input(&run->start.stream) : 0;
-}
-
 void run_start(struct run *run)
 {
     struct solid_system *system = &run->model->system;
@@ -55,9 +48,4 @@ void run_start(struct run *run)
     if (system->rows.start == NULL) { /* only once if it is computed again */
         TOOL_TRY(run->tool, system_start(system, run->u, &error));
     }
-}
-
-void run_start_free(struct run *run)
-{
-    stream_free(&run->start.stream);
 }
