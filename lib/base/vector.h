@@ -107,3 +107,18 @@ static inline double determinant3(const double *a, const double *b, const double
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
+
+/* The inverse of the matrix with the rows a, b and c; returns its determinant. */
+static inline double matrix_inverse(const double *a, const double *b, const double *c, double inverse[3][3])
+{
+    const double *row[3] = {a, b, c};
+    double determinant = determinant3(a, b, c);
+    for (int i = 0; i < 3; i++) {
+        const double *next = row[(i + 1) % 3], *last = row[(i + 2) % 3];
+        for (int k = 0; k < 3; k++) {
+            int p = (k + 1) % 3, q = (k + 2) % 3;
+            inverse[k][i] = (next[p] * last[q] - next[q] * last[p]) / determinant;
+        }
+    }
+    return determinant;
+}

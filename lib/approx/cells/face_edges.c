@@ -1,10 +1,9 @@
 #include "approx/cells/face_edges.h"
 
 #include "approx/cells/quadrature.h"
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
-
-#include <string.h>
 
 enum status face_edges_number(int64_t node_count, struct faces *faces, struct error *error)
 {
@@ -88,42 +87,26 @@ static void keep_new_cells(int64_t rows, int64_t *ptr, int32_t *cell)
     ptr[rows] = kept;
 }
 
-/* The row of points that a use of a face belongs to: the face's own, then those of its edges; -1: none. */
-static int64_t row_of_use(const struct faces *faces, int64_t f, int use)
-{
-    if (use == 0) {
-        return f < faces->boundary_count ? f : -1;
-    }
-    return faces->edge_count > 0 ? faces->boundary_count + face_edge(faces, f, use - 1) : -1;
-}
-
 enum status face_points_cells(const struct faces *faces, int64_t **ptr, int32_t **cell, struct error *error)
 {
-    const int uses = 1 + FACE_EDGES(faces->dim);
+    const int edges = faces->edge_count > 0 ? FACE_EDGES(faces->dim) : 0, uses = 1 + edges;
     int64_t rows = faces->boundary_count + faces->edge_count;
-    int64_t *start = NULL;
-    enum status status;
+    SCRATCH int32_t *row = NULL; /* of both cells of a face: the row of the face, then those of its edges */
+    *ptr = NULL;
     *cell = NULL;
-    TRY(NEW_ARRAY(&start, rows + 2, error));
-    for (int64_t i = 0; i < faces->count * uses; i++) {
-        int64_t row = row_of_use(faces, i / uses, (int)(i % uses));
-        start[row + 2] += row >= 0 ? 2 : 0;
-    }
-    for (int64_t r = 0; r < rows; r++) {
-        start[r + 2] += start[r + 1];
-    }
-    TRY(NEW_ARRAY(cell, start[rows + 1], error));
-    for (int64_t i = 0; i < faces->count * uses; i++) {
-        int64_t row = row_of_use(faces, i / uses, (int)(i % uses));
-        if (row >= 0) {
-            memcpy(*cell + start[row + 1], faces->cell + i / uses * 2, 2 * sizeof **cell);
-            start[row + 1] += 2;
+    RETURN_IF_ERROR(NEW_ARRAY(&row, faces->count * 2 * uses, error));
+    for (int64_t i = 0; i < faces->count * 2; i++) {
+        row[i * uses] = i / 2 < faces->boundary_count ? (int32_t)(i / 2) : -1;
+        for (int k = 0; k < edges; k++) {
+            row[i * uses + 1 + k] = (int32_t)(faces->boundary_count + face_edge(faces, i / 2, k));
         }
     }
-    keep_new_cells(rows, start, *cell);
-done:
-    *ptr = start;
-    return status;
+    RETURN_IF_ERROR(lists_by_row(faces->count * 2, uses, row, rows, ptr, cell, error));
+    for (int64_t i = 0; i < (*ptr)[rows]; i++) {
+        (*cell)[i] = faces->cell[(*cell)[i]];
+    }
+    keep_new_cells(rows, *ptr, *cell);
+    return STATUS_OK;
 }
 
 void face_points(const struct faces *faces, const double *nodes, double *x)

@@ -40,16 +40,14 @@ static bool place_cell(const struct cells *cells, int64_t cell, int sign, struct
     for (int a = 0; a < dim; a++) {
         vector_subtract(dim, cells->x + node[a + 1] * dim, origin, e[a]);
     }
-    double determinant = determinant3(e[0], e[1], e[2]);
-    if (!(determinant * sign > 0)) {
+    double inverse[3][3];
+    if (!(matrix_inverse(e[0], e[1], e[2], inverse) * sign > 0)) {
         return false;
     }
     *simplex = (struct simplex){.at = {1, 0, 0, 0}};
     for (int a = 0; a < dim; a++) {
-        int b = (a + 1) % 3, c = (a + 2) % 3;
         for (int i = 0; i < dim; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            double slope = (e[b][j] * e[c][k] - e[b][k] * e[c][j]) / determinant;
+            double slope = inverse[i][a];
             simplex->slope[a + 1][i] = slope;
             simplex->at[a + 1] -= slope * origin[i];
             simplex->slope[0][i] -= slope;

@@ -44,49 +44,23 @@ double field_error_mean(const struct cells *cells, const double *value)
     return volume > 0.0 ? sum / volume : NAN;
 }
 
-/* grad_N[(dim + 1) * dim]: gradients of the linear shape functions of a cell, 1/m. Returns its volume. */
-static double linear_gradients(const struct cells *cells, int64_t cell, double *grad_N)
+/* gradient[cols * dim] of the linear interpolant in a cell: the gradient of the shape function of a vertex is
+ * the inward area vector of the opposite face over dim times the volume. */
+static void cell_gradient(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
+                          double *gradient)
 {
     int dim = cells->dim;
-    const int32_t *node = cells->node + cell * (dim + 1);
-    double volume = cell_volume(cells, cell);
-    for (int k = 0; k <= dim; k++) {
-        /* The face opposite vertex k, oriented outward: positive cells, an even permutation of the others. */
-        int32_t face[3];
-        int at = 0;
-        for (int i = 0; i <= dim; i++) {
-            if (i != k) {
-                face[at++] = node[i];
-            }
-        }
-        face_area_vector(dim, cells->x, face, grad_N + k * dim);
-        double across = 0.0;
-        for (int a = 0; a < dim; a++) {
-            across += grad_N[k * dim + a] * (cells->x[node[k] * dim + a] - cells->x[face[0] * dim + a]);
-        }
-        /* The gradient is normal to the face, and 1 over the height. */
-        double sign = across > 0.0 ? 1.0 : -1.0;
-        for (int a = 0; a < dim; a++) {
-            grad_N[k * dim + a] *= sign / (dim * volume);
-        }
-    }
-    return volume;
-}
-
-/* gradient[cols * dim] of the linear interpolant in a cell. */
-static double cell_gradient(const struct cells *cells, int64_t cell, int64_t cols, const double *values,
-                            double *gradient)
-{
-    int dim = cells->dim;
-    double grad_N[12], volume = linear_gradients(cells, cell, grad_N);
     memset(gradient, 0, (size_t)(cols * dim) * sizeof *gradient);
     for (int k = 0; k <= dim; k++) {
         const double *value = values + cells->node[cell * (dim + 1) + k] * cols;
+        int32_t face[3];
+        double area[3];
+        cell_face(cells, cell, k, face);
+        face_area_vector(dim, cells->x, face, area);
         for (int64_t c = 0; c < cols; c++) {
-            add_scaled(dim, value[c], grad_N + k * dim, gradient + c * dim);
+            add_scaled(dim, -value[c] / (dim * cell_volume(cells, cell)), area, gradient + c * dim);
         }
     }
-    return volume;
 }
 
 /* Integral of the square of a linear function with `values` at the dim + 1 vertices of a cell. */

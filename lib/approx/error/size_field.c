@@ -99,9 +99,7 @@ static void boundary_normals(const struct cells *cells, const struct faces *face
         double vector[3];
         face_area_vector(dim, cells->x, faces->node + f * dim, vector);
         for (int k = 0; k < dim; k++) {
-            for (int a = 0; a < dim; a++) {
-                normal[faces->node[f * dim + k] * dim + a] += vector[a];
-            }
+            add_scaled(dim, 1.0, vector, normal + faces->node[f * dim + k] * dim);
         }
     }
 }
@@ -143,10 +141,7 @@ static void limit_sag(const struct cells *cells, const struct faces *faces, cons
         }
         vector_middle(dim, cells->x, dim, node, middle);
         for (int k = 0; k < dim; k++) {
-            double distance = 0.0;
-            for (int a = 0; a < dim; a++) {
-                distance = hypot(distance, middle[a] - cells->x[node[k] * dim + a]);
-            }
+            double distance = vector_distance(dim, middle, cells->x + node[k] * dim);
             if (angle[node[k]] > 0.0 && angle[node[k]] < corner_angle &&
                 least_angle > corner_share * angle[node[k]]) {
                 size[node[k]] = fmin(size[node[k]], sqrt(8.0 * sag * distance / angle[node[k]]));
@@ -161,10 +156,7 @@ static void move_outward(const struct cells *cells, const double *normal, const 
 {
     int dim = cells->dim;
     for (int64_t n = 0; n < cells->node_count; n++) {
-        double length = 0.0;
-        for (int a = 0; a < dim; a++) {
-            length = hypot(length, normal[n * dim + a]);
-        }
+        double length = vector_length(dim, normal + n * dim);
         for (int a = 0; a < dim; a++) {
             double shift = length > 0.0 ? 0.5 * spacing[n] * normal[n * dim + a] / length : 0.0;
             outer[n * dim + a] = cells->x[n * dim + a] + shift;
@@ -183,10 +175,7 @@ static void limit_gradation(const struct cells *cells, double *size)
             const int32_t *node = cells->node + q * (dim + 1);
             for (int k = 0; k < (dim + 1) * (dim + 1); k++) {
                 int32_t i = node[k / (dim + 1)], j = node[k % (dim + 1)];
-                double length = 0.0;
-                for (int a = 0; a < dim; a++) {
-                    length = hypot(length, cells->x[i * dim + a] - cells->x[j * dim + a]);
-                }
+                double length = vector_distance(dim, cells->x + i * dim, cells->x + j * dim);
                 double most = size[i] + SIZE_FIELD_GRADATION * length;
                 if (size[j] > most * (1.0 + 1e-9)) {
                     size[j] = most;

@@ -6,40 +6,21 @@
 
 #include <math.h>
 
-/* Six times the barycentric coordinates of the points, all positive, in two and three dimensions. */
-static const double sixths[2][FIELD_TURNING_POINTS][4] = {{{4, 1, 1, 0},
-                                                           {3, 2, 1, 0},
-                                                           {3, 1, 2, 0},
-                                                           {2, 3, 1, 0},
-                                                           {2, 2, 2, 0},
-                                                           {2, 1, 3, 0},
-                                                           {1, 4, 1, 0},
-                                                           {1, 3, 2, 0},
-                                                           {1, 2, 3, 0},
-                                                           {1, 1, 4, 0}},
-                                                          {{3, 1, 1, 1},
-                                                           {2, 2, 1, 1},
-                                                           {2, 1, 2, 1},
-                                                           {2, 1, 1, 2},
-                                                           {1, 3, 1, 1},
-                                                           {1, 2, 2, 1},
-                                                           {1, 2, 1, 2},
-                                                           {1, 1, 3, 1},
-                                                           {1, 1, 2, 2},
-                                                           {1, 1, 1, 3}}};
-
-/* x[FIELD_TURNING_POINTS * dim]: the points within a cell. */
+/* x[FIELD_TURNING_POINTS * dim]: the points within a cell whose barycentric coordinates are sixth[] / 6. */
 static void place_points(const struct cells *cells, int64_t cell, double *x)
 {
     int dim = cells->dim;
     const double *corner[4];
     cell_corners(cells, cell, corner);
-    for (int p = 0; p < FIELD_TURNING_POINTS; p++) {
-        for (int i = 0; i < dim; i++) {
-            x[p * dim + i] = 0.0;
+    for (int n = 0; n < (dim == 2 ? 16 : 64); n++) {
+        int sixth[4] = {0, n % 4 + 1, n / 4 % 4 + 1, dim == 2 ? 0 : n / 16 + 1};
+        sixth[0] = 6 - sixth[1] - sixth[2] - sixth[3];
+        for (int i = 0; i < dim && sixth[0] > 0; i++) {
+            *x = 0.0;
             for (int k = 0; k <= dim; k++) {
-                x[p * dim + i] += sixths[dim - 2][p][k] / 6.0 * corner[k][i];
+                *x += sixth[k] / 6.0 * corner[k][i];
             }
+            x++;
         }
     }
 }

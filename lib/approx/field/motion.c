@@ -12,33 +12,13 @@ static const int newton_most = 30;
 static const double step_out =
     1e-6; /* a point with a barycentric coordinate below -step_out is in the next cell */
 
-/* Invert a dim x dim matrix, stored by rows of 3; returns its determinant. */
-static double invert(int dim, double m[3][3], double inverse[3][3])
-{
-    if (dim == 2) {
-        double d = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-        inverse[0][0] = m[1][1] / d, inverse[0][1] = -m[0][1] / d;
-        inverse[1][0] = -m[1][0] / d, inverse[1][1] = m[0][0] / d;
-        return d;
-    }
-    double c0 = m[1][1] * m[2][2] - m[1][2] * m[2][1], c1 = m[1][2] * m[2][0] - m[1][0] * m[2][2],
-           c2 = m[1][0] * m[2][1] - m[1][1] * m[2][0];
-    double d = m[0][0] * c0 + m[0][1] * c1 + m[0][2] * c2;
-    inverse[0][0] = c0 / d, inverse[1][0] = c1 / d, inverse[2][0] = c2 / d;
-    inverse[0][1] = (m[0][2] * m[2][1] - m[0][1] * m[2][2]) / d;
-    inverse[1][1] = (m[0][0] * m[2][2] - m[0][2] * m[2][0]) / d;
-    inverse[2][1] = (m[0][1] * m[2][0] - m[0][0] * m[2][1]) / d;
-    inverse[0][2] = (m[0][1] * m[1][2] - m[0][2] * m[1][1]) / d;
-    inverse[1][2] = (m[0][2] * m[1][0] - m[0][0] * m[1][2]) / d;
-    inverse[2][2] = (m[0][0] * m[1][1] - m[0][1] * m[1][0]) / d;
-    return d;
-}
-
-/* The columns of m: the edges of a cell from its first node. */
+/* The columns of m: the edges of a cell from its first node; in 2D the third one is across. */
 static void edges(const struct cells *cells, const double *x, int64_t cell, double m[3][3])
 {
     int dim = cells->dim;
     const int32_t *node = cells->node + cell * (dim + 1);
+    memset(m, 0, 9 * sizeof m[0][0]);
+    m[2][2] = 1.0;
     for (int a = 0; a < dim; a++) {
         for (int i = 0; i < dim; i++) {
             m[i][a] = x[node[a + 1] * dim + i] - x[node[0] * dim + i];
@@ -104,7 +84,7 @@ enum status motion_build(const struct cells *cells, const double *u, bool linear
     for (int64_t c = 0; c < cells->count; c++) {
         double m[3][3], inverse[3][3];
         edges(cells, cells->x, c, m);
-        (void)invert(dim, m, inverse);
+        (void)matrix_inverse(m[0], m[1], m[2], inverse);
         for (int ij = 0; ij < dim * dim; ij++) {
             motion->shape[c * dim * dim + ij] = inverse[ij / dim][ij % dim];
         }
@@ -206,7 +186,7 @@ static inline void linear_inverse(const struct motion *motion, int dim, int64_t 
     double m[3][3], inverse[3][3], before[3][3];
     edges(&motion->cells, motion->moved, cell, m);
     edges(&motion->cells, motion->cells.x, cell, before);
-    (void)invert(dim, m, inverse);
+    (void)matrix_inverse(m[0], m[1], m[2], inverse);
     for (int i = 0; i < dim; i++) {
         X[i] = motion->cells.x[node[0] * dim + i];
     }
@@ -236,12 +216,11 @@ static inline int64_t next_cell(const struct motion *motion, int dim, int64_t ce
 static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell, const double *x,
                               double tolerance, double *X, double *residual)
 {
-    double start[3], N[4], at[3], F[3][3], inverse[3][3], first = 0;
+    double start[3], N[4], at[3], F[3][3] = {{0}}, inverse[3][3], first = 0;
     int64_t current = cell;
     linear_inverse(motion, dim, cell, x, X);
-    for (int i = 0; i < dim; i++) {
-        start[i] = X[i];
-    }
+    memcpy(start, X, (size_t)dim * sizeof *X);
+    F[2][2] = 1.0; /* in 2D */
     for (int step = 0; step < newton_most; step++) {
         shapes(motion, dim, current, X, N);
         int64_t next = next_cell(motion, dim, current, N);
@@ -256,7 +235,7 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
         if (*residual <= tolerance) {
             return true;
         }
-        if (!(invert(dim, F, inverse) > 0)) {
+        if (!(matrix_inverse(F[0], F[1], F[2], inverse) > 0)) {
             break;
         }
         for (int i = 0; i < dim; i++) {
@@ -265,9 +244,7 @@ static inline bool inverse_in(const struct motion *motion, int dim, int64_t cell
             }
         }
     }
-    for (int i = 0; i < dim; i++) {
-        X[i] = start[i];
-    }
+    memcpy(X, start, (size_t)dim * sizeof *X);
     *residual = first;
     return false;
 }

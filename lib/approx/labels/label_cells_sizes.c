@@ -1,7 +1,6 @@
 #include "approx/cells/raster.h"
 #include "approx/labels/label_cells_private.h"
 #include "base/memory.h"
-#include "base/vector.h"
 
 #include <math.h>
 
@@ -18,21 +17,12 @@ int size_level(double spacing, double size)
 static double size_at(const struct cells *cells, const double *size, int64_t cell, const double at[3])
 {
     const int32_t *node = cells->node + 4 * cell;
-    double edge[3][3], offset[3];
-    const double *first = cells->x + 3 * (int64_t)node[0];
-    vector_subtract(3, at, first, offset);
-    for (int k = 0; k < 3; k++) {
-        vector_subtract(3, cells->x + 3 * (int64_t)node[k + 1], first, edge[k]);
-    }
-    double whole = determinant3(edge[0], edge[1], edge[2]), value = size[node[0]];
-    const double share[3] = {determinant3(offset, edge[1], edge[2]) / whole,
-                             determinant3(edge[0], offset, edge[2]) / whole,
-                             determinant3(edge[0], edge[1], offset) / whole};
-    double least = value, most = value;
-    for (int k = 0; k < 3; k++) {
-        value += share[k] * (size[node[k + 1]] - size[node[0]]);
-        least = fmin(least, size[node[k + 1]]);
-        most = fmax(most, size[node[k + 1]]);
+    double share[4], value = 0, least = INFINITY, most = 0;
+    cell_barycentric(cells, cell, at, share);
+    for (int k = 0; k < 4; k++) {
+        value += share[k] * size[node[k]];
+        least = fmin(least, size[node[k]]);
+        most = fmax(most, size[node[k]]);
     }
     return fmin(fmax(value, least), most);
 }

@@ -175,14 +175,7 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
 /* Inverse of the linear part of to_voxel. */
 static void invert(const struct labels *labels, double inverse[3][3])
 {
-    const double(*m)[4] = labels->to_voxel;
-    double det = determinant3(m[0], m[1], m[2]);
-    for (int d = 0; d < 3; d++) {
-        for (int e = 0; e < 3; e++) {
-            int p = (d + 1) % 3, q = (d + 2) % 3, r = (e + 1) % 3, s = (e + 2) % 3;
-            inverse[e][d] = (m[p][r] * m[q][s] - m[p][s] * m[q][r]) / det;
-        }
-    }
+    (void)matrix_inverse(labels->to_voxel[0], labels->to_voxel[1], labels->to_voxel[2], inverse);
 }
 
 void labels_box(const struct labels *labels, double low[], double high[])

@@ -27,15 +27,11 @@ void point_text(int dim, const double *x, char text[96])
 
 static void worker_free(int64_t body_count, struct worker *worker)
 {
-    free(worker->list.index);
-    free(worker->around_pair);
-    free(worker->around_offset);
     for (int64_t b = 0; b < body_count && worker->visibility != NULL; b++) {
         visibility_work_free(&worker->visibility[b]);
     }
-    free(worker->visibility);
-    free(worker->order);
-    free(worker->gradient);
+    FREE_ALL(worker->list.index, worker->around_pair, worker->around_offset, worker->visibility,
+             worker->order, worker->gradient);
     mls_work_free(&worker->work);
 }
 
@@ -229,10 +225,6 @@ done:
 
 void support_free(struct support_lists *lists)
 {
-    free(lists->ptr);
-    free(lists->idx);
-    free(lists->widen);
-    free(lists->around_pair);
-    free(lists->around_offset);
+    FREE_ALL(lists->ptr, lists->idx, lists->widen, lists->around_pair, lists->around_offset);
     *lists = (struct support_lists){0};
 }

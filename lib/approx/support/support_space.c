@@ -111,13 +111,9 @@ void support_space_free(struct support_space *space)
         struct support_side *side = &space->side[s];
         visibility_free(&side->visibility);
         point_grid_free(&side->grid);
-        free(side->node);
-        free(side->local);
-        free(side->x);
-        free(side->radius);
+        FREE_ALL(side->node, side->local, side->x, side->radius);
     }
-    free(space->side);
-    free(space->place);
+    FREE_ALL(space->side, space->place);
     *space = (struct support_space){0};
 }
 

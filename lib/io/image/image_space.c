@@ -36,15 +36,11 @@ void image_world(const struct image *image, const double voxel[3], double world[
 
 void image_to_voxel(const struct image *image, double inverse[3][4])
 {
-    double m[3][4];
-    memcpy(m, image->to_world, sizeof m);
-    double d = determinant3(m[0], m[1], m[2]);
+    const double(*m)[4] = image->to_world;
+    double linear[3][3];
+    (void)matrix_inverse(m[0], m[1], m[2], linear);
     for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
-            inverse[r][c] = cofactor(m, c, r) / d;
-        }
-    }
-    for (int r = 0; r < 3; r++) {
+        memcpy(inverse[r], linear[r], sizeof linear[r]);
         inverse[r][3] = -(inverse[r][0] * m[0][3] + inverse[r][1] * m[1][3] + inverse[r][2] * m[2][3]);
     }
 }

@@ -1,5 +1,4 @@
-/* Writing NIfTI files. Blocks are compressed in parallel, each with the data before it as its dictionary; the
- * bytes are the same for any number of threads. */
+/* Writing NIfTI files. */
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
@@ -10,7 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { BLOCK = 1 << 20, DICTIONARY = 1 << 15, LEVEL = 6 };
+enum { BLOCK = 1 << 20, LEVEL = 6 };
 
 void image_range(const struct image *image, double *least, double *most)
 {
@@ -44,64 +43,27 @@ static void store_values(const struct image *image, const struct nifti_type *typ
     }
 }
 
-/* Compress one block, from `begin` of bytes, as a part of a deflate stream that begins and ends at a byte. */
-static bool compress_block(const unsigned char *bytes, size_t begin, size_t size, bool last,
-                           unsigned char *to, size_t room, size_t *used)
-{
-    z_stream stream = {0};
-    if (deflateInit2(&stream, LEVEL, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
-        return false;
-    }
-    size_t before = begin < DICTIONARY ? begin : DICTIONARY;
-    bool good =
-        before == 0 || deflateSetDictionary(&stream, bytes + begin - before, (unsigned)before) == Z_OK;
-    stream.next_in = (unsigned char *)(uintptr_t)(bytes + begin); /* zlib's const */
-    stream.avail_in = (unsigned)size;
-    stream.next_out = to;
-    stream.avail_out = (unsigned)room;
-    int code = good ? deflate(&stream, last ? Z_FINISH : Z_SYNC_FLUSH) : Z_MEM_ERROR;
-    good = code == (last ? Z_STREAM_END : Z_OK) && stream.avail_in == 0;
-    *used = room - stream.avail_out;
-    deflateEnd(&stream);
-    return good;
-}
-
-static void put_little_endian(unsigned char *bytes, uint32_t value)
-{
-    for (int b = 0; b < 4; b++) {
-        bytes[b] = (unsigned char)(value >> (8 * b));
-    }
-}
-
 /* Write a gzip file of one member, without name and time. */
 static enum status write_gzip(const unsigned char *bytes, size_t size, int descriptor, struct error *error)
 {
-    static const unsigned char head[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3};
-    unsigned char tail[8];
-    int64_t blocks = (int64_t)((size + BLOCK - 1) / BLOCK);
-    size_t room = compressBound(BLOCK) + 64;
-    SCRATCH size_t *used = NULL;
+    z_stream stream = {0};
     SCRATCH unsigned char *packed = NULL;
-    bool good = true;
-    RETURN_IF_ERROR(NEW_ARRAY(&used, blocks, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&packed, blocks * (int64_t)room, error));
-#pragma omp parallel for schedule(dynamic) reduction(&& : good)
-    for (int64_t b = 0; b < blocks; b++) {
-        size_t begin = (size_t)b * BLOCK, length = size - begin < BLOCK ? size - begin : BLOCK;
-        good = compress_block(bytes, begin, length, b == blocks - 1, packed + (size_t)b * room, room,
-                              &used[b]) &&
-               good;
-    }
-    if (!good) {
+    RETURN_IF_ERROR(NEW_ARRAY(&packed, BLOCK, error));
+    if (deflateInit2(&stream, LEVEL, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
         return fail_memory(error, "compressed image");
     }
-    RETURN_IF_ERROR(descriptor_write(descriptor, head, sizeof head, error));
-    for (int64_t b = 0; b < blocks; b++) {
-        RETURN_IF_ERROR(descriptor_write(descriptor, packed + (size_t)b * room, used[b], error));
+    stream.next_in = (unsigned char *)(uintptr_t)bytes; /* zlib's const */
+    enum status status = STATUS_OK;
+    for (int code = Z_OK; code != Z_STREAM_END && status == STATUS_OK;) {
+        size_t left = size - (size_t)(stream.next_in - bytes);
+        stream.avail_in = (unsigned)(left < BLOCK ? left : BLOCK);
+        stream.next_out = packed;
+        stream.avail_out = BLOCK;
+        code = deflate(&stream, left <= BLOCK ? Z_FINISH : Z_NO_FLUSH);
+        status = descriptor_write(descriptor, packed, BLOCK - stream.avail_out, error);
     }
-    put_little_endian(tail, (uint32_t)crc32_z(0, bytes, size));
-    put_little_endian(tail + 4, (uint32_t)size);
-    return descriptor_write(descriptor, tail, sizeof tail, error);
+    deflateEnd(&stream);
+    return status;
 }
 
 enum status image_write(const struct image *image, int descriptor, bool gzip, struct error *error)

@@ -7,59 +7,29 @@
 
 /* ---- finding nodes and elements by their tags ---- */
 
-/* Tags whose range is at most this multiple of their number get a table. */
-enum { LARGEST_SPREAD = 4 };
-
-static void fail_repeated(struct msh_reader *r, int64_t tag)
-{
-    r->record = 0;
-    msh_fail(r, "%s tag %lld stands twice", r->kind, (long long)tag);
-}
-
 void msh_index_make(struct msh_reader *r, struct msh_index *index, int64_t count, const int64_t tags[])
 {
-    int64_t last = 0;
     *index = (struct msh_index){.count = count};
-    for (int64_t i = 0; i < count; i++) {
-        index->first = i == 0 || tags[i] < index->first ? tags[i] : index->first;
-        last = i == 0 || tags[i] > last ? tags[i] : last;
-    }
-    index->span = count > 0 ? last - index->first + 1 : 0;
-    if (index->span <= LARGEST_SPREAD * count) {
-        MSH_NEW(r, &index->place, index->span);
-        for (int64_t i = 0; r->status == STATUS_OK && i < index->span; i++) {
-            index->place[i] = -1;
-        }
-        for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
-            if (index->place[tags[i] - index->first] >= 0) {
-                fail_repeated(r, tags[i]);
-            }
-            index->place[tags[i] - index->first] = (int32_t)i;
-        }
-        return;
-    }
     MSH_NEW(r, &index->sorted, count);
-    if (r->status != STATUS_OK) {
-        return;
-    }
-    for (int64_t i = 0; i < count; i++) {
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         index->sorted[i] = (struct msh_place){tags[i], i};
     }
-    qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
-    for (int64_t i = 1; i < count; i++) {
+    if (r->status == STATUS_OK) {
+        qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
+    }
+    for (int64_t i = 1; r->status == STATUS_OK && i < count; i++) {
         if (index->sorted[i].tag == index->sorted[i - 1].tag) {
-            fail_repeated(r, index->sorted[i].tag);
+            r->record = 0;
+            msh_fail(r, "%s tag %lld stands twice", r->kind, (long long)index->sorted[i].tag);
         }
     }
 }
 
 int64_t msh_index_find(const struct msh_index *index, int64_t tag)
 {
-    if (tag < index->first || tag > index->first + (index->span - 1)) {
-        return -1;
-    }
-    if (index->place != NULL) {
-        return index->place[tag - index->first];
+    int64_t near = index->count > 0 ? tag - index->sorted[0].tag : -1;
+    if (near >= 0 && near < index->count && index->sorted[near].tag == tag) { /* as if there were no gap */
+        return index->sorted[near].place;
     }
     struct msh_place key = {.tag = tag};
     const struct msh_place *found =
@@ -69,7 +39,7 @@ int64_t msh_index_find(const struct msh_index *index, int64_t tag)
 
 void msh_index_free(struct msh_index *index)
 {
-    FREE_ALL(index->place, index->sorted);
+    free(index->sorted);
     *index = (struct msh_index){0};
 }
 

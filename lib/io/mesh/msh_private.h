@@ -20,14 +20,12 @@
 /* Tags are of type int in all versions of the format except MSH 4.1, where gmsh keeps most of them as int. */
 #define MSH_LARGEST_TAG INT32_MAX
 
-/* The place of each tag in the file: a table for tags in a small range, else a sorted list. */
+/* The place of each tag in the file. */
 struct msh_index {
     int64_t count;
-    int64_t first, span; /* tags are within [first, first + span) */
-    int32_t *place;      /* span, or NULL: the place of tag first + i, or -1 */
     struct msh_place {
         int64_t tag, place;
-    } * sorted; /* count, ascending, where there is no table */
+    } * sorted; /* count, ascending */
 };
 
 /* A physical group's name in the file. */

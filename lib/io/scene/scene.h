@@ -1,31 +1,7 @@
-/* The scene: the problem to compute on a body, read from an INI file (grammar below).
- *
- * The file holds sections `[kind NAME]` with lines `key = value`. Comments begin with '#' or ';' at the start
- * of a line or after a blank. Nothing is guessed: an unknown, repeated or missing key is an error with its
- * line. Names of groups are comma lists. Files are named relative to the scene file. A scene can only be
- * computed: it names no program and no file to write.
- *
- * - [scene]: dim = 2|3; analysis = quasi-static|dynamic; title = TEXT; gravity = GX,GY[,GZ] (m/s2) -
- * [material NAME]: region = GROUPS; model = neo-hookean (default)|neo-hookean-log|mooney-rivlin|ogden|
- *   st-venant-kirchhoff; E (Pa); nu; rho (kg/m3); ratio (mooney-rivlin: C01/C10); alpha (ogden); or, instead
- *   of E and nu, table = FILE with unit
- * - [displacement NAME]: facets = GROUPS or nodes = SETS; one of table = FILE with unit, components =
- * UX,UY[,UZ] (m, or `free`), normal = VALUE (m, along the outward normal; facets only); curve - or, for
- * measured points: points = FILE with unit; reach (m); model_error (m); curve - [contact NAME]: facets =
- * GROUPS; rigid = FILE; unit; side = left|right (2D), front|back (3D); stiffness
- *   (Pa/m); the motion of the surface: angle (degrees), axis_point (m), axis (3D), translation (m), curve,
- *   angle_curve; or instead of a rigid surface against = GROUPS; * is the whole boundary
- * - [pressure NAME]: facets = GROUPS; value (Pa, positive pushes inward), or of a fluid: density (kg/m3),
- * level = X,Y[,Z] (m), side = below (default)|above|both, gravity (m/s2); curve - [traction NAME]: facets =
- * GROUPS; components (Pa); curve - [force NAME]: nodes = SETS; components (N on each node; in 2D N per metre
- * of thickness); curve - [initial]: table = FILE; unit (dynamic) - [output]: frames = COUNT or interval (s,
- * dynamic); stress, strain, pressure, volume_ratio, energy,
- *   reactions, moments, gaps = yes|no; moments_about = X,Y[,Z] (m); folds = refused (default)|allowed
- * - [solver]: constraints = ebciem|direct; constraint_points = hat|node; volume = nodal|pointwise;
- *   tolerance; max_steps; ramp_steps; end_time (s), damping (1/s) (dynamic);
- *   time_step_margin (0..1)
- *
- * unit = m|cm|mm|um is the unit of the lengths in a table; curve = smooth (default)|linear|step|FILE. */
+/* The scene: the problem to compute on a body, read from an INI file of sections `[kind NAME]` with lines
+ * `key = value`. Its grammar and keys: mtled-scene(5). Nothing is guessed: an unknown, repeated or missing
+ * key is an error with its line. Files are named relative to the scene file. A scene can only be computed: it
+ * names no program and no file to write. */
 #pragma once
 
 #include "base/memory.h"
