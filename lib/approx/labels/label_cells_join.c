@@ -59,12 +59,12 @@ static int32_t count_groups(struct label_cells_keeping *keeping, const struct la
 
 /* ---- joining ---- */
 
-/* Cells that are added to the body together, and their new label. */
+/* Cells that are added to the body or removed from it together, and their new labels. */
 enum { CHANGE_MOST = 16 };
 struct change {
     int count;
     int64_t cell[CHANGE_MOST];
-    int32_t label;
+    int32_t label[CHANGE_MOST];
 };
 
 /* The number of groups at the nodes of the cells minus one, summed over the nodes. */
@@ -106,7 +106,7 @@ static bool try_change(struct label_cells_keeping *keeping, const struct label_c
         return false;
     }
     for (int i = 0; i < change->count; i++) {
-        keeping->mesh->label[change->cell[i]] = change->label;
+        keeping->mesh->label[change->cell[i]] = change->label[i];
     }
     return true;
 }
@@ -149,7 +149,43 @@ static void find_link(struct label_cells_keeping *keeping, const struct label_ce
         }
         change->cell[change->count++] = found;
     }
-    change->label = found >= 0 ? keeping->mesh->label[found] : 0;
+    int32_t label = found >= 0 ? keeping->mesh->label[found] : 0;
+    for (int i = 0; i < change->count; i++) {
+        change->label[i] = label;
+    }
+    forget_groups(keeping, star, node);
+}
+
+/* The label beyond a face of a cell at which the body ends; 0 if there is no such face. */
+static int32_t label_beyond(const struct label_cells_keeping *keeping, int64_t cell)
+{
+    for (int k = 0; k <= keeping->cells.dim; k++) {
+        int32_t next = keeping->across[cell * (keeping->cells.dim + 1) + k];
+        if (next >= 0 && !keeping->wanted[next]) {
+            return keeping->mesh->label[next];
+        }
+    }
+    return 0;
+}
+
+/* A group at the node all cells of which lie between interfaces; they take the label beyond. */
+static void find_tip(struct label_cells_keeping *keeping, const struct label_cells_star *star, int64_t node,
+                     int32_t group, struct change *change)
+{
+    change->count = 0;
+    find_groups(keeping, star, node);
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
+        int32_t cell = star->cell[i];
+        if (keeping->group[cell] != group) {
+            continue;
+        }
+        if (!keeping->between[cell] || change->count == CHANGE_MOST) {
+            change->count = 0;
+            break;
+        }
+        change->label[change->count] = label_beyond(keeping, cell);
+        change->cell[change->count++] = cell;
+    }
     forget_groups(keeping, star, node);
 }
 
@@ -169,7 +205,7 @@ static bool is_crevice(const struct label_cells_keeping *keeping, int64_t cell, 
         length[k] = next >= 0 && keeping->wanted[next] ? sqrt(square) : 0;
         if (length[k] > 0) {
             walls++;
-            *change = (struct change){1, {cell}, keeping->mesh->label[next]};
+            *change = (struct change){1, {cell}, {keeping->mesh->label[next]}};
         }
     }
     for (int k = 0; k < corners; k++) {
@@ -194,15 +230,25 @@ static bool fill_crevices(struct label_cells_keeping *keeping, const struct labe
     return changed;
 }
 
-/* Join the parts at a node. */
+/* Join the parts at a node, or leave out a part that is only a tip. */
 static bool join_at(struct label_cells_keeping *keeping, const struct label_cells_star *star, int64_t node)
 {
     struct change change;
-    if (count_groups(keeping, star, node) < 2) {
+    int32_t count = count_groups(keeping, star, node);
+    if (count < 2) {
         return false;
     }
     find_link(keeping, star, node, &change);
-    return try_change(keeping, star, &change, 1);
+    if (try_change(keeping, star, &change, 1)) {
+        return true;
+    }
+    for (int32_t g = 0; g < count; g++) {
+        find_tip(keeping, star, node, g, &change);
+        if (try_change(keeping, star, &change, 1)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star)

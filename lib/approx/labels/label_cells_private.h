@@ -157,7 +157,8 @@ struct label_cells_keeping {
 };
 
 /* Resolve places where parts share only a node or an edge (non-manifold boundary): add cells all of whose
- * nodes lie on interfaces so that the parts share faces. No node leaves its interface. */
+ * nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
+ * interface. */
 void label_cells_join(struct label_cells_keeping *keeping, const struct label_cells_star *star);
 
 /* Separate the bodies, numbered in group[], where they share only a node or an edge. */
