@@ -42,7 +42,7 @@ SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize
     $(if $(FUZZ),-fsanitize=fuzzer-no-link) $(if $(COVERAGE),--coverage -fprofile-update=atomic)
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
-LDLIBS := -lgsl -lgslcblas -lz -lm
+LDLIBS := -lgsl -lgslcblas -linih -lz -lm
 # What lib/approx/partition/partition_metis.c takes, for the programs that cut bodies.
 $(BUILD)/bin/part $(BUILD)/tests/partition: LDLIBS += -lmetis
 

@@ -6,15 +6,15 @@
 #include <stdint.h>
 
 struct ini_entry {
-    char *key;
+    const char *key;
     char *value; /* not empty, without blanks at its ends; readers may modify it */
     int64_t line;
 };
 
 /* `[kind NAME]` or `[kind]`. */
 struct ini_section {
-    char *kind;
-    char *name; /* "" if the header has none */
+    const char *kind;
+    const char *name; /* "" if the header has none */
     int64_t line;
     struct ini_entry *entries; /* keys differ */
     int64_t entry_count;
