@@ -32,7 +32,7 @@
                                               const struct row_stripe *stripe, const double *x,              \
                                               double *restrict y)                                            \
     {                                                                                                        \
-        const struct sparse *whole = rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;           \
+        const struct sparse *whole = row_operator_columns(rows);                                             \
         int64_t cut = 0;                                                                                     \
         memset(y + stripe->begin * VECTOR_STRIDE(dim), 0,                                                    \
                (size_t)((stripe->end - stripe->begin) * VECTOR_STRIDE(dim)) * sizeof *y);                    \

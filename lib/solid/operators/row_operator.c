@@ -4,17 +4,11 @@
 
 #include <stdlib.h>
 
-/* The table that is transposed. */
-static const struct sparse *transposed_table(const struct row_operator *rows)
-{
-    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
-}
-
 /* Divide the columns into stripes with about the same number of entries. */
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
 {
-    int64_t entries = transposed_table(rows)->ptr[transposed_table(rows)->row_count], sum = 0;
+    int64_t entries = row_operator_columns(rows)->ptr[row_operator_columns(rows)->row_count], sum = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&rows->stripes, threads, error));
     rows->stripe_count = threads;
     for (int s = 0; s < threads; s++) {
@@ -88,7 +82,7 @@ static enum status make_stripe(const struct sparse *table, const int32_t *range,
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                 struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     SCRATCH int32_t *count = NULL, *range = NULL;
     if (table->column_count > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
@@ -119,7 +113,7 @@ void row_operator_free(struct row_operator *rows)
 
 enum status row_operator_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     enum status status = NEW_ARRAY(range, 2 * table->row_count, error);
     for (int64_t r = 0; r < table->row_count && status == STATUS_OK; r++) {
         int32_t low = INT32_MAX, high = -1;
@@ -159,7 +153,7 @@ enum status row_operator_transpose(const struct row_operator *rows, const int32_
                                    const int32_t *column, int64_t count, int32_t *slot,
                                    struct sparse *transposed, struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     SCRATCH int64_t *next = NULL;
     int64_t sum = 0;
     *transposed = (struct sparse){0};

@@ -22,6 +22,12 @@ struct row_operator {
     struct row_stripe *stripes;
 };
 
+/* The table that is transposed: all rows, with the columns of own nodes. */
+static inline const struct sparse *row_operator_columns(const struct row_operator *rows)
+{
+    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
+}
+
 /* Divide the columns from `begin` to before `end` into one stripe for each of `threads` threads. STATUS_INPUT
  * for 2^31 columns or more. */
 MUST_CHECK enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
