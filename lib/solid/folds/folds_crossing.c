@@ -63,14 +63,14 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
     int dim = folds->input.dim;
     double area[3], offset[3], deepest = 0.0;
     const int32_t *node = folds->input.facet + f * dim;
-    fold_area_vector(dim, folds->y, node, area);
+    face_area_vector(dim, folds->y, node, area);
     double size = vector_length(dim, area);
     for (int k = 0; k < dim; k++) {
         vector_subtract(dim, fold_position(folds, folds->input.facet[g * dim + k]),
                         fold_position(folds, node[0]), offset);
         deepest = fmax(deepest, -vector_dot(dim, area, offset) / size);
     }
-    *width = dim == 2 ? size : sqrt(size);
+    *width = dim == 2 ? size : sqrt(2.0 * size);
     return deepest;
 }
 

@@ -82,7 +82,7 @@ static double cell_size(const struct folds *folds, const int32_t *node)
 static double flatness(int dim, const double *y, const int32_t *node)
 {
     const double *corner[4];
-    double longest2 = 0.0, largest2 = 0.0;
+    double longest2 = 0.0, largest2 = 0.0, whole = dim == 2 ? 1.0 : 2.0; /* see fold_volume */
     for (int k = 0; k <= dim; k++) {
         int32_t side[3] = {0, 0, 0};
         double area[3];
@@ -90,13 +90,14 @@ static double flatness(int dim, const double *y, const int32_t *node)
             side[i] = node[(k + 1 + i) % (dim + 1)];
         }
         corner[k] = y + (int64_t)node[k] * dim;
-        fold_area_vector(dim, y, side, area);
+        face_area_vector(dim, y, side, area);
         largest2 = fmax(largest2, vector_dot(dim, area, area));
         for (int m = k + 1; m <= dim; m++) {
             longest2 = fmax(longest2, vector_distance2(dim, corner[k], y + (int64_t)node[m] * dim));
         }
     }
-    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) / sqrt(longest2 * largest2);
+    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) /
+           (whole * sqrt(longest2 * largest2));
 }
 
 /* Whether a cell that is inverted is turned over: its least height is more than a tenth of its longest edge.
@@ -104,14 +105,6 @@ static double flatness(int dim, const double *y, const int32_t *node)
 static bool is_turned_over(const struct folds *folds, const int32_t *node)
 {
     return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
-}
-
-/* Whether a cell is between facets that continue each other at rest and do not face each other now. */
-static bool is_in_hollow(const struct folds *folds, int64_t cell)
-{
-    int32_t r = folds->flat_ring[cell];
-    return r >= 0 && fold_facet_cosine(&folds->input, folds->y, folds->rings[r].facet,
-                                       folds->rings[r].other) >= FOLD_REVERSING;
 }
 
 /* Search for cells that are turned over, or else inverted. */
@@ -126,9 +119,7 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
         if (volume > 0.0 || is_flattened(folds, node, stopped)) {
             continue;
         }
-        enum fold_kind kind = is_turned_over(folds, node) && !is_in_hollow(folds, c) && !folds->upright[c]
-                                  ? FOLD_CELL
-                                  : FOLD_FLAT;
+        enum fold_kind kind = is_turned_over(folds, node) && !folds->upright[c] ? FOLD_CELL : FOLD_FLAT;
         if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
             fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
             vector_middle(dim, input->x, corners, node, fold.place);
@@ -201,8 +192,8 @@ static struct fold search_sliding(const struct folds *folds, int64_t begin, int6
         if (!input->slides[f]) {
             continue;
         }
-        fold_area_vector(dim, folds->y, input->facet + f * dim, now);
-        fold_area_vector(dim, input->x, input->facet + f * dim, rest);
+        face_area_vector(dim, folds->y, input->facet + f * dim, now);
+        face_area_vector(dim, input->x, input->facet + f * dim, rest);
         if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
             fold_name_facets(&folds->input, f, -1, &fold);
         }
@@ -220,7 +211,7 @@ void folds_fill_planes(struct folds *folds, const double *y)
         if (folds->support[f] < 0) {
             continue;
         }
-        fold_area_vector(dim, y, folds->input.facet + f * dim, area);
+        face_area_vector(dim, y, folds->input.facet + f * dim, area);
         for (int i = 0; i < dim; i++) {
             plane[i] += area[i];
             for (int k = 0; k < dim; k++) {
