@@ -9,9 +9,8 @@
 struct row_stripe {
     int64_t begin, end;
     int64_t row_count;
-    int32_t *
-        row; /* rows with entries in these columns, ascending: r if all entries of the row are, else -1 - r */
-    struct sparse cut; /* for each row of the second kind, in order: its entries in these columns */
+    int32_t *row; /* rows with entries in these columns, ascending: r if all entries of the row are, else
+                     -1 - r */
 };
 
 struct row_operator {
