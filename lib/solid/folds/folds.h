@@ -117,7 +117,8 @@ struct folds {
     struct fold
         at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at
                     rest. Then the last two kinds are not searched for, nor FOLD_CREASE if it is that */
-    /* Scratch. */
+    /* Of the search. */
+    const bool *stopped;    /* see folds_find */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, ascending */

@@ -145,12 +145,11 @@ void folds_sort_boxes(struct folds *folds)
     qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_placed);
 }
 
-struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
     int64_t count = folds->input.facet_count;
     const struct fold_box *boxes = folds->boxes;
-    (void)stopped;
     for (int64_t i = begin; i < end; i++) {
         int64_t f = boxes[i].facet.item;
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {

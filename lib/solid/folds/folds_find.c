@@ -37,11 +37,10 @@ static struct fold combine(int64_t count, const struct fold *found)
 }
 
 /* Search the cells, rings, boxes or facets [begin, end). */
-typedef struct fold search_range(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+typedef struct fold search_range(const struct folds *folds, int64_t begin, int64_t end);
 
 /* Search [0, count), shared among the threads of all processes. */
-static struct fold search(const struct folds *folds, int64_t count, search_range *of_range,
-                          const bool *stopped)
+static struct fold search(const struct folds *folds, int64_t count, search_range *of_range)
 {
     const struct ranks *ranks = folds->input.ranks;
     int64_t first = count * ranks_rank(ranks) / ranks_count(ranks);
@@ -51,7 +50,7 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
-        found[c] = of_range(folds, begin, end, stopped);
+        found[c] = of_range(folds, begin, end);
     }
     folds->found[ranks_rank(ranks)] = combine(chunks.count, found);
     ranks_gather(ranks, folds->found, sizeof *found, NULL);
@@ -60,12 +59,12 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
 
 /* Whether the cell is pressed flat against an obstacle: all its nodes are held or stopped, and at least one
  * is stopped. */
-static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
+static bool is_flattened(const struct folds *folds, const int32_t *node)
 {
     bool all = true, any = false;
     for (int k = 0; k <= folds->input.dim; k++) {
-        all = all && (folds->is_held[node[k]] || stopped[node[k]]);
-        any = any || stopped[node[k]];
+        all = all && (folds->is_held[node[k]] || folds->stopped[node[k]]);
+        any = any || folds->stopped[node[k]];
     }
     return all && any;
 }
@@ -108,7 +107,7 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node)
 }
 
 /* Search for cells that are turned over, or else inverted. */
-static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end)
 {
     const struct fold_input *input = &folds->input;
     struct fold fold = FOLD_NOTHING;
@@ -116,7 +115,7 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     for (int64_t c = begin; c < end; c++) {
         const int32_t *node = input->cell + c * corners;
         double volume = cell_size(folds, node);
-        if (volume > 0.0 || is_flattened(folds, node, stopped)) {
+        if (volume > 0.0 || is_flattened(folds, node)) {
             continue;
         }
         enum fold_kind kind = is_turned_over(folds, node) && !folds->upright[c] ? FOLD_CELL : FOLD_FLAT;
@@ -162,11 +161,10 @@ static double most_angle(const struct folds *folds, const struct fold_ring *ring
     return full_turn * (1.0 + 1e-6) + (closed ? FOLD_BEYOND_FACET : 0.0);
 }
 
-static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
     int corners = folds->input.dim + 1;
-    (void)stopped;
     for (int64_t r = begin; r < end; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
@@ -181,12 +179,11 @@ static struct fold search_rings(const struct folds *folds, int64_t begin, int64_
 }
 
 /* Search for sliding facets that are turned over. */
-static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end)
 {
     const struct fold_input *input = &folds->input;
     struct fold fold = FOLD_NOTHING;
     int dim = input->dim;
-    (void)stopped;
     for (int64_t f = begin; f < end; f++) {
         double now[3], rest[3];
         if (!input->slides[f]) {
@@ -261,23 +258,24 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell)
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
     folds_take_positions(folds, u);
+    folds->stopped = stopped;
     if (folds->input.slides != NULL) {
-        struct fold sliding = search(folds, folds->input.facet_count, search_sliding, stopped);
+        struct fold sliding = search(folds, folds->input.facet_count, search_sliding);
         if (sliding.kind != FOLD_NONE) {
             return sliding;
         }
     }
-    struct fold cells = search(folds, folds->input.cell_count, search_cells, stopped);
+    struct fold cells = search(folds, folds->input.cell_count, search_cells);
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
     struct fold fold = FOLD_NOTHING;
     if (folds->at_rest.kind != FOLD_CREASE) {
-        fold = search(folds, folds->ring_count, search_rings, stopped);
+        fold = search(folds, folds->ring_count, search_rings);
     }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
         folds_sort_boxes(folds);
-        fold = search(folds, folds->input.facet_count, folds_search_boxes, stopped);
+        fold = search(folds, folds->input.facet_count, folds_search_boxes);
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }

@@ -59,8 +59,8 @@ MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *erro
 /* Fill folds->boxes, ascending along the first axis. */
 void folds_sort_boxes(struct folds *folds);
 
-/* Search the boxes [begin, end) and those behind them for facets that cross; `stopped` is not used. */
-struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+/* Search the boxes [begin, end) and those behind them for facets that cross. */
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end);
 
 /* ---- folds_within.c ---- */
 
