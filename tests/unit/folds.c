@@ -321,55 +321,6 @@ TEST(inverted)
     }
 }
 
-/* A square with a triangle of that height on its top; in 3D a plate whose top is hollow along a diagonal, by
- * that height, which a flat cell fills. */
-static void make_flat_cell(struct shape *shape, int dim, double height)
-{
-    static const int32_t quadrangle[4] = {0, 1, 3, 2};
-    *shape = (struct shape){.dim = dim, .nodes = dim == 2 ? 5 : 8};
-    for (int32_t k = 0; k < 8; k++) {
-        double *x = shape->x + (int64_t)k * dim;
-        x[0] = k % 2;
-        x[1] = k / 2 % 2;
-        if (dim == 3) {
-            x[2] = k < 4 ? 0.0 : k == 4 || k == 7 ? 0.2 - height : 0.2;
-        }
-    }
-    add_quadrangle(shape, quadrangle, 4);
-    if (dim == 2) {
-        shape->x[8] = 0.5;
-        shape->x[9] = 1.0 + height;
-        add_cell(shape, (int32_t[]){2, 3, 4});
-    } else {
-        add_cell(shape, (int32_t[]){4, 7, 6, 5});
-    }
-    finish(shape, -1, 0.0);
-}
-
-/* The boundary becomes concave at a flat cell. */
-TEST(hollow)
-{
-    static struct shape shape;
-    double y[MOST_NODES * 3];
-    /* Height of the cell, how far its outer nodes go in, and what that is. */
-    static const struct {
-        int dim;
-        double height, in;
-        enum fold_kind kind;
-    } cases[] = {{2, 0.05, 0.03, FOLD_NONE}, {2, 0.05, 0.35, FOLD_FLAT}, {2, 0.05, 0.99, FOLD_CELL},
-                 {2, 0.3, 0.6, FOLD_CELL},   {3, 0.03, 0.02, FOLD_NONE}, {3, 0.03, 0.15, FOLD_FLAT}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        int dim = cases[i].dim;
-        make_flat_cell(&shape, dim, cases[i].height);
-        memcpy(y, shape.x, sizeof y);
-        for (int k = dim == 2 ? 4 : 5; k < (dim == 2 ? 5 : 7); k++) {
-            y[k * dim + dim - 1] -= cases[i].in;
-        }
-        assert_int_equal(found(&shape, y).kind, cases[i].kind);
-        folds_free(&shape.folds);
-    }
-}
-
 /* A unit square whose node beneath the middle of its upper side, at that depth, is moved up. */
 static void make_node_beneath(struct shape *shape, double depth)
 {

@@ -141,11 +141,8 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     constraint_rows_init(&system->penalties, system->dim);
     RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
     RETURN_IF_ERROR(lump_mass(input, system, error));
-    RETURN_IF_ERROR(assembly_add_loads(input, system, error));
     RETURN_IF_ERROR(build_body(input, system, error));
-    RETURN_IF_ERROR(assembly_complete_gravity(input, system, error));
-    RETURN_IF_ERROR(
-        field_averages_drop_copied(&system->body.rows.matrix, &system->body.cells.averages, error));
+    RETURN_IF_ERROR(assembly_add_loads(input, system, error));
     RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
     RETURN_IF_ERROR(assembly_add_points(input, system, note, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
@@ -156,11 +153,6 @@ void material_list_free(struct material_list *list)
 {
     FREE_ALL(list->items, list->of_point, list->of_cell, list->section);
     *list = (struct material_list){0};
-}
-
-bool assembly_has_gravity(const struct assembly *input)
-{
-    return input->gravity[0] != 0.0 || input->gravity[1] != 0.0 || input->gravity[2] != 0.0;
 }
 
 bool assembly_holds_averages(const struct assembly *input)

@@ -101,18 +101,14 @@ void assembly_complete(struct assembly *input);
 MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                                       struct error *error);
 
-/* Steps of assembly_build, in their own files: displacements, measured points, loads, contacts, and the
- * reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
+/* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
+ * contacts, and the reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
                                            struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
-/* Add the weight of the body where edge_reader is given. It needs rows that only the built body has fetched.
- */
-MUST_CHECK enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
-                                                 struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
 MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,

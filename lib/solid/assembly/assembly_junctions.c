@@ -4,17 +4,10 @@
 
 #include <stdlib.h>
 
-/* Where the prescribed part of the boundary meets the free part, the stress is singular. Cells of finite size
- * do not resolve it, and the whole body is too stiff. Softer cells at the junction remove the error elsewhere
- * (energy correction: Egger, Ruede and Wohlmuth 2014).
- *
- * Smooth junctions: the boundary is smooth there, and the displacement grows with the square root of the
- * distance. Cells at the junction have reduced moduli, except those behind prescribed facets, where only
- * averages of the field are prescribed. The value: with .76, the force on a bonded punch on a strip equals
- * that of a mesh with fine cells at the ends of the punch, in the mean over 20 meshes of 11 to 25 cells under
- * it, at nu = .3 and .49. But the largest error, which is at the junctions, is then larger. .85 leaves a
- * third of the error of the force; with it the largest error just begins to grow, for the brain section of
- * 707 nodes of the calibration set. */
+/* Moduli of cells at smooth junctions, equal to those of others times this (energy correction: Egger, Ruede
+ * and Wohlmuth 2014; lib/README.md). With .76, the force on a bonded punch on a strip equals that of a mesh
+ * with fine cells at the ends of the punch, but the largest error, at the junctions, is larger. With .85,
+ * which leaves a third of the error of the force, it just begins to grow. */
 static const double junction_stiffness = 0.85;
 
 /* (*junction)[node_count], to be freed: nodes of edges of these kinds, where faces with at least `least`

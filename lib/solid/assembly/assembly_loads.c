@@ -1,6 +1,5 @@
 #include "solid/assembly/assembly.h"
 
-#include "approx/cells/face_edges.h"
 #include "base/lists.h"
 #include "base/memory.h"
 
@@ -16,83 +15,61 @@ static enum status new_load(struct solid_system *system, int32_t curve, double *
     return STATUS_OK;
 }
 
-/* The mass of each row of the table over points or edges. The mean of the quadratic interpolant over a cell
- * is that of its values at the midpoints in 2D; in 3D, where values at the vertices have negative weights,
- * that of its means over the faces is taken, which is the same for linear fields. */
-static enum status share_mass(const struct assembly *input, double **mass, struct error *error)
+/* Add mass times gravity to the nodes of a row of shape functions; place: the nodes of its columns,
+ * NULL: themselves. */
+static void add_weight(const struct assembly *input, double mass, int64_t count, const int32_t *idx,
+                       const double *phi, const int64_t *place, double *force)
 {
-    const struct material_list *materials = &input->materials;
-    int edges = FACE_EDGES(input->cells.dim);
-    RETURN_IF_ERROR(NEW_ARRAY(mass, input->lists.count, error));
-    for (int64_t i = 0; i < input->lists.count && !input->smoothed; i++) {
-        (*mass)[i] = input->weight[i] * materials->items[materials->of_cell[input->point_cell[i]]].density;
-    }
-    for (int64_t i = 0; i < 2 * input->faces.count && input->smoothed; i++) {
-        int32_t q = input->faces.cell[i];
-        for (int k = 0; k < edges && q >= 0; k++) {
-            (*mass)[face_edge(&input->faces, i / 2, k)] += input->weight[q] *
-                                                           materials->items[materials->of_cell[q]].density /
-                                                           ((input->cells.dim + 1) * edges);
+    int dim = input->cells.dim;
+    for (int64_t i = 0; i < count; i++) {
+        int64_t node = place != NULL ? place[idx[i]] : idx[i];
+        for (int a = 0; a < dim; a++) {
+            force[node * dim + a] += mass * phi[i] * input->gravity[a];
         }
     }
-    return STATUS_OK;
 }
 
-/* Whether each process has only some of the rows over which the weight is summed. */
-static bool weighs_later(const struct assembly *input)
+/* The weight of smoothed cells, shared among their edges. The mean of the quadratic interpolant over a cell
+ * is that of its values at the midpoints in 2D; in 3D, where values at the vertices have negative weights,
+ * that of its means over the faces is taken, which is the same for linear fields. */
+static enum status add_cells(const struct assembly *input, struct body *body, double *force,
+                             struct error *error)
 {
-    return input->edge_reader != NULL && !input->in_time;
+    const struct sparse *table = row_operator_columns(&body->rows);
+    int edges = CELL_EDGES(body->dim);
+    SCRATCH double *mass = NULL; /* of each edge */
+    RETURN_IF_ERROR(NEW_ARRAY(&mass, table->row_count, error));
+    for (int64_t q = 0; q < body->point_count * edges; q++) {
+        int64_t c = body->order[q / edges];
+        mass[smoothed_cells_edge(body, q / edges, (int)(q % edges))] +=
+            input->weight[c] * input->materials.items[input->materials.of_cell[c]].density / edges;
+    }
+    for (int64_t r = 0; r < table->row_count; r++) {
+        int64_t at = table->ptr[r];
+        add_weight(input, mass[r], table->ptr[r + 1] - at, table->idx + at, table->value + at,
+                   body->node_order, force);
+    }
+    body_gather(body, force);
+    return STATUS_OK;
 }
 
 static enum status add_gravity(const struct assembly *input, struct solid_system *system, struct error *error)
 {
-    int dim = system->dim;
+    const struct material_list *materials = &input->materials;
     double *force;
-    SCRATCH double *mass = NULL;
     RETURN_IF_ERROR(new_load(system, input->gravity_curve, &force, error));
     /* In dynamics gravity acts on the lumped mass, so that a free body falls without deformation. */
-    for (int64_t i = 0; input->in_time && i < system->node_count * dim; i++) {
-        force[i] = system->lumped_mass[i / dim] * input->gravity[i % dim];
+    for (int64_t i = 0; input->in_time && i < system->node_count * system->dim; i++) {
+        force[i] = system->lumped_mass[i / system->dim] * input->gravity[i % system->dim];
     }
-    if (input->in_time || weighs_later(input)) {
-        return STATUS_OK;
+    if (input->in_time || input->smoothed) {
+        return input->in_time ? STATUS_OK : add_cells(input, &system->body, force, error);
     }
-    RETURN_IF_ERROR(share_mass(input, &mass, error));
-    for (int64_t r = 0; r < input->lists.count; r++) {
-        for (int64_t i = input->lists.ptr[r]; i < input->lists.ptr[r + 1]; i++) {
-            for (int a = 0; a < dim; a++) {
-                force[(int64_t)input->lists.idx[i] * dim + a] += mass[r] * input->phi[i] * input->gravity[a];
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-enum status assembly_complete_gravity(const struct assembly *input, struct solid_system *system,
-                                      struct error *error)
-{
-    const struct body *body = &system->body;
-    const struct average_table *faces = &body->cells.averages.given[0];
-    int dim = system->dim;
-    double *force;
-    SCRATCH double *mass = NULL, *by_place = NULL;
-    if (!assembly_has_gravity(input) || !weighs_later(input)) {
-        return STATUS_OK;
-    }
-    force = system->loads[0].force;
-    RETURN_IF_ERROR(share_mass(input, &mass, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&by_place, system->node_count * dim, error));
-    for (int64_t r = 0; r < faces->row_count; r++) {
-        for (int64_t i = faces->ptr[r]; i < faces->ptr[r + 1]; i++) {
-            int64_t place = body->node_place[faces->idx[i]];
-            for (int a = 0; a < dim && body_share_has_node(body, faces->idx[i]); a++) {
-                by_place[place * dim + a] += mass[r] * faces->phi[i] * input->gravity[a];
-            }
-        }
-    }
-    ranks_gather(body->share.ranks, by_place, (size_t)dim * sizeof *by_place, body->share.node_first);
-    for (int64_t i = 0; i < system->node_count * dim; i++) {
-        force[i] = by_place[body->node_place[i / dim] * dim + i % dim];
+    for (int64_t q = 0; q < input->point_count; q++) {
+        double density = materials->items[materials->of_cell[input->point_cell[q]]].density;
+        int64_t at = input->lists.ptr[q];
+        add_weight(input, input->weight[q] * density, input->lists.ptr[q + 1] - at, input->lists.idx + at,
+                   input->phi + at, NULL, force);
     }
     return STATUS_OK;
 }
@@ -153,6 +130,11 @@ static enum status add_pressure(const struct assembly *input, const struct load 
         pressure->corner[i] = (int32_t)(found - pressure->corners.node);
     }
     return STATUS_OK;
+}
+
+bool assembly_has_gravity(const struct assembly *input)
+{
+    return input->gravity[0] != 0.0 || input->gravity[1] != 0.0 || input->gravity[2] != 0.0;
 }
 
 enum status assembly_add_loads(const struct assembly *input, struct solid_system *system, struct error *error)

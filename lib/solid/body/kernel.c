@@ -4,87 +4,63 @@
 #include "solid/body/kernel_cells.h"
 #include "solid/body/kernel_sparse.h"
 
+/* The call with DIM as a constant, so that it is compiled for each dimension. */
+#define FOR_DIM(dim, call)                                                                                   \
+    do {                                                                                                     \
+        if ((dim) == 2) {                                                                                    \
+            enum { DIM = 2 };                                                                                \
+            call;                                                                                            \
+        } else {                                                                                             \
+            enum { DIM = 3 };                                                                                \
+            call;                                                                                            \
+        }                                                                                                    \
+    } while (0)
+
 ALL_SETS void force_apply(int dim, const struct sparse *matrix, int64_t begin, int64_t end, const double *x,
                           double *y)
 {
-    if (dim == 2) {
-        apply_rows_2(matrix, begin, end, x, y);
-    } else {
-        apply_rows_3(matrix, begin, end, x, y);
-    }
+    dim == 2 ? apply_rows_2(matrix, begin, end, x, y) : apply_rows_3(matrix, begin, end, x, y);
 }
 
 ALL_SETS void force_apply_transposed(int dim, const struct row_operator *rows, int64_t stripe,
                                      const double *x, double *y)
 {
-    if (dim == 2) {
-        apply_transposed_2(rows, &rows->stripes[stripe], x, y);
-    } else {
-        apply_transposed_3(rows, &rows->stripes[stripe], x, y);
-    }
+    dim == 2 ? apply_transposed_2(rows, &rows->stripes[stripe], x, y)
+             : apply_transposed_3(rows, &rows->stripes[stripe], x, y);
 }
 
 ALL_SETS void force_sum_uses(int dim, struct field_averages *averages, int64_t begin, int64_t end)
 {
-    if (dim == 2) {
-        sum_uses_2(averages, begin, end);
-    } else {
-        sum_uses_3(averages, begin, end);
-    }
+    dim == 2 ? sum_uses_2(averages, begin, end) : sum_uses_3(averages, begin, end);
 }
 
 ALL_SETS void force_point_gradients(struct body *body, int64_t b)
 {
-    if (body->dim == 2) {
-        kernel_point_gradients(body, &body->blocks[b], 2);
-        kernel_determinants(body, &body->blocks[b], 2);
-    } else {
-        kernel_point_gradients(body, &body->blocks[b], 3);
-        kernel_determinants(body, &body->blocks[b], 3);
-    }
+    FOR_DIM(body->dim, kernel_point_gradients(body, &body->blocks[b], DIM));
+    FOR_DIM(body->dim, kernel_determinants(body, &body->blocks[b], DIM));
 }
 
 ALL_SETS void force_point_neo_hookean(const struct body *body, int64_t b, block_rows P)
 {
-    if (body->dim == 2) {
-        kernel_neo_hookean(body, &body->blocks[b], 2, P);
-    } else {
-        kernel_neo_hookean(body, &body->blocks[b], 3, P);
-    }
+    FOR_DIM(body->dim, kernel_neo_hookean(body, &body->blocks[b], DIM, P));
 }
 
 ALL_SETS void force_point_forces(struct body *body, int64_t b, const block_rows P)
 {
-    if (body->dim == 2) {
-        kernel_point_forces(body, &body->blocks[b], 2, P);
-    } else {
-        kernel_point_forces(body, &body->blocks[b], 3, P);
-    }
+    FOR_DIM(body->dim, kernel_point_forces(body, &body->blocks[b], DIM, P));
 }
 
 ALL_SETS void force_cell_gradients(struct body *body, int64_t b)
 {
-    if (body->dim == 2) {
-        kernel_cell_gradients(body, &body->blocks[b], 2);
-    } else {
-        kernel_cell_gradients(body, &body->blocks[b], 3);
-    }
+    FOR_DIM(body->dim, kernel_cell_gradients(body, &body->blocks[b], DIM));
 }
 
 ALL_SETS void force_cell_neo_hookean(const struct body *body, int64_t b, block_rows P, block_rows T)
 {
-    if (body->dim == 2) {
-        kernel_cell_neo_hookean(body, &body->blocks[b], 2, P, T);
-    } else {
-        kernel_cell_neo_hookean(body, &body->blocks[b], 3, P, T);
-    }
+    FOR_DIM(body->dim, kernel_cell_neo_hookean(body, &body->blocks[b], DIM, P, T));
 }
 
 ALL_SETS void force_cell_forces(struct body *body, int64_t b, const block_rows P, const block_rows T)
 {
-    if (body->dim == 2) {
-        kernel_cell_forces(body, &body->blocks[b], 2, P, T);
-    } else {
-        kernel_cell_forces(body, &body->blocks[b], 3, P, T);
-    }
+    FOR_DIM(body->dim, kernel_cell_forces(body, &body->blocks[b], DIM, P, T));
 }

@@ -32,19 +32,20 @@
                                               const struct row_stripe *stripe, const double *x,              \
                                               double *restrict y)                                            \
     {                                                                                                        \
-        const struct sparse *whole = rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;           \
-        int64_t cut = 0;                                                                                     \
+        const struct sparse *table = row_operator_columns(rows);                                             \
+        const int32_t *idx = table->idx;                                                                     \
+        const double *of = table->value;                                                                     \
         memset(y + stripe->begin * VECTOR_STRIDE(dim), 0,                                                    \
                (size_t)((stripe->end - stripe->begin) * VECTOR_STRIDE(dim)) * sizeof *y);                    \
         for (int64_t k = 0; k < stripe->row_count; k++) {                                                    \
             bool is_cut = stripe->row[k] < 0;                                                                \
-            const struct sparse *table = is_cut ? &stripe->cut : whole;                                      \
-            int64_t r = is_cut ? -1 - stripe->row[k] : stripe->row[k], at = is_cut ? cut++ : r;              \
-            const int32_t *idx = table->idx;                                                                 \
-            const double *of = table->value;                                                                 \
+            int64_t r = is_cut ? -1 - stripe->row[k] : stripe->row[k];                                       \
             vector value, sum;                                                                               \
             LOAD(value, x + r * VECTOR_STRIDE(dim));                                                         \
-            for (int64_t i = table->ptr[at], last = table->ptr[at + 1]; i < last; i++) {                     \
+            for (int64_t i = table->ptr[r], last = table->ptr[r + 1]; i < last; i++) {                       \
+                if (is_cut && (idx[i] < stripe->begin || idx[i] >= stripe->end)) {                           \
+                    continue;                                                                                \
+                }                                                                                            \
                 double *to = y + (int64_t)idx[i] * VECTOR_STRIDE(dim);                                       \
                 LOAD(sum, to);                                                                               \
                 sum += of[i] * value;                                                                        \

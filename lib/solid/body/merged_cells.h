@@ -1,17 +1,11 @@
-/* Poor cells, merged with a neighbour; private to lib/solid. Let a sliver have the thickness t and edges of
- * length h. The error of the gradient of the linear interpolant of a smooth field is of the order of h^2 / t
- * times the field's second derivative; that of the smoothed gradient is the quadrature error of the face
- * averages over t. Both grow without bound, and with them the stabilisation, the volume ratio and the
- * frequencies. But a smoothing domain may have any shape (Chen et al. 2001). So a cell of poor quality
- * (approx/cells/quality.h) forms one domain with the largest neighbour of its region, as small cut cells are
- * aggregated in unfitted finite elements (Badia, Verdugo and Martin, Comput. Methods Appl. Mech. Eng. 336,
- * 2018, 533). Members of a group have the gradients
+/* Poor cells (approx/cells/quality.h), merged with the largest neighbour of their region, as small cut cells
+ * are aggregated in unfitted finite elements (Badia, Verdugo and Martin, Comput. Methods Appl. Mech. Eng.
+ * 336, 2018, 533); private to lib/solid. Why: lib/README.md. Members of a group have the gradients
  *
  *   F = sum_i w_i F_i / W,   F_h = sum_i w_i F_h,i / W,   W = sum_i w_i,
  * and J follows from these. By the transpose, the stresses on the members' own gradients are w_i / W sum_j
- * P_j, so that the forces still derive from an energy. Linear fields stay exact. Gradients of the interpolant
- * differ by a matrix of rank one across a face; so for two cells det F_h gives the volume between their
- * vertices. */
+ * P_j, so that the forces still derive from an energy. Gradients of the interpolant differ by a matrix of
+ * rank one across a face; so for two cells det F_h gives the volume between their vertices. */
 #pragma once
 
 #include "solid/body/kernel.h"

@@ -1,42 +1,11 @@
-/* Smoothed cells (strain smoothing: Chen et al. 2001; equations (6) to (10) of lib/README.md).
+/* Smoothed cells (strain smoothing: Chen et al. 2001), equations (6) to (10) of lib/README.md.
  *
- * In each cell the field is interpolated by the quadratic polynomial that has its values v_k at the vertices
- * and m_e at the midpoints of the edges. The gradient of this interpolant is linear. With the linear shape
- * functions N_k of the vertices and the offsets
- *
- *   s_e = 4 (m_e - (v_i + v_j) / 2),  e the edge from i to j,
- *
- * it is F_h + R_k at vertex k, F_h = I + sum_k v_k (x) grad N_k the gradient of the linear interpolant and
- * R_k the sum of s_e (x) grad N_j over the edges e from k to other vertices j. Its mean over the cell is
- *
- *   F = F_h + R,  R = sum_k R_k / (dim + 1),
- *
- * in 3D I + sum_e m_e (x) (grad N_i + grad N_j), in 2D a third of F_h and 4/3 of that sum. By the divergence
- * theorem F is the gradient smoothed over the cell: it depends on the means over the faces alone. The mean
- * over a face on the boundary is that of its own row (approx/cells/face_edges.h) in place of the
- * interpolant's, so that gradients agree with integrals over the boundary.
- *
- * F is not the gradient of a continuous piecewise linear map, so that sum V det F is not the volume within
- * the boundary: under pressure the field could buckle within the cells without a change of volume. The volume
- * ratio of a cell is therefore
- *
- *   J = det F_h - cof F_h : (F_h - F).
- *
- * V det F_h is the volume between the vertices, and -V cof F_h : (F_h - F) what lies between them and the
- * cell's faces: the mean offset of each face times the area of the deformed facet, with the opposite sign in
- * the neighbour. So sum V J is the volume within the deformed facets of the boundary and their faces'
- * offsets, whatever the field is inside; and as J and det F differ by the square of F_h - F only, what is
- * exact for linear fields stays so.
- *
- * The mean of the gradient alone misses the energy of what varies within the cell, and resists no pattern
- * that has the mean zero. The variance of the interpolant's gradient has the energy
- *
- *   mu / 2 times the mean over the cell of |grad - F|^2
- *     = mu / 2 sum_k |R_k - R|^2 / ((dim + 1) (dim + 2)),
- *
- * which stabilises (compare Puso, Chen, Zywicz and Elmer 2008). It has no constant: at rest it is the energy
- * of a quadratic field in cells of any shape. It is of second order in the size of the cells, at any strain.
- * What was tried: pipelines/convergence/DEFAULTS.md. */
+ * With the values v_k at the vertices, m_e at the midpoints of edges and s_e = 4 (m_e - (v_i + v_j) / 2), e
+ * from i to j, the gradient of the quadratic interpolant is F_h + R_k at vertex k, R_k the sum of s_e (x)
+ * grad N_j over the edges e from k to other vertices j; its mean F = F_h + R. The mean over a face on the
+ * boundary is that of its own row (approx/cells/face_edges.h) in place of the interpolant's, so that
+ * gradients agree with integrals over the boundary. What is exact for linear fields stays so, as J and det F
+ * differ by the square of F_h - F only. What was tried: pipelines/convergence/DEFAULTS.md. */
 #pragma once
 
 #include "solid/operators/field_averages.h"

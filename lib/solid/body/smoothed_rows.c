@@ -253,7 +253,7 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     RETURN_IF_ERROR(sparse_rows_used(&rows->columns, &used, error));
     RETURN_IF_ERROR(body_share_rows(body, used, error));
     memcpy(averages->given, tables->tables, sizeof averages->given);
-    return STATUS_OK;
+    return field_averages_drop_copied(&rows->matrix, averages, error);
 }
 
 enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,

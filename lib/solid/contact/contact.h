@@ -1,27 +1,15 @@
 /* Frictionless contact of a boundary with a rigid surface, or with another part of the boundary
  * (contact_between.h), finite sliding, by an augmented Lagrangian: equations (19) and (20) of lib/README.md.
  *
- * Contact points are quadrature points of the facets. Point p is at x_p = sum_j Phi_pj (X_j + u_j). It must
- * stay in the set C of positions in front of the surface. The multiplier is a vector, the traction that the
- * surface holds against the point. The energy is the Moreau envelope of this condition (Moreau 1965;
- * Rockafellar and Wets 1998, 11.57). With the penalty k_p and P(y), the position in C that is closest to y,
+ * Contact points are quadrature points of the facets, with multipliers lambda_a at the boundary nodes;
+ * without nodal averages each point has a multiplier of its own, and may itself be a boundary average. With
+ * the penalty k_p and P(y), the position in front of the surface that is closest to y,
  *
- *     held_p = sum_a N_a(p) lambda_a,   y_p = x_p - held_p / k_p,   t_p = k_p (P(y_p) - y_p),
+ *     held_p = sum_a N_a(p) lambda_a,   y_p = x_p - held_p / k_p,   t_p = k_p (P(y_p) - y_p).
  *
- * with multipliers lambda_a at the boundary nodes and the hat functions N_a of the facets, as in mortar
- * methods. The force on the parameters is Phi_pj A_p t_p, minus the gradient of contact_energy. Where the
- * surface is flat about the point, of normal n and gap g_p, that is the usual
- *
- *     t_p = max(0, held_p . n - k_p g_p) n.
- *
- * Where the body lies in a re-entrant corner of the surface, C is convex: P is unique, and t_p is a
- * continuous function of x_p whose direction lies between the normals of the facets there. On a convex edge
- * of the surface the nearest facet alone counts.
- *
- * The traction of a point with held_p . n > 0 is linear in its gap on both sides of g_p = 0. So only points
- * at the border of the contact area open and close. The gap of a node is the mean gap of the points in the
- * support of its hat function, weighted by it. Augmentations make it vanish at nodes in contact. Without
- * nodal averages each point has a multiplier of its own; such points may themselves be boundary averages.
+ * The force on the parameters, Phi_pj A_p t_p, is minus the gradient of contact_energy. The gap of a node is
+ * the mean gap of the points in the support of its hat function, weighted by it. Augmentations make it vanish
+ * at nodes in contact.
  *
  * Contact begins where a point goes through the surface. A point that passes an open rim and is then behind
  * the surface by more than half its own width stays free until it is in front again.
@@ -133,17 +121,8 @@ void contact_measure(struct contact *contact, const double *u, bool all);
 /* Accept the step that was evaluated last: the searches of that evaluation become the state. */
 void contact_accept(struct contact *contact);
 
-/* Augment by the last evaluation: a step up the gradient of the augmented Lagrangian, which is concave in the
- * multipliers. The penalties give the length of step that does not overshoot:
- *
- *     lambda_a <- lambda_a + sum_p N_a A_p (t_p - held_p) / k_p / sum_p N_a A_p / k_p,
- *
- * or 0 where its component along the mean normal would be tension. Where the surface is flat and all points
- * in the support of N_a press, that is lambda_a - k g_a n, g_a being their mean gap. With `steady` the last
- * augmentation was at the same load. The length of the step then follows from the two changes, equation (20b)
- * (Irons and Tuck 1969): shorter where multipliers oscillate, as between two states near an instability;
- * longer where they form a geometric sequence, as where the body is held beside the contact. The augmentation
- * after a longer one has length 1. */
+/* Augment by the last evaluation, equation (20). With `steady` the last augmentation was at the same load:
+ * the length of the step then follows from the two changes, equation (20b) (Irons and Tuck 1969). */
 void contact_augment(struct contact *contact, bool steady);
 
 /* held_p at the points, from the multipliers. */
@@ -153,11 +132,8 @@ void contact_spread_multipliers(struct contact *contact);
  * the largest change of a multiplier in an augmentation, divided by the penalty stiffness. */
 double contact_miss(const struct contact *contact);
 
-/* Work of the contact tractions along the penetration that remains, equation (20c), J (2D: J/m): |sum_a A_a
- * c_a (|lambda_a'|^2 - |lambda_a|^2) / 2| with the multipliers lambda' after the next augmentation and the
- * mean c_a of 1 / k_p. The body is in equilibrium with a surface that lies too far away by this penetration.
- * To first order, this work is the error of its energy. Penetrations and openings within a patch cancel, as
- * they do in the energy. */
+/* Work of the contact tractions along the penetration that remains, equation (20c), J (2D: J/m): to first
+ * order the error of the energy. */
 double contact_missing_work(const struct contact *contact);
 
 /* The contact nodes: those of the nodal averages, or the points if there are none. A contact_node holds the

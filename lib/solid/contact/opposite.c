@@ -142,20 +142,11 @@ static void refit(struct opposite *opposite)
 {
     struct rigid_surface *surface = &opposite->surface;
     int dim = surface->dim;
-    memset(surface->vertex_normal, 0, (size_t)(surface->vertex_count * dim) * sizeof(double));
     for (int64_t f = 0; f < surface->facet_count; f++) {
-        const int32_t *facet = surface->facet + f * dim;
-        double *normal = surface->normal + f * dim;
-        face_area_vector(dim, surface->vertex, facet, normal);
-        vector_normalise(dim, normal);
-        for (int k = 0; k < dim; k++) {
-            add_scaled(dim, rigid_corner_angle(surface, f, k), normal,
-                       surface->vertex_normal + (int64_t)facet[k] * dim);
-        }
+        face_area_vector(dim, surface->vertex, surface->facet + f * dim, surface->normal + f * dim);
+        vector_normalise(dim, surface->normal + f * dim);
     }
-    for (int64_t v = 0; v < surface->vertex_count; v++) {
-        vector_normalise(dim, surface->vertex_normal + v * dim);
-    }
+    rigid_weigh_normals(surface);
     for (int64_t slot = 0; slot < surface->facet_count * 3 && dim == 3; slot++) {
         double *normal = surface->edge_normal + slot * 3;
         int64_t beyond = opposite->across[slot] >= 0 ? opposite->across[slot] : slot;

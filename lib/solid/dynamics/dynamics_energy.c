@@ -1,16 +1,8 @@
 /* The works and energies of explicit dynamics, and their balance. */
+#include "base/vector.h"
 #include "solid/dynamics/dynamics_private.h"
 
 #include <math.h>
-
-static double product(const double *x, const double *y, int64_t size)
-{
-    double sum = 0.0;
-    for (int64_t i = 0; i < size; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
 
 void dynamics_add_work(struct dynamics *d, const double *velocity, double step, const double *factor_from,
                        const double *factor_to)
@@ -19,7 +11,7 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
     const struct constraint_rows *rows = &system->rows;
     double work = 0.0, unresolved = 0.0;
     if (d->loads != NULL) {
-        work += step * product(d->loads, velocity, d->size);
+        work += step * vector_product(d->size, d->loads, velocity);
     }
     for (int64_t r = 0; r < rows->count; r++) {
         double path = rows->target[r] * (factor_to[rows->curve[r]] - factor_from[rows->curve[r]]);

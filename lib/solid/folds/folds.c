@@ -14,8 +14,8 @@
  */
 static const double plane_tolerance = 1e-6;
 
-/* A free facet continues its support, and a facet another one, unless it turns back from it by more than this
- * sine: that of 22.5 degrees. */
+/* A free facet continues its support unless it turns back from it by more than this sine: that of 22.5
+ * degrees. */
 static const double least_turn = 0.382683;
 
 static int compare_rings(const void *left, const void *right)
@@ -50,30 +50,6 @@ static void part_nodes(const struct fold_input *input, int64_t part, int32_t nod
     }
 }
 
-/* Whether two facets turn from each other by less than `least_turn`. */
-static bool continue_each_other(const struct fold_input *input, int64_t f, int64_t g)
-{
-    return fold_facet_cosine(input, input->x, f, g) > sqrt(1.0 - least_turn * least_turn);
-}
-
-/* Find the cells that are alone between two facets that continue each other. */
-static enum status find_flat_cells(struct folds *folds, const int32_t *part, struct error *error)
-{
-    int parts = folds->input.dim == 2 ? 3 : 6;
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->flat_ring, folds->input.cell_count, error));
-    for (int64_t c = 0; c < folds->input.cell_count; c++) {
-        folds->flat_ring[c] = -1;
-    }
-    for (int64_t r = 0; r < folds->ring_count; r++) {
-        const struct fold_ring *ring = &folds->rings[r];
-        if (folds->ring_ptr[r + 1] - folds->ring_ptr[r] == 1 && ring->other >= 0 &&
-            continue_each_other(&folds->input, ring->facet, ring->other)) {
-            folds->flat_ring[part[folds->ring_ptr[r]] / parts] = (int32_t)r;
-        }
-    }
-    return STATUS_OK;
-}
-
 /* The cells around each ring. */
 static enum status list_cells(struct folds *folds, struct error *error)
 {
@@ -93,7 +69,7 @@ static enum status list_cells(struct folds *folds, struct error *error)
         part_nodes(&folds->input, part[i], node);
         memcpy(folds->ring_cell + i * corners, node, (size_t)corners * sizeof *node);
     }
-    return find_flat_cells(folds, part, error);
+    return STATUS_OK;
 }
 
 static bool meet(const struct ridge *side, const struct ridge *next)
@@ -121,8 +97,8 @@ static bool in_one_plane(const struct fold_input *input, int64_t f, int64_t g)
 {
     double a[3], b[3];
     int dim = input->dim;
-    fold_area_vector(dim, input->x, input->facet + f * dim, a);
-    fold_area_vector(dim, input->x, input->facet + g * dim, b);
+    face_area_vector(dim, input->x, input->facet + f * dim, a);
+    face_area_vector(dim, input->x, input->facet + g * dim, b);
     double size = sqrt(vector_dot(dim, a, a) * vector_dot(dim, b, b));
     return vector_dot(dim, a, b) >= (1.0 - plane_tolerance) * size;
 }
@@ -209,11 +185,9 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&stopped, input->node_count, error));
     RETURN_IF_ERROR(folds_find_bodies(folds, error));
     struct fold at_rest = folds_find(folds, u, stopped);
-    if (!interpenetrates(&at_rest)) {
-        at_rest = (struct fold){.cell = -1, .facet = {-1, -1}};
-        if (folds->body_count > 1) {
-            RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
-        }
+    if (!interpenetrates(&at_rest) && folds->body_count > 1) {
+        at_rest = FOLD_NOTHING;
+        RETURN_IF_ERROR(folds_look_for_overlaps(folds, true, &at_rest, error));
     }
     if (interpenetrates(&at_rest)) {
         folds->at_rest = at_rest;
@@ -223,8 +197,8 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 
 void folds_free(struct folds *folds)
 {
-    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->flat_ring, folds->upright,
-             folds->support, folds->is_held, folds->part, folds->node_part, folds->bodies, folds->y,
-             folds->boxes, folds->plane, folds->found);
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->upright, folds->support,
+             folds->is_held, folds->part, folds->node_part, folds->bodies, folds->y, folds->boxes,
+             folds->plane, folds->found);
     *folds = (struct folds){0};
 }

@@ -9,12 +9,10 @@
  * meet at a node (2D) or an edge (3D) have passed through each other if the angles of the cells around it add
  * up to more than a full turn.
  *
- * A flat cell may lie between two facets of the boundary that continue each other. Where the surface becomes
- * concave there, as beside a held part, the cell is inverted but is no fold: the other cells fill the body.
- *
  * The interpolant of a flat cell also turns over where the field only bends: where the boundary bulges, a
- * node just beneath a facet passes through its chord. Such a cell is no fold if the gradient of the field
- * itself keeps its orientation (approx/field/field_turning.h).
+ * node just beneath a facet passes through its chord; where it becomes concave, a node of a flat cell between
+ * facets that continue each other. Such a cell is no fold if the gradient of the field itself keeps its
+ * orientation (approx/field/field_turning.h).
  *
  * A facet that slides on a plane can turn over only if the body passes through the plane.
  *
@@ -40,8 +38,7 @@ enum fold_kind {
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
     FOLD_FLAT, /* cells are inverted that are no folds: by less than that, as slivers are within the error of
-                  the field; flat ones in which the field is not; or between facets where the boundary has
-                  become concave */
+                  the field; or flat ones in which the field is not */
     FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
     FOLD_CLOSED,  /* a side has creased: facets that meet there face each other */
     FOLD_WRAPPED  /* a side of one body presses on both sides of a corner of another */
@@ -84,9 +81,9 @@ struct fold_rim {
     int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
-/* A cell of a connected body (see cells_parts), sorted by the first coordinate of its centre. */
+/* The first cell of a connected body (see cells_parts), and its middle as deformed. */
 struct fold_body {
-    struct placed cell;
+    int64_t cell;
     double middle[3];
 };
 
@@ -109,8 +106,6 @@ struct folds {
     int32_t *ring_cell;    /* by their dim + 1 nodes, in a positive order, those of the ring first */
     struct fold_rim *rims; /* rim_count */
     int64_t rim_count;
-    int32_t *flat_ring; /* cell_count: the ring in which two facets of the cell meet that continue each other
-                           at rest, turning by less than 22.5 degrees; -1: none */
     bool *upright; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
     bool *is_held; /* node_count: of a held facet */
     int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
@@ -122,7 +117,8 @@ struct folds {
     struct fold
         at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at
                     rest. Then the last two kinds are not searched for, nor FOLD_CREASE if it is that */
-    /* Scratch. */
+    /* Of the search. */
+    const bool *stopped;    /* see folds_find */
     double *y;              /* node_count * dim: positions */
     double largest;         /* of their coordinates, m */
     struct fold_box *boxes; /* facet_count, ascending */

@@ -63,14 +63,14 @@ static double reach_behind(const struct folds *folds, int64_t f, int64_t g, doub
     int dim = folds->input.dim;
     double area[3], offset[3], deepest = 0.0;
     const int32_t *node = folds->input.facet + f * dim;
-    fold_area_vector(dim, folds->y, node, area);
+    face_area_vector(dim, folds->y, node, area);
     double size = vector_length(dim, area);
     for (int k = 0; k < dim; k++) {
         vector_subtract(dim, fold_position(folds, folds->input.facet[g * dim + k]),
                         fold_position(folds, node[0]), offset);
         deepest = fmax(deepest, -vector_dot(dim, area, offset) / size);
     }
-    *width = dim == 2 ? size : sqrt(size);
+    *width = dim == 2 ? size : sqrt(2.0 * size);
     return deepest;
 }
 
@@ -145,12 +145,11 @@ void folds_sort_boxes(struct folds *folds)
     qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_placed);
 }
 
-struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
     int64_t count = folds->input.facet_count;
     const struct fold_box *boxes = folds->boxes;
-    (void)stopped;
     for (int64_t i = begin; i < end; i++) {
         int64_t f = boxes[i].facet.item;
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {

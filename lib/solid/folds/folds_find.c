@@ -37,11 +37,10 @@ static struct fold combine(int64_t count, const struct fold *found)
 }
 
 /* Search the cells, rings, boxes or facets [begin, end). */
-typedef struct fold search_range(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+typedef struct fold search_range(const struct folds *folds, int64_t begin, int64_t end);
 
 /* Search [0, count), shared among the threads of all processes. */
-static struct fold search(const struct folds *folds, int64_t count, search_range *of_range,
-                          const bool *stopped)
+static struct fold search(const struct folds *folds, int64_t count, search_range *of_range)
 {
     const struct ranks *ranks = folds->input.ranks;
     int64_t first = count * ranks_rank(ranks) / ranks_count(ranks);
@@ -51,7 +50,7 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         int64_t begin = first + chunks_begin(&chunks, c), end = first + chunks_begin(&chunks, c + 1);
-        found[c] = of_range(folds, begin, end, stopped);
+        found[c] = of_range(folds, begin, end);
     }
     folds->found[ranks_rank(ranks)] = combine(chunks.count, found);
     ranks_gather(ranks, folds->found, sizeof *found, NULL);
@@ -60,12 +59,12 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
 
 /* Whether the cell is pressed flat against an obstacle: all its nodes are held or stopped, and at least one
  * is stopped. */
-static bool is_flattened(const struct folds *folds, const int32_t *node, const bool *stopped)
+static bool is_flattened(const struct folds *folds, const int32_t *node)
 {
     bool all = true, any = false;
     for (int k = 0; k <= folds->input.dim; k++) {
-        all = all && (folds->is_held[node[k]] || stopped[node[k]]);
-        any = any || stopped[node[k]];
+        all = all && (folds->is_held[node[k]] || folds->stopped[node[k]]);
+        any = any || folds->stopped[node[k]];
     }
     return all && any;
 }
@@ -82,7 +81,7 @@ static double cell_size(const struct folds *folds, const int32_t *node)
 static double flatness(int dim, const double *y, const int32_t *node)
 {
     const double *corner[4];
-    double longest2 = 0.0, largest2 = 0.0;
+    double longest2 = 0.0, largest2 = 0.0, whole = dim == 2 ? 1.0 : 2.0; /* see fold_volume */
     for (int k = 0; k <= dim; k++) {
         int32_t side[3] = {0, 0, 0};
         double area[3];
@@ -90,13 +89,14 @@ static double flatness(int dim, const double *y, const int32_t *node)
             side[i] = node[(k + 1 + i) % (dim + 1)];
         }
         corner[k] = y + (int64_t)node[k] * dim;
-        fold_area_vector(dim, y, side, area);
+        face_area_vector(dim, y, side, area);
         largest2 = fmax(largest2, vector_dot(dim, area, area));
         for (int m = k + 1; m <= dim; m++) {
             longest2 = fmax(longest2, vector_distance2(dim, corner[k], y + (int64_t)node[m] * dim));
         }
     }
-    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) / sqrt(longest2 * largest2);
+    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) /
+           (whole * sqrt(longest2 * largest2));
 }
 
 /* Whether a cell that is inverted is turned over: its least height is more than a tenth of its longest edge.
@@ -106,16 +106,8 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node)
     return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
 }
 
-/* Whether a cell is between facets that continue each other at rest and do not face each other now. */
-static bool is_in_hollow(const struct folds *folds, int64_t cell)
-{
-    int32_t r = folds->flat_ring[cell];
-    return r >= 0 && fold_facet_cosine(&folds->input, folds->y, folds->rings[r].facet,
-                                       folds->rings[r].other) >= FOLD_REVERSING;
-}
-
 /* Search for cells that are turned over, or else inverted. */
-static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end)
 {
     const struct fold_input *input = &folds->input;
     struct fold fold = FOLD_NOTHING;
@@ -123,12 +115,10 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     for (int64_t c = begin; c < end; c++) {
         const int32_t *node = input->cell + c * corners;
         double volume = cell_size(folds, node);
-        if (volume > 0.0 || is_flattened(folds, node, stopped)) {
+        if (volume > 0.0 || is_flattened(folds, node)) {
             continue;
         }
-        enum fold_kind kind = is_turned_over(folds, node) && !is_in_hollow(folds, c) && !folds->upright[c]
-                                  ? FOLD_CELL
-                                  : FOLD_FLAT;
+        enum fold_kind kind = is_turned_over(folds, node) && !folds->upright[c] ? FOLD_CELL : FOLD_FLAT;
         if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
             fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
             vector_middle(dim, input->x, corners, node, fold.place);
@@ -171,11 +161,10 @@ static double most_angle(const struct folds *folds, const struct fold_ring *ring
     return full_turn * (1.0 + 1e-6) + (closed ? FOLD_BEYOND_FACET : 0.0);
 }
 
-static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
     int corners = folds->input.dim + 1;
-    (void)stopped;
     for (int64_t r = begin; r < end; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
@@ -190,19 +179,18 @@ static struct fold search_rings(const struct folds *folds, int64_t begin, int64_
 }
 
 /* Search for sliding facets that are turned over. */
-static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped)
+static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end)
 {
     const struct fold_input *input = &folds->input;
     struct fold fold = FOLD_NOTHING;
     int dim = input->dim;
-    (void)stopped;
     for (int64_t f = begin; f < end; f++) {
         double now[3], rest[3];
         if (!input->slides[f]) {
             continue;
         }
-        fold_area_vector(dim, folds->y, input->facet + f * dim, now);
-        fold_area_vector(dim, input->x, input->facet + f * dim, rest);
+        face_area_vector(dim, folds->y, input->facet + f * dim, now);
+        face_area_vector(dim, input->x, input->facet + f * dim, rest);
         if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
             fold_name_facets(&folds->input, f, -1, &fold);
         }
@@ -220,7 +208,7 @@ void folds_fill_planes(struct folds *folds, const double *y)
         if (folds->support[f] < 0) {
             continue;
         }
-        fold_area_vector(dim, y, folds->input.facet + f * dim, area);
+        face_area_vector(dim, y, folds->input.facet + f * dim, area);
         for (int i = 0; i < dim; i++) {
             plane[i] += area[i];
             for (int k = 0; k < dim; k++) {
@@ -270,23 +258,24 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell)
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped)
 {
     folds_take_positions(folds, u);
+    folds->stopped = stopped;
     if (folds->input.slides != NULL) {
-        struct fold sliding = search(folds, folds->input.facet_count, search_sliding, stopped);
+        struct fold sliding = search(folds, folds->input.facet_count, search_sliding);
         if (sliding.kind != FOLD_NONE) {
             return sliding;
         }
     }
-    struct fold cells = search(folds, folds->input.cell_count, search_cells, stopped);
+    struct fold cells = search(folds, folds->input.cell_count, search_cells);
     if (cells.kind == FOLD_CELL) {
         return cells;
     }
     struct fold fold = FOLD_NOTHING;
     if (folds->at_rest.kind != FOLD_CREASE) {
-        fold = search(folds, folds->ring_count, search_rings, stopped);
+        fold = search(folds, folds->ring_count, search_rings);
     }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
         folds_sort_boxes(folds);
-        fold = search(folds, folds->input.facet_count, folds_search_boxes, stopped);
+        fold = search(folds, folds->input.facet_count, folds_search_boxes);
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }

@@ -1,6 +1,7 @@
 /* Geometry of cells and facets for the search for folds; private to lib/solid. */
 #pragma once
 
+#include "approx/cells/cells.h"
 #include "base/vector.h"
 #include "solid/folds/folds.h"
 
@@ -28,34 +29,19 @@ static inline double fold_cosine(int dim, const double *one, const double *other
     return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
 }
 
-/* Outward normal times length or twice the area of a facet. */
-static inline void fold_area_vector(int dim, const double *y, const int32_t *facet, double area[3])
-{
-    double a[3], b[3];
-    const double *origin = y + (int64_t)facet[0] * dim;
-    vector_subtract(dim, y + (int64_t)facet[1] * dim, origin, a);
-    if (dim == 2) {
-        area[0] = a[1];
-        area[1] = -a[0];
-        return;
-    }
-    vector_subtract(dim, y + (int64_t)facet[2] * dim, origin, b);
-    vector_cross(a, b, area);
-}
-
 /* The cosine of the angle between the normals of two facets, at positions y. */
 static inline double fold_facet_cosine(const struct fold_input *input, const double *y, int64_t f, int64_t g)
 {
     double one[3], other[3];
-    fold_area_vector(input->dim, y, input->facet + f * input->dim, one);
-    fold_area_vector(input->dim, y, input->facet + g * input->dim, other);
+    face_area_vector(input->dim, y, input->facet + f * input->dim, one);
+    face_area_vector(input->dim, y, input->facet + g * input->dim, other);
     return fold_cosine(input->dim, one, other);
 }
 
 /* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
 static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
 {
-    double u[3], v[3], w[3];
+    double u[3] = {0.0}, v[3] = {0.0}, w[3] = {0.0};
     vector_subtract(dim, b, a, u);
     vector_subtract(dim, c, a, v);
     if (dim == 2) {
@@ -73,8 +59,8 @@ MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *erro
 /* Fill folds->boxes, ascending along the first axis. */
 void folds_sort_boxes(struct folds *folds);
 
-/* Search the boxes [begin, end) and those behind them for facets that cross; `stopped` is not used. */
-struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end, const bool *stopped);
+/* Search the boxes [begin, end) and those behind them for facets that cross. */
+struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end);
 
 /* ---- folds_within.c ---- */
 

@@ -33,7 +33,7 @@ static bool is_corner(const struct fold_input *input, const struct fold_ring *ri
     if (ring->other < 0 || !(fold_facet_cosine(input, input->x, ring->facet, ring->other) < alike)) {
         return false;
     }
-    fold_area_vector(dim, input->x, input->facet + ring->facet * dim, normal);
+    face_area_vector(dim, input->x, input->facet + ring->facet * dim, normal);
     vector_middle(dim, input->x, dim, input->facet + ring->other * dim, middle);
     vector_subtract(dim, middle, input->x + (int64_t)ring->node[0] * dim, to_other);
     return vector_dot(dim, normal, to_other) < 0.0;

@@ -6,8 +6,6 @@
 #include "approx/cells/quality.h"
 #include "base/memory.h"
 
-#include <stdlib.h>
-
 /* Least barycentric coordinates below which a point is on a face of a cell, or not deep in the cell. */
 static const double on_face = 1e-6, not_deep = 0.05;
 /* Lengths below this share of the body are round-off. */
@@ -24,7 +22,7 @@ enum status folds_find_bodies(struct folds *folds, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&folds->bodies, count, error));
     folds->body_count = count;
     for (int64_t c = input->cell_count; c-- > 0;) {
-        folds->bodies[folds->part[c]].cell.item = c;
+        folds->bodies[folds->part[c]].cell = c;
         for (int k = 0; k <= input->dim; k++) {
             folds->node_part[input->cell[c * (input->dim + 1) + k]] = folds->part[c];
         }
@@ -36,6 +34,14 @@ static void find_middle(const struct folds *folds, const double *x, int64_t cell
 {
     int dim = folds->input.dim, corners = dim + 1;
     vector_middle(dim, x, corners, folds->input.cell + cell * corners, middle);
+}
+
+/* Name the first cell that is within another one. */
+static void name_cell(const struct folds *folds, int64_t cell, struct fold *fold)
+{
+    fold->kind = FOLD_WITHIN;
+    fold->cell = cell;
+    find_middle(folds, folds->input.x, cell, fold->place);
 }
 
 /* Whether a cell contains a point, barycentric coordinates being larger than `least`. */
@@ -68,37 +74,19 @@ static struct box box_around(const struct folds *folds, int64_t cell)
 
 void folds_find_within(struct folds *folds, struct fold *fold)
 {
-    int64_t count = folds->body_count;
-    if (count < 2) {
+    if (folds->body_count < 2) {
         return;
     }
-    for (int64_t b = 0; b < count; b++) {
-        struct fold_body *body = &folds->bodies[b];
-        find_middle(folds, folds->y, body->cell.item, body->middle);
-        body->cell.place = body->middle[0];
+    for (int64_t b = 0; b < folds->body_count; b++) {
+        find_middle(folds, folds->y, folds->bodies[b].cell, folds->bodies[b].middle);
     }
-    qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_placed);
     for (int64_t c = 0; c < folds->input.cell_count; c++) {
         struct box box = box_around(folds, c);
-        int64_t first = 0;
-        for (int64_t last = count; first < last;) { /* the first body from the low end of the box on */
-            int64_t middle = first + (last - first) / 2;
-            if (folds->bodies[middle].cell.place < box.low[0]) {
-                first = middle + 1;
-            } else {
-                last = middle;
-            }
-        }
-        for (int64_t b = first; b < count && folds->bodies[b].cell.place <= box.high[0]; b++) {
+        for (int64_t b = 0; b < folds->body_count; b++) {
             const struct fold_body *body = &folds->bodies[b];
-            if (folds->part[c] == folds->part[body->cell.item] ||
-                !contains(folds, c, body->middle, on_face)) {
-                continue;
-            }
-            if (fold->count++ == 0) {
-                fold->kind = FOLD_WITHIN;
-                fold->cell = body->cell.item;
-                find_middle(folds, folds->input.x, fold->cell, fold->place);
+            if (body->middle[0] >= box.low[0] && body->middle[0] <= box.high[0] && folds->part[c] != b &&
+                contains(folds, c, body->middle, on_face) && fold->count++ == 0) {
+                name_cell(folds, body->cell, fold);
             }
         }
     }
@@ -152,9 +140,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
             if (apart && contains(folds, c, middle + (int64_t)other * dim, not_deep) &&
                 !is_left_out(folds, c) && !is_left_out(folds, other) && fold->count++ == 0) {
-                fold->kind = FOLD_WITHIN;
-                fold->cell = other;
-                find_middle(folds, folds->input.x, other, fold->place);
+                name_cell(folds, other, fold);
             }
         }
     }
@@ -163,7 +149,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
 
 enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold, struct error *error)
 {
-    *fold = (struct fold){.cell = -1, .facet = {-1, -1}};
+    *fold = FOLD_NOTHING;
     folds_take_positions(folds, u);
     return folds->at_rest.kind == FOLD_NONE ? folds_look_for_overlaps(folds, false, fold, error) : STATUS_OK;
 }

@@ -4,17 +4,11 @@
 
 #include <stdlib.h>
 
-/* The table that is transposed. */
-static const struct sparse *transposed_table(const struct row_operator *rows)
-{
-    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
-}
-
 /* Divide the columns into stripes with about the same number of entries. */
 static enum status cut_columns(struct row_operator *rows, const int32_t *count, int64_t begin, int64_t end,
                                int threads, struct error *error)
 {
-    int64_t entries = transposed_table(rows)->ptr[transposed_table(rows)->row_count], sum = 0;
+    int64_t entries = row_operator_columns(rows)->ptr[row_operator_columns(rows)->row_count], sum = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&rows->stripes, threads, error));
     rows->stripe_count = threads;
     for (int s = 0; s < threads; s++) {
@@ -28,67 +22,40 @@ static enum status cut_columns(struct row_operator *rows, const int32_t *count, 
     return STATUS_OK;
 }
 
-/* Add row r, whose columns lie between `low` and `high`, to a stripe. Before the arrays of the stripe are
- * allocated, only count its rows and entries. */
-static void list_row(const struct sparse *table, int64_t r, int32_t low, int32_t high,
-                     struct row_stripe *stripe)
+/* Whether row r has an entry in the columns of a stripe. */
+static bool has_entry(const struct sparse *table, int64_t r, const struct row_stripe *stripe)
 {
-    struct sparse *cut = &stripe->cut;
-    bool whole = low >= stripe->begin && high < stripe->end;
-    int64_t found = 0, entries = cut->ptr != NULL ? cut->ptr[cut->row_count] : 0;
-    for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && !whole; i++) {
-        int32_t column = table->idx[i];
-        if (column < stripe->begin || column >= stripe->end) {
-            continue;
-        }
-        if (cut->ptr != NULL) {
-            cut->idx[entries + found] = table->idx[i];
-            cut->value[entries + found] = table->value[i];
-        }
-        found++;
+    bool has = false;
+    for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && !has; i++) {
+        has = table->idx[i] >= stripe->begin && table->idx[i] < stripe->end;
     }
-    if (!whole && found == 0) {
-        return;
-    }
-    if (stripe->row != NULL) {
-        stripe->row[stripe->row_count] = (int32_t)(whole ? r : -1 - r);
-    }
-    stripe->row_count++;
-    if (!whole) {
-        cut->row_count++;
-        cut->column_count += found; /* while counting: entries */
-        if (cut->ptr != NULL) {
-            cut->ptr[cut->row_count] = entries + found;
-        }
-    }
+    return has;
 }
 
-static void list_rows(const struct sparse *table, const int32_t *range, struct row_stripe *stripe)
+/* List the rows of a stripe; range: as in row_operator.h. */
+static enum status list_rows(const struct sparse *table, const int32_t *range, struct row_stripe *stripe,
+                             struct error *error)
 {
+    int64_t room = 0;
     for (int64_t r = 0; r < table->row_count; r++) {
-        if (range[2 * r] < stripe->end && range[2 * r + 1] >= stripe->begin) {
-            list_row(table, r, range[2 * r], range[2 * r + 1], stripe);
+        room += range[2 * r] < stripe->end && range[2 * r + 1] >= stripe->begin;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&stripe->row, room, error));
+    for (int64_t r = 0; r < table->row_count; r++) {
+        if (range[2 * r] >= stripe->begin && range[2 * r + 1] < stripe->end && range[2 * r + 1] >= 0) {
+            stripe->row[stripe->row_count++] = (int32_t)r;
+        } else if (range[2 * r] < stripe->end && range[2 * r + 1] >= stripe->begin &&
+                   has_entry(table, r, stripe)) {
+            stripe->row[stripe->row_count++] = (int32_t)(-1 - r);
         }
     }
-}
-
-static enum status make_stripe(const struct sparse *table, const int32_t *range, struct row_stripe *stripe,
-                               struct error *error)
-{
-    list_rows(table, range, stripe);
-    RETURN_IF_ERROR(sparse_new(stripe->cut.row_count, table->column_count, stripe->cut.column_count,
-                               &stripe->cut, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&stripe->row, stripe->row_count, error));
-    stripe->row_count = stripe->cut.row_count = 0;
-    list_rows(table, range, stripe);
-    stripe->cut.column_count = table->column_count;
     return STATUS_OK;
 }
 
 enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                 struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     SCRATCH int32_t *count = NULL, *range = NULL;
     if (table->column_count > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
@@ -100,7 +67,7 @@ enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_
     RETURN_IF_ERROR(cut_columns(rows, count, begin, end, threads, error));
     RETURN_IF_ERROR(row_operator_ranges(rows, &range, error));
     for (int s = 0; s < threads; s++) {
-        RETURN_IF_ERROR(make_stripe(table, range, &rows->stripes[s], error));
+        RETURN_IF_ERROR(list_rows(table, range, &rows->stripes[s], error));
     }
     return STATUS_OK;
 }
@@ -109,7 +76,6 @@ void row_operator_free(struct row_operator *rows)
 {
     for (int s = 0; s < rows->stripe_count; s++) {
         free(rows->stripes[s].row);
-        sparse_free(&rows->stripes[s].cut);
     }
     free(rows->stripes);
     sparse_free(&rows->matrix);
@@ -119,7 +85,7 @@ void row_operator_free(struct row_operator *rows)
 
 enum status row_operator_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     enum status status = NEW_ARRAY(range, 2 * table->row_count, error);
     for (int64_t r = 0; r < table->row_count && status == STATUS_OK; r++) {
         int32_t low = INT32_MAX, high = -1;
@@ -159,7 +125,7 @@ enum status row_operator_transpose(const struct row_operator *rows, const int32_
                                    const int32_t *column, int64_t count, int32_t *slot,
                                    struct sparse *transposed, struct error *error)
 {
-    const struct sparse *table = transposed_table(rows);
+    const struct sparse *table = row_operator_columns(rows);
     SCRATCH int64_t *next = NULL;
     int64_t sum = 0;
     *transposed = (struct sparse){0};

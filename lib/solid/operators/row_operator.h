@@ -9,9 +9,8 @@
 struct row_stripe {
     int64_t begin, end;
     int64_t row_count;
-    int32_t *
-        row; /* rows with entries in these columns, ascending: r if all entries of the row are, else -1 - r */
-    struct sparse cut; /* for each row of the second kind, in order: its entries in these columns */
+    int32_t *row; /* rows with entries in these columns, ascending: r if all entries of the row are, else
+                     -1 - r */
 };
 
 struct row_operator {
@@ -21,6 +20,12 @@ struct row_operator {
     int stripe_count;
     struct row_stripe *stripes;
 };
+
+/* The table that is transposed: all rows, with the columns of own nodes. */
+static inline const struct sparse *row_operator_columns(const struct row_operator *rows)
+{
+    return rows->columns.row_count > 0 ? &rows->columns : &rows->matrix;
+}
 
 /* Divide the columns from `begin` to before `end` into one stripe for each of `threads` threads. STATUS_INPUT
  * for 2^31 columns or more. */

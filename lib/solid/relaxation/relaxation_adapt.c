@@ -63,26 +63,21 @@ void relaxation_control_load(struct relaxation *r)
     r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
 }
 
-/* The share of the critical step that is used. */
-static double step_share(const struct relaxation *r)
-{
-    return r->step_safety * r->options->time_step_margin;
-}
-
-void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations)
+/* Set the time step by the largest frequency at u. */
+static void update_time_step(struct relaxation *r, const double *u, int iterations)
 {
     double frequency = system_largest_frequency(r->system, &r->preconditioner, u, r->residual, iterations,
                                                 r->mode, r->scratch);
     r->report->force_evaluations += iterations;
     /* The power iteration estimates from below and fluctuates: follow a rise at once, a fall slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
-    r->time_step = step_share(r) * 2.0 / r->frequency;
+    r->time_step = r->step_safety * r->options->time_step_margin * 2.0 / r->frequency;
 }
 
 void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations)
 {
     double before = r->frequency;
-    relaxation_update_time_step(r, u, iterations);
+    update_time_step(r, u, iterations);
     if (r->held_steps == 0) {
         r->time_step *= fmin(1.0, before / r->frequency);
     }
@@ -147,7 +142,7 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
         return r->failure;
     }
     r->frequency = sqrt(fmax(spectrum.largest, 0.0));
-    relaxation_update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
+    update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
     relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_share * spectrum.lowest
                                                      : first_share_of_largest * spectrum.largest);
     r->measured_frequency = r->frequency;
@@ -265,7 +260,7 @@ void relaxation_calm(struct relaxation *r, const double *acceleration)
     r->residual_at = r->u;
     (void)system_residual(r->system, r->residual_at, r->residual);
     r->report->force_evaluations++;
-    relaxation_update_time_step(r, r->residual_at, calm_iterations);
+    update_time_step(r, r->residual_at, calm_iterations);
 }
 
 static double penetration_allowed(const struct relaxation *r)

@@ -130,11 +130,8 @@ bool relaxation_add_slow_mode(struct relaxation *r, const double *du, struct err
  * it: forces may. */
 void relaxation_control_load(struct relaxation *r);
 
-/* Set the time step by the largest frequency at u, from this many power iterations. */
-void relaxation_update_time_step(struct relaxation *r, const double *u, int iterations);
-
-/* The same at a check. While the load grows, the frequency is assumed to rise until the next check as much as
- * since the last one. */
+/* Set the time step by the largest frequency at u, from this many power iterations, at a check. While the
+ * load grows, the frequency is assumed to rise until the next check as much as since the last one. */
 void relaxation_follow_time_step(struct relaxation *r, const double *u, int iterations);
 
 /* Set the mass anew if the body has stiffened or softened enough since it was last set, so that the critical

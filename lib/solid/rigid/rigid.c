@@ -1,6 +1,7 @@
 /* Building rigid surfaces: vertices and normals; see rigid.h. */
 #include "solid/rigid/rigid.h"
 
+#include "approx/cells/cells.h"
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -13,7 +14,7 @@
 /* Corners closer than this, relative to the extent, are one vertex. */
 static const double merge_tolerance = 1e-9;
 
-/* Triangles whose area is less than this part of their longest edge squared have no normal. */
+/* Triangles whose area is less than half this part of their longest edge squared have no normal. */
 static const double least_slenderness = 1e-12;
 
 static enum status check_corners(const struct rigid_surface *surface, const double *corners,
@@ -80,35 +81,19 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
     return STATUS_OK;
 }
 
-/* Normal, not unit, of facet f; *size2 is the square of its longest edge. */
-static void facet_normal(const struct rigid_surface *surface, int64_t f, double *normal, double *size2)
-{
-    int dim = surface->dim;
-    const int32_t *corner = surface->facet + f * dim;
-    const double *x0 = surface->vertex + (int64_t)corner[0] * dim;
-    const double *x1 = surface->vertex + (int64_t)corner[1] * dim;
-    *size2 = vector_distance2(dim, x0, x1);
-    if (dim == 2) {
-        normal[0] = x1[1] - x0[1];
-        normal[1] = x0[0] - x1[0];
-    } else {
-        const double *x2 = surface->vertex + (int64_t)corner[2] * dim;
-        *size2 = fmax(*size2, fmax(vector_distance2(3, x0, x2), vector_distance2(3, x1, x2)));
-        double first[3], second[3];
-        vector_subtract(3, x1, x0, first);
-        vector_subtract(3, x2, x0, second);
-        vector_cross(first, second, normal);
-    }
-}
-
 static enum status make_normals(struct rigid_surface *surface, bool flip, struct error *error)
 {
     int dim = surface->dim;
     RETURN_IF_ERROR(NEW_ARRAY(&surface->normal, surface->facet_count * dim, error));
     for (int64_t f = 0; f < surface->facet_count; f++) {
-        double *normal = surface->normal + f * dim, size2;
-        facet_normal(surface, f, normal, &size2);
-        double least = dim == 2 ? 0.0 : least_slenderness * size2;
+        const int32_t *corner = surface->facet + f * dim;
+        double *normal = surface->normal + f * dim, size2 = 0.0; /* of the longest edge */
+        face_area_vector(dim, surface->vertex, corner, normal);
+        for (int k = 0; k < dim; k++) {
+            size2 = fmax(size2, vector_distance2(dim, surface->vertex + (int64_t)corner[k] * dim,
+                                                 surface->vertex + (int64_t)corner[(k + 1) % dim] * dim));
+        }
+        double least = dim == 2 ? 0.0 : 0.5 * least_slenderness * size2;
         if (!(vector_length(dim, normal) > least)) {
             return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
                         (long long)(f + 1));

@@ -25,8 +25,8 @@ static inline int64_t rigid_edge_slot(const struct ridge *ridge)
     return (int64_t)ridge->facet * 3 + (ridge->corner + 1) % 3;
 }
 
-/* The angle of facet f at its corner k; in 2D all weigh alike. */
-double rigid_corner_angle(const struct rigid_surface *surface, int64_t f, int k);
+/* Set vertex_normal from the normals of the facets. */
+void rigid_weigh_normals(struct rigid_surface *surface);
 
 /* Set branch, branch_count and in_order. */
 MUST_CHECK enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error);

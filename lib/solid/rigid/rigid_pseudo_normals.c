@@ -69,7 +69,8 @@ static enum status join_ridges(struct rigid_surface *surface, struct error *erro
     return STATUS_OK;
 }
 
-double rigid_corner_angle(const struct rigid_surface *surface, int64_t f, int k)
+/* The angle of facet f at its corner k; in 2D all weigh alike. */
+static double corner_angle(const struct rigid_surface *surface, int64_t f, int k)
 {
     if (surface->dim == 2) {
         return 1.0;
@@ -83,6 +84,19 @@ double rigid_corner_angle(const struct rigid_surface *surface, int64_t f, int k)
     return atan2(vector_length(3, cross), vector_dot(3, one, other));
 }
 
+void rigid_weigh_normals(struct rigid_surface *surface)
+{
+    int dim = surface->dim;
+    memset(surface->vertex_normal, 0, (size_t)(surface->vertex_count * dim) * sizeof(double));
+    for (int64_t c = 0; c < surface->facet_count * dim; c++) {
+        add_scaled(dim, corner_angle(surface, c / dim, (int)(c % dim)), surface->normal + c / dim * dim,
+                   surface->vertex_normal + (int64_t)surface->facet[c] * dim);
+    }
+    for (int64_t v = 0; v < surface->vertex_count; v++) {
+        vector_normalise(dim, surface->vertex_normal + v * dim);
+    }
+}
+
 enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct error *error)
 {
     int dim = surface->dim;
@@ -90,13 +104,7 @@ enum status rigid_make_pseudo_normals(struct rigid_surface *surface, struct erro
     RETURN_IF_ERROR(NEW_ARRAY(&surface->is_rim, surface->vertex_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->turn, surface->vertex_count, error));
     RETURN_IF_ERROR(join_ridges(surface, error));
-    for (int64_t c = 0; c < surface->facet_count * dim; c++) {
-        add_scaled(dim, rigid_corner_angle(surface, c / dim, (int)(c % dim)), surface->normal + c / dim * dim,
-                   surface->vertex_normal + (int64_t)surface->facet[c] * dim);
-    }
-    for (int64_t v = 0; v < surface->vertex_count; v++) {
-        vector_normalise(dim, surface->vertex_normal + v * dim);
-    }
+    rigid_weigh_normals(surface);
     for (int64_t c = 0; c < surface->facet_count * dim; c++) {
         int64_t vertex = surface->facet[c];
         const double *mean = surface->vertex_normal + vertex * dim;
