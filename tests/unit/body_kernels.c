@@ -93,6 +93,32 @@ TEST_IN_EACH_DIM(nodal_volumes)
     assert_true(volumes->count > sample.cloud.node_count); /* some nodes lie between materials */
 }
 
+static double factorial(int n)
+{
+    return n > 1 ? n * factorial(n - 1) : 1.0;
+}
+
+/* The pressure projection is the compliance of a bubble in a regular cell, here with gradients of N of length
+ * one. The mean over a simplex of a product of powers a_k of the N_k is d! prod a_k! / (d + sum a_k)!. */
+TEST_IN_EACH_DIM(pressure_projection)
+{
+    struct material material = {.shear_modulus = 3.0};
+    double bubble = factorial(dim) / factorial(2 * dim + 1), stiffness = 0.0, gradient = 0.0, mean = 0.0,
+           square = 0.0, pressure[] = {0.3, -1.1, 2.0, 0.7};
+    for (int i = 0; i <= dim; i++) {
+        mean += pressure[i] / (dim + 1);
+        square += pressure[i] * pressure[i] / (dim + 1);
+        for (int j = 0; j <= dim; j++) {
+            double product = i == j ? 1.0 : -1.0 / dim;
+            gradient += product * pressure[i] * pressure[j];
+            stiffness += product * factorial(dim) * pow(2.0, i == j ? dim : dim - 1) / factorial(3 * dim);
+        }
+    }
+    stiffness *= material.shear_modulus * (1.0 + 1.0 / dim);
+    NEAR_TO(nodal_pressure_compliance(&material, dim) * (square - mean * mean),
+            bubble * bubble * gradient / stiffness, 1e-14);
+}
+
 /* at_edge[nodes]: nodes on two sides of the first axis' lower side. */
 static bool *edge_nodes(const struct sample *sample)
 {

@@ -307,12 +307,6 @@ enum status body_share_nodes(struct body *body, struct error *error)
     return row_ranges_of(0, body->node_count, wanted, &body->share.placed, error);
 }
 
-bool body_share_has_node(const struct body *body, int64_t node)
-{
-    int64_t place = body->node_place[node];
-    return place >= body->share.begin_node && place < body->share.end_node;
-}
-
 void body_share_free(struct body_share *share)
 {
     FREE_ALL(share->block_first, share->point_first, share->node_first, share->volume_first);

@@ -54,9 +54,6 @@ MUST_CHECK enum status body_share_rows(struct body *body, const bool *wanted, st
 /* The nodes whose displacements own rows need, once row_operator_finish has been called. */
 MUST_CHECK enum status body_share_nodes(struct body *body, struct error *error);
 
-/* Is this node, the caller's number, of this process? */
-bool body_share_has_node(const struct body *body, int64_t node);
-
 void body_share_free(struct body_share *share);
 
 /* ranks_gather and halo exchanges inside a parallel region, to be called by all its threads. */

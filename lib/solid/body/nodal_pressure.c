@@ -53,13 +53,13 @@ static void add_points(const struct body *body, int64_t a, struct nodal_pressure
     for (int64_t i = volumes->ptr[a]; i < volumes->ptr[a + 1]; i++) {
         int64_t slot = volumes->slot[i], q = slot / vertices;
         const struct material *material = &body->materials[body->material[q]];
-        double rest = nodal_pressure_modulus(material), compliance = nodal_pressure_compliance(material);
+        double rest = nodal_pressure_modulus(material),
+               compliance = nodal_pressure_compliance(material, body->dim);
         if (!(rest > 0.0)) {
             continue;
         }
         double share = volumes->share[slot];
         double limited = fmin(rest, pressures->most * material->shear_modulus);
-        compliance /= body->dim + 2;
         pressures->weight[a] += share * (1.0 / limited - 1.0 / rest);
         pressures->matrix.value[pressures->entry[a]] += share * (1.0 / limited + compliance);
         *bound += share * (1.0 / limited + compliance);
@@ -145,7 +145,7 @@ void body_limit_bulk(struct body *body, double most)
     for (int64_t m = 0; m < body->material_count; m++) {
         const struct material *material = &body->materials[m];
         double rest = nodal_pressure_modulus(material), limited = fmin(rest, most * material->shear_modulus);
-        largest = fmax(largest, limited * nodal_pressure_compliance(material) / (body->dim + 2));
+        largest = fmax(largest, limited * nodal_pressure_compliance(material, body->dim));
         bulk = fmax(bulk, rest / material->shear_modulus);
         limited_bulk = fmax(limited_bulk, limited / material->shear_modulus);
         least_share = rest > 0.0 ? fmin(least_share, limited / rest) : least_share;

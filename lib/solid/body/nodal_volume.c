@@ -8,8 +8,8 @@
 
 /* s by the shear modulus. */
 static const double points_part = 2.0;
-/* epsilon */
-static const double stabilisation = 0.125;
+/* epsilon in 2D and 3D: the compliance of bubbles in regular cells. */
+static const double stabilisation[] = {1.0 / 5.0, 3.0 / 28.0};
 
 /* Number the nodal volumes, one for each pair of background node and group of materials, and list their
  * slots, point * (dim + 1) + vertex. keys[slots]: the pair of each slot as one number. */
@@ -118,9 +118,9 @@ double nodal_pressure_modulus(const struct material *material)
     return material_bulk(material) - nodal_volume_modulus(material);
 }
 
-double nodal_pressure_compliance(const struct material *material)
+double nodal_pressure_compliance(const struct material *material, int dim)
 {
-    return stabilisation / material->shear_modulus;
+    return stabilisation[dim - 2] / ((dim + 2) * material->shear_modulus);
 }
 
 /* b */

@@ -1,8 +1,16 @@
 /* Volume changes and pressures of nodal volumes, equations (13) to (16) of lib/README.md (average nodal
  * pressure: Bonet and Burton 1998; pressure projection: Dohrmann and Bochev 2004); private to lib/solid.
  *
- * A body with kappa <= s does not lock and has no nodal pressures. A change of volume of wave number k on
- * nodes at distance h has about the stiffness
+ * A body with kappa <= s does not lock and has no nodal pressures.
+ *
+ * epsilon makes the projection the compliance of a bubble in each cell, as in the MINI element (Arnold, Brezzi
+ * and Fortin 1984). The field a beta, with beta the product of all N_k and a free vector a, does not change
+ * the volume of the cell. The pressure does the work -w mean(beta) a . grad pi on it. In a regular cell its
+ * elastic energy mu |sym grad|^2 is w mu / 2 (1 + 1 / d) mean |grad beta|^2 |a|^2. The energy of both is
+ * stationary at -w / (2 mu) |grad pi|^2 mean(beta)^2 / ((1 + 1 / d) mean |grad beta|^2), which is minus the
+ * second term of (14) in pi . A pi / 2 with epsilon = 1/5 in 2D and 3/28 in 3D.
+ *
+ * A change of volume of wave number k on nodes at distance h has about the stiffness
  *
  *   k^2 / (1 / kappa + epsilon k^2 h^2 / (20 mu))  <  20 / epsilon  mu / h^2:
  * so a critical step by mu and h is stable for any kappa.
@@ -45,6 +53,6 @@ void nodal_pressures_free(struct nodal_pressures *pressures);
  * points. */
 void nodal_pressures_solve(struct body *body);
 
-/* The part k of the bulk modulus, Pa, and epsilon / mu, 1/Pa. */
+/* The part k of the bulk modulus, Pa, and epsilon / ((d + 2) mu), 1/Pa. */
 double nodal_pressure_modulus(const struct material *material);
-double nodal_pressure_compliance(const struct material *material);
+double nodal_pressure_compliance(const struct material *material, int dim);
