@@ -81,9 +81,9 @@ struct fold_rim {
     int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
 };
 
-/* The first cell of a connected body (see cells_parts), and its middle as deformed. */
+/* A cell of a connected body (see cells_parts), sorted by the first coordinate of its middle as deformed. */
 struct fold_body {
-    int64_t cell;
+    struct placed cell;
     double middle[3];
 };
 

@@ -6,6 +6,8 @@
 #include "approx/cells/quality.h"
 #include "base/memory.h"
 
+#include <stdlib.h>
+
 /* Least barycentric coordinates below which a point is on a face of a cell, or not deep in the cell. */
 static const double on_face = 1e-6, not_deep = 0.05;
 /* Lengths below this share of the body are round-off. */
@@ -22,7 +24,7 @@ enum status folds_find_bodies(struct folds *folds, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&folds->bodies, count, error));
     folds->body_count = count;
     for (int64_t c = input->cell_count; c-- > 0;) {
-        folds->bodies[folds->part[c]].cell = c;
+        folds->bodies[folds->part[c]].cell.item = c;
         for (int k = 0; k <= input->dim; k++) {
             folds->node_part[input->cell[c * (input->dim + 1) + k]] = folds->part[c];
         }
@@ -72,21 +74,41 @@ static struct box box_around(const struct folds *folds, int64_t cell)
     return box_of_nodes(dim, folds->y, folds->input.cell + cell * (dim + 1), dim + 1);
 }
 
+/* The first body whose middle has a first coordinate of at least this. */
+static int64_t first_body_from(const struct folds *folds, double least)
+{
+    int64_t first = 0;
+    for (int64_t last = folds->body_count; first < last;) {
+        int64_t middle = first + (last - first) / 2;
+        if (folds->bodies[middle].cell.place < least) {
+            first = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
+    return first;
+}
+
 void folds_find_within(struct folds *folds, struct fold *fold)
 {
-    if (folds->body_count < 2) {
+    int64_t count = folds->body_count;
+    if (count < 2) {
         return;
     }
-    for (int64_t b = 0; b < folds->body_count; b++) {
-        find_middle(folds, folds->y, folds->bodies[b].cell, folds->bodies[b].middle);
+    for (int64_t b = 0; b < count; b++) {
+        struct fold_body *body = &folds->bodies[b];
+        find_middle(folds, folds->y, body->cell.item, body->middle);
+        body->cell.place = body->middle[0];
     }
+    qsort(folds->bodies, (size_t)count, sizeof *folds->bodies, compare_placed);
     for (int64_t c = 0; c < folds->input.cell_count; c++) {
         struct box box = box_around(folds, c);
-        for (int64_t b = 0; b < folds->body_count; b++) {
+        for (int64_t b = first_body_from(folds, box.low[0]);
+             b < count && folds->bodies[b].cell.place <= box.high[0]; b++) {
             const struct fold_body *body = &folds->bodies[b];
-            if (body->middle[0] >= box.low[0] && body->middle[0] <= box.high[0] && folds->part[c] != b &&
-                contains(folds, c, body->middle, on_face) && fold->count++ == 0) {
-                name_cell(folds, body->cell, fold);
+            if (folds->part[c] != folds->part[body->cell.item] && contains(folds, c, body->middle, on_face) &&
+                fold->count++ == 0) {
+                name_cell(folds, body->cell.item, fold);
             }
         }
     }
