@@ -132,7 +132,7 @@ END
 
 @test "energy drift: the fastest node; the frames before it" {
     # Not so far that a cell inverts first, as with .1.
-    scene dynamic 0.49 'components = 0.06, 0.06' 'end_time = 0.5\ntime_step_margin = 0.96' > run.scene
+    scene dynamic 0.49 'components = 0.055, 0.055' 'end_time = 0.5\ntime_step_margin = 0.97' > run.scene
     stops "the energy balance is off by "
     [ "$(frames)" -ge 4 ]
     grep -q '^energy	f8' list
