@@ -232,6 +232,13 @@ static void begin_row(struct scalar_row *row)
     row->touched_count = row->count = 0;
 }
 
+/* The first cell of the group that has use u of the averages' lists. */
+static int64_t group_of_use(const struct body *body, int64_t u)
+{
+    const struct field_averages *averages = &body->cells.averages;
+    return smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
+}
+
 /* The forces of the cells on fields if field f is 1 and all others are 0. */
 static void field_row(const struct scalar_stiffness *stiffness, int64_t f, struct scalar_row *row)
 {
@@ -240,7 +247,7 @@ static void field_row(const struct scalar_stiffness *stiffness, int64_t f, struc
     begin_row(row);
     row->at_field[f] = 1.0;
     for (int64_t u = averages->use_ptr[f]; u < averages->use_ptr[f + 1]; u++) {
-        int64_t q = smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
+        int64_t q = group_of_use(body, u);
         if (row->cell_seen[q] != row->turn) {
             row->cell_seen[q] = row->turn;
             add_mean(stiffness, q, row);
@@ -256,7 +263,7 @@ static int64_t most_fields(const struct body *body, int64_t f)
     const struct field_averages *averages = &body->cells.averages;
     int64_t most = 0;
     for (int64_t u = averages->use_ptr[f]; u < averages->use_ptr[f + 1]; u++) {
-        int64_t q = smoothed_cells_group(body, field_averages_cell(averages, body->dim, averages->use[u]));
+        int64_t q = group_of_use(body, u);
         int64_t end = smoothed_cells_group_end(body, q);
         most += (end - q) * (CELL_EDGES(body->dim) + body->dim + 1) + field_averages_face(averages, end) -
                 field_averages_face(averages, q);
