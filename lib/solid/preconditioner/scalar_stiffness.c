@@ -308,8 +308,7 @@ static enum status make_field_rows(struct scalar_stiffness *stiffness, struct er
     SCRATCH int32_t *field = NULL;
     enum status status = STATUS_OK;
     RETURN_IF_ERROR(list_fields(stiffness, &field, error));
-    const struct chunks chunks = chunks_of(cells->row_count, worthwhile);
-#pragma omp parallel num_threads(chunks.threads)
+#pragma omp parallel num_threads(chunks_of(cells->row_count, worthwhile).threads)
     {
         struct scalar_row row;
         struct error own;
