@@ -14,9 +14,9 @@
 
 static const struct checkpoint_identity identity = {.scene = 0x12345678, .input = 0xff};
 static char folder[64], file[96], old[96];
+static double modulus; /* of the contact's penalty, Pa; 0: the penalty is 1e5 Pa/m */
 
-/* A soft block over a floor, its top pushed down so far that it touches the floor and the pressure calls for
- * ties. */
+/* A soft block over a floor, its top pushed down so far that it touches the floor. */
 static void build(struct lattice *l)
 {
     struct rigid_surface floor;
@@ -34,6 +34,9 @@ static void build(struct lattice *l)
     *averages = lattice_averages(l, 1u << 2);
     GOOD(rigid_build(2, 1, corners, true, &floor, &error));
     GOOD(contact_build(averages, NULL, l->system.X, 2, &floor, 1e5, l->system.contacts, &error));
+    if (modulus > 0.0) {
+        contact_set_stiffness(l->system.contacts, modulus);
+    }
     l->system.contact_points = averages;
     l->system.contact_count = 1;
 }
@@ -113,6 +116,7 @@ static void run(bool is_dynamic, struct interruption *interruption, const struct
             pressure += l.system.contacts->pressure[a];
         }
         assert_true(pressure > 0);
+        assert_true((l.system.contacts->modulus > modulus) == (modulus > 0.0));
     }
 }
 
@@ -157,6 +161,16 @@ TEST(relaxation_goes_on)
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         same_bits(false, at[i][0], at[i][1]);
     }
+}
+
+/* Also where the pressures call for larger penalties, at some check. */
+TEST(penalties_grow)
+{
+    modulus = 1e4;
+    for (int64_t step = 10; step < 200; step += 10) {
+        same_bits(false, step, step + 1);
+    }
+    modulus = 0.0;
 }
 
 TEST(dynamics_goes_on)

@@ -109,6 +109,9 @@ bool preconditioner_is_stale(const struct preconditioner *preconditioner);
 void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
+/* Let A have the contacts' penalties as they are now; see system_stiffen_contacts. M changes. */
+void preconditioner_take_penalties(struct preconditioner *preconditioner, const struct solid_system *system);
+
 /* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
  * that are no longer near are left out when `leave`. True when M has changed.
  *

@@ -282,3 +282,11 @@ bool preconditioner_follow(struct preconditioner *p, const struct solid_system *
     }
     return true;
 }
+
+void preconditioner_take_penalties(struct preconditioner *p, const struct solid_system *system)
+{
+    if (p->size > 0) {
+        preconditioner_drop_slow_modes(p);
+        preconditioner_factorise_both(p, system);
+    }
+}

@@ -71,6 +71,7 @@ static bool step(struct relaxation *r, double *u, bool measure)
 {
     struct solid_system *system = r->system;
     double dt = r->time_step, grow = 2.0 + r->damping * dt, keep = (2.0 - r->damping * dt) / grow;
+    r->unstable = false;
     struct deformation deformation = system_residual(system, u, r->residual);
     r->report->force_evaluations++;
     r->report->least_jacobian = deformation.least_jacobian;
@@ -162,6 +163,10 @@ static bool follow(struct relaxation *r, struct error *error)
     relaxation_keep_check(r);
     r->residual_at = r->before;
     if (system_stiffen_contacts(r->system)) {
+        (void)system_residual(r->system, r->residual_at, r->residual);
+        r->report->force_evaluations++;
+        preconditioner_take_penalties(&r->preconditioner, r->system);
+        relaxation_note_new_mass(r);
         r->next_mass_check = r->checks;
     }
     if (r->checks >= r->next_mass_check && !relaxation_update_mass(r, error)) {
@@ -169,7 +174,7 @@ static bool follow(struct relaxation *r, struct error *error)
     }
     relaxation_follow_time_step(r, r->residual_at, r->held_steps == 0 ? iterations_loading : iterations);
     if (hovers(r)) {
-        relaxation_calm(r, r->acceleration);
+        (void)relaxation_calm(r, r->acceleration);
     }
     return relaxation_update_preconditioner(r, error);
 }
@@ -248,8 +253,8 @@ static enum relaxation_outcome iterate(struct relaxation *r, struct error *error
                 return RELAXATION_INVERTED;
             }
         }
-        if (r->unstable) {
-            relaxation_calm(r, r->scratch);
+        if (r->unstable && relaxation_calm(r, r->scratch)) {
+            measure = false;
         }
         if (measure && !follow(r, error)) {
             return RELAXATION_STOPPED;
@@ -332,8 +337,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->largest_frequency = r.frequency;
     report->largest_move = r.largest_move;
     if (report->outcome == RELAXATION_INVERTED) {
-        r.load = r.older.load;
-        memcpy(r.u, r.older.u, (size_t)r.size * sizeof *r.u);
+        relaxation_go_back(&r, &r.older);
     }
     report->load = relaxation_load_share(&r);
     if (report->outcome == RELAXATION_CONVERGED && relaxation_gives_frames(&r)) {

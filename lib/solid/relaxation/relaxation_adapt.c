@@ -192,8 +192,7 @@ void relaxation_keep_check(struct relaxation *r)
     keep(r, &r->check_now, &r->check_before);
 }
 
-/* Return to a kept state. */
-static void go_back(struct relaxation *r, const struct kept_state *kept)
+void relaxation_go_back(struct relaxation *r, const struct kept_state *kept)
 {
     r->load = kept->load;
     r->back_step = r->report->steps;
@@ -212,7 +211,7 @@ bool relaxation_step_back(struct relaxation *r, struct error *error)
     r->step_safety *= 0.8;
     r->top_rate *= 0.5;
     r->load_rate = r->top_rate;
-    go_back(r, &r->older);
+    relaxation_go_back(r, &r->older);
     memset(r->velocity, 0, (size_t)r->size * sizeof *r->velocity);
     for (int i = 0; i < 2; i++) { /* the states kept since then lead to the inversion */
         relaxation_keep_state(r);
@@ -246,21 +245,22 @@ static bool is_unstable(struct relaxation *r, const double *acceleration)
     return !(frequency * r->time_step < 2.0);
 }
 
-void relaxation_calm(struct relaxation *r, const double *acceleration)
+bool relaxation_calm(struct relaxation *r, const double *acceleration)
 {
     r->calmed_step = r->report->steps;
     r->usual_square = 0.0;
     if (!is_unstable(r, acceleration)) {
-        (void)system_residual(r->system, r->u, r->residual); /* the body's last evaluation again */
+        (void)system_residual(r->system, r->before, r->residual); /* the last evaluation again */
         r->report->force_evaluations++;
-        return;
+        return false;
     }
-    go_back(r, &r->check_before);
+    relaxation_go_back(r, &r->check_before);
     relaxation_keep_check(r);
     r->residual_at = r->u;
     (void)system_residual(r->system, r->residual_at, r->residual);
     r->report->force_evaluations++;
     update_time_step(r, r->residual_at, calm_iterations);
+    return true;
 }
 
 static double penetration_allowed(const struct relaxation *r)

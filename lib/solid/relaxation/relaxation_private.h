@@ -166,9 +166,12 @@ bool relaxation_contacts_lack(const struct relaxation *r);
 /* Whether the contacts admit a converged state; reports their penetration. */
 bool relaxation_contacts_hold(struct relaxation *r);
 
+/* Return to a kept state and its load. */
+void relaxation_go_back(struct relaxation *r, const struct kept_state *kept);
+
 /* If the mode of the acceleration is unstable at the present time step, return to the state of the check
- * before the last and set the time step by that mode. */
-void relaxation_calm(struct relaxation *r, const double *acceleration);
+ * before the last, set the time step by that mode, and return true. */
+bool relaxation_calm(struct relaxation *r, const double *acceleration);
 
 /* ---- relaxation_report.c: progress and frames ---- */
 
