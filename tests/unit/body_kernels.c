@@ -2,8 +2,6 @@
  * stiffness, and inversion told where it is. */
 #include "body_setup.h"
 
-#include "solid/body/stress.h"
-
 #include "solid/body/kernel.h"
 #include "solid/body/nodal_volume.h"
 
@@ -176,23 +174,8 @@ static void check_shares(const struct sample *sample, const struct body *body, c
     assert_true(means > 3 && means < volumes->count / 2);
 }
 
-/* Cells at junctions have no energy of what varies within them, all others have. */
-static void check_variances(const struct sample *sample, const struct body *body, const bool *at_junction)
-{
-    int64_t none = 0;
-    for (int64_t q = 0; q < body->point_count; q++) {
-        bool touches = false;
-        for (int k = 0; k <= body->dim; k++) {
-            touches = touches || at_junction[sample->vertex[body->order[q] * (body->dim + 1) + k]];
-        }
-        assert_true((stress_variance_energy(body, q) > 0.0) == !touches);
-        none += touches;
-    }
-    assert_true(none > 0 && none < body->point_count / 2);
-}
-
-/* Of bodies with edges and junctions forces are the gradient of the energy, also where materials share nodal
- * volumes; a uniform change of volume meets the bulk modulus. */
+/* Of bodies with edges forces are the gradient of the energy, also where materials share nodal volumes; a
+ * uniform change of volume meets the bulk modulus. */
 TEST_IN_EACH_DIM(edges)
 {
     struct random random = {5};
@@ -201,7 +184,6 @@ TEST_IN_EACH_DIM(edges)
     struct setup one = one_material(MATERIAL_NEO_HOOKEAN, true), three = three_materials(true);
     one.faces = three.faces = true;
     one.at_edge = three.at_edge = at_edge;
-    one.at_junction = three.at_junction = at_edge;
     three.group = (int32_t[]){0, 0, 1};
     FREED_BY(body_free) struct body body = make_body(&sample, &one), mixed = make_body(&sample, &three);
     double *u = linear_field(&sample, (double[]){1.01, 0, 0, 0, 1.01, 0, 0, 0, 1.01}, NULL);
@@ -212,7 +194,6 @@ TEST_IN_EACH_DIM(edges)
     }
     check_shares(&sample, &body, at_edge);
     check_work(&sample, &body, &random);
-    check_variances(&sample, &body, at_edge);
     check_work(&sample, &mixed, &random);
 }
 

@@ -16,8 +16,7 @@ struct setup {
     struct material material[MATERIALS];
     const struct ranks *ranks; /* NULL: one process */
     const bool *at_edge;       /* of each node; NULL: none */
-    const bool *at_junction;
-    const int32_t *group; /* of each material; NULL: each by itself */
+    const int32_t *group;      /* of each material; NULL: each by itself */
 };
 
 static inline struct material make_material(enum material_model model, double youngs_modulus)
@@ -59,7 +58,6 @@ static inline struct body make_body(const struct sample *sample, const struct se
         material[q] = material_at(sample, setup, q);
     }
     struct body_input input = sample_input(sample, setup->material, setup->model_count, material);
-    smoothed.at_junction = setup->at_junction;
     input.smoothed = setup->faces ? &smoothed : NULL;
     input.vertex = setup->averaged ? sample->vertex : NULL;
     input.ranks = setup->ranks;

@@ -37,7 +37,6 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const bool *at_junction;    /* node_count: W_v counts in no cell that has such a node; NULL: none */
     const int32_t *edge_reader; /* edge_count: the process that has read each row; the row is empty in others.
                                    NULL: every process has all */
     void (*copied)(
@@ -51,7 +50,7 @@ struct smoothed_cells {
     struct field_averages averages; /* on the edges and at the vertices */
     double *interpolant;            /* F_h at the last evaluation, as body->F */
     double *variance_weight; /* point_count, padded as body->weight: volume by which the energy within a cell
-                                counts, m3 (2D: m2) */
+                                counts, m3 (2D: m2); */
     double *linear_gradient; /* dim * dim rows of as many as there are cells, and BODY_POINT_PADDING more: row
                     (k - 1) dim
                     + b holds component b of the gradient of N_k, k = 1 .. dim, in each cell, 1/m; the
