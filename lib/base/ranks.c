@@ -134,9 +134,8 @@ static enum status list_wanted(struct halo *halo, int64_t items, const bool *wan
                                struct error *error)
 {
     int count = halo->ranks->count, rank = halo->ranks->rank;
-    SCRATCH int64_t *next = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&halo->receive_first, count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
+    NEW_SCRATCH(int64_t, next, count, error);
     for (int64_t i = 0; i < items; i++) {
         int from = wanted[i] ? owner(context, i) : rank;
         halo->receive_first[from + 1] += from != rank;
@@ -159,10 +158,9 @@ enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
                                  int64_t **receive, int64_t **receive_first, struct error *error)
 {
     int count = ranks->count;
-    SCRATCH int64_t *each = NULL, *in_turn = NULL, *many = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&each, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&many, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&in_turn, count + 1, error));
+    NEW_SCRATCH(int64_t, each, count, error);
+    NEW_SCRATCH(int64_t, many, count, error);
+    NEW_SCRATCH(int64_t, in_turn, count + 1, error);
     RETURN_IF_ERROR(NEW_ARRAY(receive_first, count + 1, error));
     for (int r = 0; r < count; r++) {
         in_turn[r + 1] = r + 1;

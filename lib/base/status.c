@@ -25,6 +25,16 @@ enum status fail(struct error *error, enum status status, const char *format, ..
     return status;
 }
 
+void note_failure(struct first_failure *first, int64_t item, enum status status, const struct error *own,
+                  struct error *error)
+{
+#pragma omp critical(note_failure)
+    if (status != STATUS_OK && (first->status == STATUS_OK || item < first->item)) {
+        *first = (struct first_failure){status, item};
+        *error = *own;
+    }
+}
+
 enum status fail_in(struct error *error, enum status status, const char *context, ...)
 {
     char joined[2 * sizeof error->text];

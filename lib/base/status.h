@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* The values are the exit statuses of the tools. */
 enum status {
@@ -38,6 +39,16 @@ struct error {
  * `return fail(error, STATUS_INPUT, "...")`. Control characters in the message are replaced by '?'. */
 enum status fail(struct error *error, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Note what an item of a loop that threads share came to; its message is in `own`. The failure of the first
+ * item that failed stays, for any number of threads: its status in *first, which is empty to begin with, and
+ * its message in `error`. */
+struct first_failure {
+    enum status status;
+    int64_t item;
+};
+void note_failure(struct first_failure *first, int64_t item, enum status status, const struct error *own,
+                  struct error *error);
 
 /* Put "context: " in front of the message of `error`, unless `status` is STATUS_OK; return `status`. So the
  * status of a call may stand in its place: fail_in(error, call(..., error), "...") */

@@ -142,12 +142,10 @@ static enum status measure(const struct refinement *refinement, const struct sam
     int dim = refinement->cells->dim, per_rule = refinement->rule.points;
     int64_t first = leaf * sample->per_leaf, last = first + sample->per_leaf;
     int64_t pairs = lists->ptr[last] - lists->ptr[first];
-    SCRATCH int32_t *united = NULL, *place = NULL;
-    SCRATCH double *matrix = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&united, pairs, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&place, pairs, error));
+    NEW_SCRATCH(int32_t, united, pairs, error);
+    NEW_SCRATCH(int32_t, place, pairs, error);
     int64_t n = unite(lists, first, last, united, place);
-    RETURN_IF_ERROR(NEW_ARRAY(&matrix, n * n, error));
+    NEW_SCRATCH(double, matrix, n *n, error);
     for (int64_t p = first; p < last; p++) {
         int64_t at = lists->ptr[p], count = lists->ptr[p + 1] - at;
         double weight = volume * refinement->rule.weight[(p - first) % per_rule];
@@ -167,32 +165,23 @@ static enum status measure(const struct refinement *refinement, const struct sam
 static enum status measure_batch(struct refinement *refinement, struct leaf *const *leaf, int64_t count,
                                  struct error *error)
 {
-    enum status status, failure = STATUS_OK;
-    struct sample sample = {0};
-    TRY(sample_leaves(refinement, leaf, count, &sample, error));
+    struct first_failure failure = {STATUS_OK};
+    FREED_BY(sample_free) struct sample sample = {0};
+    RETURN_IF_ERROR(sample_leaves(refinement, leaf, count, &sample, error));
 #pragma omp parallel for schedule(dynamic, 4)
     for (int64_t l = 0; l < count; l++) {
         struct error own;
         double norm = 0.0;
         double volume =
             ldexp(cell_volume(refinement->cells, leaf[l]->cell), -refinement->cells->dim * leaf[l]->level);
-        enum status outcome = measure(refinement, &sample, l, volume, &norm, &leaf[l]->change, &own);
+        note_failure(&failure, l, measure(refinement, &sample, l, volume, &norm, &leaf[l]->change, &own),
+                     &own, error);
         if (leaf[l]->level == 0) {
             refinement->norm[leaf[l]->cell] = norm;
         }
         leaf[l]->measured = true;
-        if (outcome != STATUS_OK) {
-#pragma omp critical(adaptive_failure)
-            {
-                failure = outcome;
-                *error = own;
-            }
-        }
     }
-    TRY(failure);
-done:
-    sample_free(&sample);
-    return status;
+    return failure.status;
 }
 
 enum status adaptive_measure(struct refinement *refinement, struct leaves *leaves, struct error *error)

@@ -164,8 +164,7 @@ static enum status match_faces(const struct cells *cells, int64_t *partner, stru
 {
     int corners = cells->dim + 1;
     int64_t total = cells->count * corners;
-    SCRATCH struct keyed *keyed = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&keyed, total, error));
+    NEW_SCRATCH(struct keyed, keyed, total, error);
     for (int64_t s = 0; s < total; s++) {
         int32_t node[3];
         cell_face(cells, s / corners, opposite(cells->dim, s % corners), node);
@@ -203,9 +202,8 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
 {
     int dim = cells->dim;
     int64_t total = cells->count * (dim + 1);
-    SCRATCH int64_t *partner = NULL;
     *faces = (struct faces){.dim = dim};
-    RETURN_IF_ERROR(NEW_ARRAY(&partner, total, error));
+    NEW_SCRATCH(int64_t, partner, total, error);
     RETURN_IF_ERROR(match_faces(cells, partner, error));
     int64_t count = 0;
     for (int64_t s = 0; s < total; s++) {
@@ -233,10 +231,9 @@ enum status faces_build(const struct cells *cells, bool boundary_only, struct fa
 enum status faces_find(const struct faces *faces, int64_t count, const int32_t *facet, int64_t *found,
                        struct error *error)
 {
-    SCRATCH struct keyed *keyed = NULL;
     int dim = faces->dim;
     int64_t known = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&keyed, faces->count, error));
+    NEW_SCRATCH(struct keyed, keyed, faces->count, error);
     for (int64_t f = 0; f < faces->count; f++) {
         if (faces->cell[2 * f + 1] < 0) {
             face_key(dim, faces->node + f * dim, keyed[known].key);
@@ -256,8 +253,7 @@ enum status faces_find(const struct faces *faces, int64_t count, const int32_t *
 enum status cells_across(const struct cells *cells, int32_t *across, struct error *error)
 {
     int corners = cells->dim + 1;
-    SCRATCH int64_t *partner = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells->count * corners, error));
+    NEW_SCRATCH(int64_t, partner, cells->count * corners, error);
     RETURN_IF_ERROR(match_faces(cells, partner, error));
     for (int64_t s = 0; s < cells->count * corners; s++) {
         across[s / corners * corners + opposite(cells->dim, s % corners)] =
@@ -275,8 +271,7 @@ void faces_free(struct faces *faces)
 enum status cells_node_spacing(const struct cells *cells, double *spacing, struct error *error)
 {
     int dim = cells->dim;
-    SCRATCH int64_t *visits = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&visits, cells->node_count, error));
+    NEW_SCRATCH(int64_t, visits, cells->node_count, error);
     for (int64_t n = 0; n < cells->node_count; n++) {
         spacing[n] = 0.0;
     }

@@ -103,13 +103,11 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     int dim = boundary->dim;
     int64_t ridge_count = boundary->count * dim;
     double least = cos(degrees * acos(-1) / 180) - 1e-12;
-    SCRATCH struct ridge *ridges = NULL;
     SCRATCH int32_t *parent = NULL;
     SCRATCH double *area = NULL;
-    SCRATCH double *normal = NULL;
     RETURN_IF_ERROR(parts_begin(boundary->count, &parent, &area, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&normal, boundary->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&ridges, ridge_count, error));
+    NEW_SCRATCH(double, normal, boundary->count *dim, error);
+    NEW_SCRATCH(struct ridge, ridges, ridge_count, error);
     for (int64_t f = 0; f < boundary->count; f++) {
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);
         area[f] = vector_length(dim, normal + f * dim);
@@ -163,8 +161,7 @@ enum status choice_grow(int64_t count, int corners, const int32_t *item, int64_t
                         int64_t edge_count, const int32_t *edge, int rings, bool of_items, bool *chosen,
                         struct error *error)
 {
-    SCRATCH bool *other = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&other, of_items ? node_count : count, error));
+    NEW_SCRATCH(bool, other, of_items ? node_count : count, error);
     bool *items = of_items ? chosen : other, *nodes = of_items ? other : chosen;
     if (rings < 0) {
         invert(of_items ? count : node_count, chosen);

@@ -40,10 +40,9 @@ static uint64_t morton(int dim, const double *x, const double *low, double exten
 enum status renumber_morton(int dim, int64_t count, const double *x, const int32_t *group, int64_t *order,
                             struct error *error)
 {
-    SCRATCH struct sort_key *keys = NULL;
     struct box box = box_of(dim, count, x);
     double extent = fmax(1e-300, box_side(&box));
-    RETURN_IF_ERROR(NEW_ARRAY(&keys, count, error));
+    NEW_SCRATCH(struct sort_key, keys, count, error);
     for (int64_t i = 0; i < count; i++) {
         keys[i] =
             (struct sort_key){morton(dim, x + i * dim, box.low, extent), i, group != NULL ? group[i] : 0};

@@ -76,10 +76,9 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
                             struct error *error)
 {
     int dim = cells->dim, corners = dim + 1;
-    SCRATCH int32_t *across = NULL;
     double whole = 0.0, thin = 0.0;
     *report = (struct thin_report){.least = bound};
-    RETURN_IF_ERROR(NEW_ARRAY(&across, cells->count * corners, error));
+    NEW_SCRATCH(int32_t, across, cells->count * corners, error);
     RETURN_IF_ERROR(cells_across(cells, across, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int64_t cell = i / corners;

@@ -111,15 +111,14 @@ enum status field_error_recovered(const struct cells *cells, const int32_t *regi
                                   int64_t cols, const double *values, double *squared, struct error *error)
 {
     int64_t size = cols * cells->dim;
-    SCRATCH double *gradient = NULL, *recovered = NULL, *volume = NULL;
     for (int64_t i = 0; i < cells->node_count * cols; i++) {
         if (!isfinite(values[i])) {
             return fail(error, STATUS_INPUT, "row %lld: not a finite number", (long long)(i / cols));
         }
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&gradient, cells->count * size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&recovered, cells->node_count * size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&volume, cells->node_count, error));
+    NEW_SCRATCH(double, gradient, cells->count *size, error);
+    NEW_SCRATCH(double, recovered, cells->node_count *size, error);
+    NEW_SCRATCH(double, volume, cells->node_count, error);
     for (int64_t q = 0; q < cells->count; q++) {
         cell_gradient(cells, q, cols, values, gradient + q * size);
     }

@@ -61,8 +61,7 @@ static enum status node_sizes(const struct cells *cells, const double *squared, 
                               const struct size_field_request *request, double *size, struct error *error)
 {
     double equal = equal_error(cells, squared, spacing, request);
-    SCRATCH int64_t *count = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&count, cells->node_count, error));
+    NEW_SCRATCH(int64_t, count, cells->node_count, error);
     for (int64_t q = 0; q < cells->count; q++) {
         double now = cell_size(cells, spacing, q);
         double factor = cell_factor(cells, squared[q], now, equal, request->least);
@@ -205,11 +204,10 @@ enum status size_field_build(const struct cells *cells, const double *squared,
                              const struct size_field_request *request, struct size_field *field,
                              struct error *error)
 {
-    SCRATCH double *spacing = NULL, *normal = NULL, *angle = NULL;
     *field = (struct size_field){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&normal, cells->node_count * cells->dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&angle, cells->node_count, error));
+    NEW_SCRATCH(double, spacing, cells->node_count, error);
+    NEW_SCRATCH(double, normal, cells->node_count * cells->dim, error);
+    NEW_SCRATCH(double, angle, cells->node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&field->size, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&field->outer, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(faces_build(cells, true, &field->boundary, error));

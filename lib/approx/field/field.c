@@ -60,10 +60,9 @@ static enum status nearest_cells(const struct cells *cells, const double *spacin
     int dim = cells->dim;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
-    SCRATCH double *centre = NULL, *radius = NULL, *size = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&centre, cells->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, cells->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&size, cells->count, error));
+    NEW_SCRATCH(double, centre, cells->count *dim, error);
+    NEW_SCRATCH(double, radius, cells->count, error);
+    NEW_SCRATCH(double, size, cells->count, error);
     enclose(cells, spacing, within, centre, radius, size);
     RETURN_IF_ERROR(point_grid_build(&grid, dim, cells->count, centre, radius, error));
     for (int64_t p = 0; p < count; p++) {
@@ -165,10 +164,8 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
 enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
                          const double *x, double *result, struct error *error)
 {
-    SCRATCH double *spacing = NULL;
-    SCRATCH int64_t *cell = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&cell, count, error));
+    NEW_SCRATCH(double, spacing, cells->node_count, error);
+    NEW_SCRATCH(int64_t, cell, count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
     RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, x, cell, error));
     for (int64_t p = 0; p < count; p++) {

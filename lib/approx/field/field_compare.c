@@ -26,10 +26,8 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
 {
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list list = {0};
-    SCRATCH double *radius = NULL;
-    SCRATCH char *used = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&used, count, error));
+    NEW_SCRATCH(double, radius, count, error);
+    NEW_SCRATCH(char, used, count, error);
     for (int64_t n = 0; n < count; n++) {
         radius[n] = tolerance * sqrt((double)dim);
     }
@@ -141,13 +139,12 @@ static enum status drop_outside(const struct nodal_field *a, const struct nodal_
                                 const double *spacing, bool skip, struct field_comparison *comparison,
                                 double *points, struct error *error)
 {
-    SCRATCH bool *outside = NULL;
     int dim = a->cells.dim;
     int64_t kept = 0, first = -1;
     for (int64_t i = 0; i < comparison->count; i++) {
         memcpy(points + i * dim, a->cells.x + comparison->node[i] * dim, (size_t)dim * sizeof *points);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, comparison->count, error));
+    NEW_SCRATCH(bool, outside, comparison->count, error);
     RETURN_IF_ERROR(
         field_outside(&b->cells, spacing, FIELD_MARGIN, comparison->count, points, outside, error));
     for (int64_t i = 0; i < comparison->count; i++) {
@@ -205,10 +202,9 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
                           bool skip_outside, struct field_comparison *comparison, struct error *error)
 {
     int64_t count = a->cells.node_count, cols = a->cols;
-    SCRATCH int32_t *match = NULL;
     SCRATCH double *reference = NULL; /* B's values at the nodes of A */
     *comparison = (struct field_comparison){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&match, count, error));
+    NEW_SCRATCH(int32_t, match, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&reference, count * cols, error));
     RETURN_IF_ERROR(NEW_ARRAY(&comparison->node, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&comparison->difference, count, error));

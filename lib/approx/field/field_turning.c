@@ -49,14 +49,13 @@ enum status field_least_determinants(const struct support_options *options, cons
     int64_t points = count * FIELD_TURNING_POINTS;
     struct visibility_places places = {.cell = cell, .points_per_row = FIELD_TURNING_POINTS};
     FREED_BY(support_free) struct support_lists table = {0};
-    SCRATCH double *x = NULL, *phi = NULL, *dphi = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&x, points * cells->dim, error));
+    NEW_SCRATCH(double, x, points * cells->dim, error);
     for (int64_t i = 0; i < count; i++) {
         place_points(cells, cell[i], x + i * FIELD_TURNING_POINTS * cells->dim);
     }
     RETURN_IF_ERROR(support_space_lists(options, space, &places, points, x, what, &table, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, table.ptr[points], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&dphi, table.ptr[points] * cells->dim, error));
+    NEW_SCRATCH(double, phi, table.ptr[points], error);
+    NEW_SCRATCH(double, dphi, table.ptr[points] * cells->dim, error);
     struct neighbours lists = support_view(&table);
     RETURN_IF_ERROR(shape_table(shapes != NULL ? shapes : &options->mls, cells->x, space->radius, &lists, x,
                                 what, phi, dphi, error));

@@ -30,8 +30,7 @@ static void edges(const struct cells *cells, const double *x, int64_t cell, doub
 static enum status choose_radii(const struct cells *cells, const struct support_options *options,
                                 double *radius, struct error *error)
 {
-    SCRATCH double *spacing = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    NEW_SCRATCH(double, spacing, cells->node_count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
     return support_radii(options, cells->node_count, spacing, radius, error);
 }
@@ -47,8 +46,7 @@ static enum status find_gradients(const struct cells *cells, const double *u,
     struct visibility_places places = {.nodes = true};
     FREED_BY(support_free) struct support_lists lists = {0};
     FREED_BY(support_space_free) struct support_space space = {0};
-    SCRATCH double *radius = NULL, *phi = NULL, *dphi = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, nodes, error));
+    NEW_SCRATCH(double, radius, nodes, error);
     if (source != NULL) {
         u = source->parameters;
         memcpy(radius, source->radius, (size_t)nodes * sizeof *radius);
@@ -58,8 +56,8 @@ static enum status find_gradients(const struct cells *cells, const double *u,
     }
     RETURN_IF_ERROR(support_space_build(&options, cells, radius, &space, error));
     RETURN_IF_ERROR(support_space_lists(&options, &space, &places, nodes, cells->x, "nodes", &lists, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, lists.ptr[nodes], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&dphi, lists.ptr[nodes] * dim, error));
+    NEW_SCRATCH(double, phi, lists.ptr[nodes], error);
+    NEW_SCRATCH(double, dphi, lists.ptr[nodes] * dim, error);
     struct neighbours view = support_view(&lists);
     RETURN_IF_ERROR(shape_table(&shapes, cells->x, radius, &view, cells->x, "nodes", phi, dphi, error));
     for (int64_t n = 0; n < nodes; n++) {

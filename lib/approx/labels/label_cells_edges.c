@@ -35,9 +35,8 @@ static int64_t collect(const struct lattice *lattice, int64_t *key)
 
 static enum status find_edges(struct lattice *lattice, struct error *error)
 {
-    SCRATCH int64_t *key = NULL;
     int64_t count = collect(lattice, NULL);
-    RETURN_IF_ERROR(NEW_ARRAY(&key, count, error));
+    NEW_SCRATCH(int64_t, key, count, error);
     collect(lattice, key);
     lattice->edge_count = sort_distinct(count, key);
     RETURN_IF_ERROR(NEW_ARRAY(&lattice->end, 2 * lattice->edge_count, error));

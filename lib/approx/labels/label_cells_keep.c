@@ -77,8 +77,7 @@ enum status label_cells_compact(struct label_cells *mesh, struct error *error)
 {
     int dim = mesh->dim, corners = dim + 1;
     int64_t slots = mesh->cell_count * corners, nodes = 0;
-    SCRATCH int32_t *number = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&number, mesh->node_count, error));
+    NEW_SCRATCH(int32_t, number, mesh->node_count, error);
     for (int64_t i = 0; i < slots; i++) {
         number[mesh->cell[i]] = 1;
     }

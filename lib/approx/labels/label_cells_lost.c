@@ -72,8 +72,7 @@ static enum status own_voxels(const struct labels *labels, const struct label_ce
 {
     int dim = labels->dim;
     int64_t doubly;
-    SCRATCH double *x = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&x, mesh->node_count * dim, error));
+    NEW_SCRATCH(double, x, mesh->node_count *dim, error);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double voxel[3];
         labels_to_voxel(labels, mesh->x + n * dim, voxel);
@@ -91,11 +90,10 @@ enum status label_cells_lost(const struct labels *labels, const bool *keep, cons
 {
     struct grid grid = grid_of(labels);
     int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
-    SCRATCH int32_t *owner = NULL;
     for (int32_t l = 0; l < labels->count; l++) {
         lost[l] = 0;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&owner, voxels, error));
+    NEW_SCRATCH(int32_t, owner, voxels, error);
     RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, owner, error));
     for (int64_t v = 0; v < voxels; v++) {
         int32_t label = labels->label[v], there = owner[v] >= 0 ? mesh->label[owner[v]] : -1;
@@ -122,8 +120,7 @@ static enum status flood(const struct labels *labels, const bool *keep, const st
                          int32_t *body, int32_t *set, struct label_cells_apart *apart, struct error *error)
 {
     int64_t voxels = grid->size[0] * grid->size[1] * grid->size[2], count = 0;
-    SCRATCH int64_t *queue = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&queue, voxels, error));
+    NEW_SCRATCH(int64_t, queue, voxels, error);
     for (int64_t v = 0; v < voxels; v++) {
         body[v] = keep[labels->label[v]] ? body[v] : -1;
         if (body[v] >= 0) {
@@ -157,10 +154,9 @@ enum status label_cells_find_apart(const struct labels *labels, const bool *keep
 {
     struct grid grid = grid_of(labels);
     int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
-    SCRATCH int32_t *body = NULL, *set = NULL;
     *apart = (struct label_cells_apart){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&body, voxels, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&set, part_count, error));
+    NEW_SCRATCH(int32_t, body, voxels, error);
+    NEW_SCRATCH(int32_t, set, part_count, error);
     RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, body, error));
     for (int64_t v = 0; v < voxels; v++) {
         body[v] = body[v] >= 0 ? part[body[v]] : -1;

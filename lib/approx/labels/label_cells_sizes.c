@@ -33,10 +33,8 @@ enum status sizes_wish(const struct label_cells_options *options, int levels, co
 {
     struct cells scaled = *options->sized;
     int64_t total = count[0] * count[1] * count[2], doubly = 0, within = 0, beyond = 0;
-    SCRATCH double *x = NULL;
-    SCRATCH int32_t *owner = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&x, 3 * scaled.node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&owner, total, error));
+    NEW_SCRATCH(double, x, 3 * scaled.node_count, error);
+    NEW_SCRATCH(int32_t, owner, total, error);
     for (int64_t i = 0; i < 3 * scaled.node_count; i++) {
         x[i] = (options->sized->x[i] - low[i % 3]) / edge;
     }

@@ -42,10 +42,9 @@ enum status partition_own_cells(const struct partition *partition, int64_t **own
                                 struct error *error)
 {
     const struct cells *cells = partition->cells;
-    SCRATCH int32_t *part = NULL;
     *own_ptr = NULL;
     *own_cell = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->count, error));
+    NEW_SCRATCH(int32_t, part, cells->count, error);
     for (int64_t c = 0; c < cells->count; c++) {
         part[c] = partition_cell_owner(cells, c, partition->owner);
     }
@@ -60,7 +59,7 @@ static struct box box_of_cell(const struct cells *cells, int64_t cell)
 enum status partition_work(const struct cells *cells, const struct point_grid *grid, int32_t *work,
                            struct error *error)
 {
-    enum status status = STATUS_OK;
+    struct first_failure failure = {STATUS_OK};
 #pragma omp parallel
     {
         struct index_list near = {0};
@@ -75,16 +74,10 @@ enum status partition_work(const struct cells *cells, const struct point_grid *g
             }
             work[c] = (int32_t)near.count;
         }
-        if (mine != STATUS_OK) {
-#pragma omp critical
-            {
-                status = mine;
-                *error = own;
-            }
-        }
+        note_failure(&failure, 0, mine, &own, error);
         free(near.index);
     }
-    return status;
+    return failure.status;
 }
 
 void body_part_work_free(struct body_part_work *work)

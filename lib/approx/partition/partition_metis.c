@@ -41,10 +41,9 @@ static int64_t list_neighbours(const struct cells *cells, const struct cell_star
 static enum status build_graph(const struct cells *cells, const struct cell_stars *stars, const int32_t *work,
                                struct graph *graph, struct error *error)
 {
-    SCRATCH int32_t *mark = NULL;
     int64_t total = 0;
     double sum = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&mark, cells->node_count, error));
+    NEW_SCRATCH(int32_t, mark, cells->node_count, error);
     for (int64_t n = 0; n < cells->node_count; n++) {
         total += list_neighbours(cells, stars, n, mark, NULL);
     }
@@ -79,15 +78,13 @@ enum status partition_nodes(const struct cells *cells, const struct cell_stars *
                             int32_t parts, int32_t *owner, struct error *error)
 {
     FREED_BY(graph_free) struct graph graph = {0};
-    SCRATCH idx_t *part = NULL;
     idx_t cut, constraints = 1, nodes = (idx_t)cells->node_count, wanted = parts;
     idx_t options[METIS_NOPTIONS];
-    SCRATCH int64_t *own = NULL;
     if (parts > cells->node_count) {
         return fail(error, STATUS_INPUT, "%d parts of %lld nodes", parts, (long long)cells->node_count);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&own, parts, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&part, cells->node_count, error));
+    NEW_SCRATCH(int64_t, own, parts, error);
+    NEW_SCRATCH(idx_t, part, cells->node_count, error);
     if (parts > 1) {
         RETURN_IF_ERROR(build_graph(cells, stars, work, &graph, error));
         METIS_SetDefaultOptions(options);

@@ -99,8 +99,6 @@ static enum status build_level(struct point_grid *grid, int number, const uint8_
 enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_count, const double *x,
                              const double *radius, struct error *error)
 {
-    SCRATCH uint8_t *level_of_node = NULL;
-    SCRATCH int32_t *bin = NULL;
     double least = INFINITY;
     *grid = (struct point_grid){.dim = dim, .node_count = node_count, .x = x, .radius = radius};
     for (int64_t n = 0; n < node_count; n++) {
@@ -110,8 +108,8 @@ enum status point_grid_build(struct point_grid *grid, int dim, int64_t node_coun
         }
         least = fmin(least, radius[n]);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&level_of_node, node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&bin, node_count, error));
+    NEW_SCRATCH(uint8_t, level_of_node, node_count, error);
+    NEW_SCRATCH(int32_t, bin, node_count, error);
     for (int64_t n = 0; n < node_count; n++) {
         level_of_node[n] = (uint8_t)level_of(radius[n], least);
         if (level_of_node[n] >= grid->level_count) {

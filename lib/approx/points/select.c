@@ -103,10 +103,8 @@ enum status items_near(const struct items *items, const struct pieces *pieces, d
 {
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list candidates = {0};
-    SCRATCH double *centre = NULL;
-    SCRATCH double *radius = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&centre, pieces->count * pieces->dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, pieces->count, error));
+    NEW_SCRATCH(double, centre, pieces->count * pieces->dim, error);
+    NEW_SCRATCH(double, radius, pieces->count, error);
     circumscribe(pieces, reach, centre, radius);
     RETURN_IF_ERROR(point_grid_build(&grid, pieces->dim, pieces->count, centre, radius, error));
     for (int64_t i = 0; i < items->count; i++) {

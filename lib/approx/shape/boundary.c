@@ -272,11 +272,10 @@ enum status boundary_points_build(const struct face_table *table, const struct f
                                   struct boundary_averages *averages, struct error *error)
 {
     int dim = table->dim;
-    SCRATCH int64_t *face_of = NULL;
     int64_t entries = 0, count = set->count * table->per_face;
     struct quadrature_rule rule = quadrature_face_rule(dim);
     *averages = (struct boundary_averages){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&face_of, set->count, error));
+    NEW_SCRATCH(int64_t, face_of, set->count, error);
     RETURN_IF_ERROR(boundary_find_faces(table, set, face_of, error));
     RETURN_IF_ERROR(allocate(dim, count, count, averages, error));
     for (int64_t f = 0; f < set->count; f++) {

@@ -164,11 +164,9 @@ enum status boundary_add_sides(const struct face_table *table, const struct face
 {
     int dim = table->dim;
     int64_t count = set->count * dim;
-    SCRATCH int64_t *part = NULL;
-    SCRATCH int32_t *side = NULL, *piece = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&side, set->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&piece, set->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&part, set->count, error));
+    NEW_SCRATCH(int32_t, side, set->count, error);
+    NEW_SCRATCH(int32_t, piece, set->count, error);
+    NEW_SCRATCH(int64_t, part, set->count, error);
     join_facets(table, set, corners, side, piece);
     *group_count = 0;
     for (int64_t f = 0; f < set->count; f++) {
@@ -217,8 +215,7 @@ enum status boundary_find_junctions(const struct face_table *table, int kinds, c
 {
     int dim = table->dim;
     int64_t facets = table->faces->boundary_count, count = facets * dim;
-    SCRATCH struct ridge *ridge = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&ridge, count, error));
+    NEW_SCRATCH(struct ridge, ridge, count, error);
     ridges_list(dim, facets, table->faces->node, ridge);
     for (int64_t begin = 0, i = 0; i < count; i++) {
         begin = memcmp(ridge[i].node, ridge[begin].node, sizeof ridge->node) == 0 ? begin : i;

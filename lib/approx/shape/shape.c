@@ -96,28 +96,12 @@ done:
     return status;
 }
 
-/* The failure of the first chunk that failed, for any number of threads. */
-struct failure {
-    int64_t chunk;
-    enum status status;
-};
-
-static void note_failure(struct failure *first, int64_t chunk, enum status status, const struct error *own,
-                         struct error *error)
-{
-#pragma omp critical(shape_failure)
-    if (status != STATUS_OK && (first->status == STATUS_OK || chunk < first->chunk)) {
-        *first = (struct failure){chunk, status};
-        *error = *own;
-    }
-}
-
 enum status shape_table(const struct mls *mls, const double *nodes, const double *radius,
                         const struct neighbours *neighbours, const double *x, const char *what, double *phi,
                         double *dphi, struct error *error)
 {
     const struct tabulation table = {mls, nodes, radius, neighbours, x, what};
-    struct failure failure = {0, STATUS_OK};
+    struct first_failure failure = {STATUS_OK};
     int64_t count = neighbours->count;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int64_t first = 0; first < count; first += chunk_points) {

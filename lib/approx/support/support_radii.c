@@ -57,7 +57,6 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
 {
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list list = {0};
-    SCRATCH double *radius = NULL;
     struct box box = box_of(dim, node_count, x);
     double extent = box_side(&box);
     if (node_count < 2 || !(extent > 0.0)) {
@@ -65,7 +64,7 @@ enum status nodes_spacing(int dim, int64_t node_count, const double *x, double *
                     (long long)node_count);
     }
     /* A first guess of the neighbourhood's size; it is doubled where there are too few nodes. */
-    RETURN_IF_ERROR(NEW_ARRAY(&radius, node_count, error));
+    NEW_SCRATCH(double, radius, node_count, error);
     for (int64_t n = 0; n < node_count; n++) {
         radius[n] = 2.0 * extent / pow((double)node_count, 1.0 / dim);
     }

@@ -50,14 +50,14 @@ static int64_t sides_in(const struct support_space *space)
 static enum status cut(struct support_space *space, struct error *error)
 {
     SCRATCH int64_t *first = NULL;
-    SCRATCH int32_t *cell = NULL, *local_node = NULL;
+    SCRATCH int32_t *cell = NULL;
     int32_t sides = 0;
     const struct cells *cells = &space->cells;
     for (int64_t c = 0; c < cells->count; c++) {
         sides = space->cell_side[c] >= sides ? space->cell_side[c] + 1 : sides;
     }
     RETURN_IF_ERROR(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&local_node, cells->node_count, error));
+    NEW_SCRATCH(int32_t, local_node, cells->node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&space->place, cells->count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
     space->side_count = sides;
@@ -240,11 +240,10 @@ static enum status lists_of_sides(const struct support_options *options, const s
                                   const char *what, struct support_lists *lists, struct error *error)
 {
     struct visibility_places within;
-    SCRATCH struct support_body *body = NULL;
     SCRATCH int64_t *ptr = NULL;
-    SCRATCH int32_t *side = NULL, *item = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&side, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&body, sides_in(space), error));
+    SCRATCH int32_t *item = NULL;
+    NEW_SCRATCH(int32_t, side, count, error);
+    NEW_SCRATCH(struct support_body, body, sides_in(space), error);
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {

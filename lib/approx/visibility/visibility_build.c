@@ -177,10 +177,9 @@ static enum status find_corners(const struct faces *faces, struct visibility *vi
                                 struct visibility_work *work, struct error *error)
 {
     FREED_BY(pair_list_free) struct pair_list edges = {0};
-    SCRATCH struct ridge *ridges = NULL;
     int dim = visibility->cells.dim;
     int64_t count = faces->count * dim;
-    RETURN_IF_ERROR(NEW_ARRAY(&ridges, count, error));
+    NEW_SCRATCH(struct ridge, ridges, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&visibility->corner, visibility->cells.node_count, error));
     ridges_list(dim, faces->count, faces->node, ridges);
     for (int64_t i = 0, end; i < count; i = end) {

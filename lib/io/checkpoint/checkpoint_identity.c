@@ -15,9 +15,8 @@ enum { BLOCK = 1 << 16 };
 /* Update the checksum with the bytes of a file. */
 static enum status add_file(const char *file, uLong *crc, struct error *error)
 {
-    SCRATCH unsigned char *block = NULL;
     ssize_t count = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&block, BLOCK, error));
+    NEW_SCRATCH(unsigned char, block, BLOCK, error);
     FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
     while (descriptor >= 0 && (count = read(descriptor, block, BLOCK)) > 0) {
         *crc = crc32_z(*crc, block, (size_t)count);

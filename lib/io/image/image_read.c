@@ -173,8 +173,7 @@ static enum status read_values(struct image_source *source, const struct nifti *
                                struct error *error)
 {
     size_t size = (size_t)type->bytes, done_count = 0, capacity = 0, got;
-    SCRATCH unsigned char *block = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&block, (int64_t)(block_values * size + 8), error));
+    NEW_SCRATCH(unsigned char, block, (int64_t)(block_values * size + 8), error);
     RETURN_IF_ERROR(skip_extensions(source, header, block, block_values * size, error));
     while (done_count < count) {
         size_t wanted = count - done_count < block_values ? count - done_count : block_values;

@@ -47,8 +47,7 @@ static void store_values(const struct image *image, const struct nifti_type *typ
 static enum status write_gzip(const unsigned char *bytes, size_t size, int descriptor, struct error *error)
 {
     z_stream stream = {0};
-    SCRATCH unsigned char *packed = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&packed, BLOCK, error));
+    NEW_SCRATCH(unsigned char, packed, BLOCK, error);
     if (deflateInit2(&stream, LEVEL, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
         return fail_memory(error, "compressed image");
     }

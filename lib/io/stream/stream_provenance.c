@@ -61,11 +61,10 @@ enum status stream_add_provenance(struct stream *stream, int argc, char *const a
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
     const char *tool = slash != NULL ? slash + 1 : argc > 0 ? argv[0] : "";
     size_t room = 8 * strlen(tool) + sizeof MTS_VERSION + 16;
-    SCRATCH char *text = NULL;
     for (int i = 1; i < argc; i++) {
         room += 4 * strlen(argv[i]) + 4;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&text, (int64_t)room, error));
+    NEW_SCRATCH(char, text, (int64_t)room, error);
     char *at = put_quoted(stpcpy(put_quoted(text, tool), " " MTS_VERSION " "), tool);
     for (int i = 1; i < argc; i++) {
         at = put_quoted(stpcpy(at, " "), argv[i]);

@@ -64,11 +64,10 @@ static enum status put_text(struct writer *writer, const char *text, struct erro
 static enum status put_header(struct writer *writer, const struct section *section, bool text, uLong *crc,
                               struct error *error)
 {
-    SCRATCH char *line = NULL;
     size_t room = strlen(section->name) + strlen(section->attributes) + 128 + PAYLOAD_ALIGNMENT;
     RETURN_IF_ERROR(section_validate(section->name, section->type, section->rows, section->cols,
                                      section->attributes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&line, (int64_t)room, error));
+    NEW_SCRATCH(char, line, (int64_t)room, error);
     int printed =
         snprintf(line, room, "# %s %s %" PRId64 " %" PRId64 " enc=%s%s%s", section->name,
                  element_type_name(section->type), section->rows, section->cols, text ? "text" : "bin",

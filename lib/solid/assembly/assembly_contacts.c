@@ -86,10 +86,9 @@ static enum status add_between(const struct assembly *input, const struct contac
                                struct error *error)
 {
     FREED_BY(opposite_free) struct opposite opposite = {0};
-    SCRATCH int32_t *part = NULL;
     bool any;
     bool itself = condition->facets.facet == condition->opposite.facet;
-    RETURN_IF_ERROR(NEW_ARRAY(&part, input->cells.node_count, error));
+    NEW_SCRATCH(int32_t, part, input->cells.node_count, error);
     RETURN_IF_ERROR(opposite_parts(&input->cells, part, error));
     RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
     RETURN_IF_ERROR(contact_between_build(

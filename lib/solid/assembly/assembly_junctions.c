@@ -54,11 +54,10 @@ enum status assembly_soften_junctions(const struct assembly *input, struct mater
                                       struct error *error)
 {
     const int32_t *cell = input->point_cell;
-    SCRATCH bool *softer = NULL;
     SCRATCH int64_t *softened = NULL; /* of each material: the softened copy; 0: none yet */
     RETURN_IF_ERROR(RESIZE_ARRAY(&list->items, 2 * list->count, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&list->section, 2 * list->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&softer, input->cells.count, error));
+    NEW_SCRATCH(bool, softer, input->cells.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&softened, list->count, error));
     RETURN_IF_ERROR(mark_cells(input, softer, error));
     for (int64_t q = 0; q < input->point_count; q++) {

@@ -150,9 +150,8 @@ static enum status set_energy(struct point_condition *p, struct error *error)
 {
     const struct measured *measured = p->measured;
     struct measured_region region = {.body_size = p->input->extent, .model_error = p->condition->model_error};
-    SCRATCH bool *seen = NULL;
     double points = 0.0;
-    RETURN_IF_ERROR(NEW_ARRAY(&seen, p->system->node_count, error));
+    NEW_SCRATCH(bool, seen, p->system->node_count, error);
     for (int64_t i = 0; i < measured->count; i++) {
         int32_t node = nearest_node(p, i);
         for (int64_t k = p->condition->field.ptr[i];
@@ -191,8 +190,7 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     const struct constraint_rows *rows = &p->system->rows;
     int dim = p->measured->dim;
     int64_t row = first;
-    SCRATCH bool *dependent = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&dependent, rows->count, error));
+    NEW_SCRATCH(bool, dependent, rows->count, error);
     RETURN_IF_ERROR(measured_dependent(rows, p->system->node_count, dependent, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
         for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {

@@ -24,9 +24,8 @@ static enum material_model model_of(const struct body_input *input, int64_t poin
  * that blocks are compact; order the nodes along the curve, too. */
 static enum status order_all(const struct body_input *input, struct body *body, struct error *error)
 {
-    SCRATCH int32_t *model = NULL;
     SCRATCH int64_t *root = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&model, input->point_count, error));
+    NEW_SCRATCH(int32_t, model, input->point_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&body->order, input->point_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->node_place, input->node_count, error));

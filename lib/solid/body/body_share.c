@@ -57,11 +57,10 @@ static enum status list_points(struct body *body, struct error *error)
 enum status body_share_cut(const struct body_input *input, struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
-    SCRATCH double *work = NULL, *node_work = NULL;
     int rank = ranks_rank(input->ranks);
     share->ranks = input->ranks;
-    RETURN_IF_ERROR(NEW_ARRAY(&work, body->block_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&node_work, body->node_count, error));
+    NEW_SCRATCH(double, work, body->block_count, error);
+    NEW_SCRATCH(double, node_work, body->node_count, error);
     if (share->ranks != NULL) {
         measure_blocks(input, body, work);
         measure_nodes(input, body, node_work);
@@ -116,11 +115,10 @@ enum status body_share_pressures(struct body *body, struct error *error)
     const struct sparse *matrix = &body->volumes.pressures.matrix;
     const int64_t *first = share->volume_first + ranks_rank(share->ranks);
     int vertices = body->dim + 1;
-    SCRATCH bool *wanted = NULL;
     if (share->ranks == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->volumes.count, error));
+    NEW_SCRATCH(bool, wanted, body->volumes.count, error);
     for (int64_t i = matrix->ptr[first[0]]; i < matrix->ptr[first[1]]; i++) {
         wanted[matrix->idx[i]] = true;
     }
@@ -219,9 +217,8 @@ static bool has_sent(const struct block *block, const bool *is_sent)
 static enum status order_blocks(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
-    SCRATCH bool *is_sent = NULL;
     int64_t border = 0, inner = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, body->point_count, error));
+    NEW_SCRATCH(bool, is_sent, body->point_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&share->block, share->end_block - share->begin_block, error));
     mark_sent(body, &share->strains, point_itself, is_sent);
     mark_sent(body, &share->uses, point_of_use, is_sent);
@@ -243,9 +240,8 @@ static enum status order_sums(struct body *body, struct error *error)
 {
     struct body_share *share = &body->share;
     int64_t rows = row_count(body);
-    SCRATCH bool *is_sent = NULL, *is_inner = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&is_sent, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&is_inner, rows, error));
+    NEW_SCRATCH(bool, is_sent, rows, error);
+    NEW_SCRATCH(bool, is_inner, rows, error);
     for (int64_t i = 0; i < share->rows.send_first[share->ranks->count]; i++) {
         is_sent[share->rows.send[i]] = true;
     }
@@ -267,9 +263,8 @@ static enum status share_uses(struct body *body, struct error *error)
     struct body_share *share = &body->share;
     const struct field_averages *averages = &body->cells.averages;
     int64_t rows = row_count(body);
-    SCRATCH bool *sums = NULL, *uses = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&sums, rows, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&uses, averages->use_count, error));
+    NEW_SCRATCH(bool, sums, rows, error);
+    NEW_SCRATCH(bool, uses, averages->use_count, error);
     for (int64_t r = 0; r < rows; r++) {
         sums[r] = owner_of_row(body, r) == share->ranks->rank;
         for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && sums[r]; i++) {
@@ -299,8 +294,7 @@ enum status body_share_rows(struct body *body, const bool *wanted, struct error 
 enum status body_share_nodes(struct body *body, struct error *error)
 {
     const struct sparse *matrix = &body->rows.matrix;
-    SCRATCH bool *wanted = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, body->node_count, error));
+    NEW_SCRATCH(bool, wanted, body->node_count, error);
     for (int64_t i = 0; i < matrix->ptr[matrix->row_count]; i++) {
         wanted[matrix->idx[i]] = true;
     }

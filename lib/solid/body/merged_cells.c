@@ -47,13 +47,10 @@ enum status merged_cells_find(const struct body_input *input, int64_t *root, str
     const struct faces *faces = smoothed->faces;
     const struct cells cells = {input->dim, input->node_count, smoothed->x, input->point_count,
                                 smoothed->cell_node};
-    SCRATCH bool *poor = NULL;
-    SCRATCH double *volume = NULL;
-    SCRATCH int64_t *partner = NULL, *size = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&poor, cells.count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&volume, cells.count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&partner, cells.count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&size, cells.count, error));
+    NEW_SCRATCH(bool, poor, cells.count, error);
+    NEW_SCRATCH(double, volume, cells.count, error);
+    NEW_SCRATCH(int64_t, partner, cells.count, error);
+    NEW_SCRATCH(int64_t, size, cells.count, error);
     for (int64_t c = 0; c < cells.count; c++) {
         partner[c] = c;
         size[c] = 1;
@@ -83,7 +80,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
 {
     struct smoothed_cells *smoothed = &body->cells;
     int64_t cells = body->point_count, at = 0;
-    SCRATCH int64_t *first = NULL, *next = NULL;
+    SCRATCH int64_t *first = NULL;
     for (int64_t c = 0; c < cells; c++) {
         smoothed->merged_count += root[c] != c;
     }
@@ -91,7 +88,7 @@ enum status merged_cells_order(const int64_t *root, struct body *body, struct er
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&first, cells, error)); /* lists of the cells of each root; 0: none */
-    RETURN_IF_ERROR(NEW_ARRAY(&next, cells, error));
+    NEW_SCRATCH(int64_t, next, cells, error);
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&smoothed->group_end, cells, error));
     for (int64_t c = cells - 1; c >= 0; c--) {

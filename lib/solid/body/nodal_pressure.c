@@ -77,8 +77,7 @@ static enum status lay_out(const struct body *body, struct sparse *matrix, struc
     const struct nodal_volumes *volumes = &body->volumes;
     int64_t count = volumes->count, entries = 0;
     int vertices = body->dim + 1;
-    SCRATCH int64_t *seen = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&seen, count, error));
+    NEW_SCRATCH(int64_t, seen, count, error);
     memset(seen, -1, (size_t)count * sizeof *seen);
     for (int64_t a = 0; a < count; a++) {
         entries += list_neighbours(volumes, vertices, a, seen, NULL);

@@ -79,9 +79,8 @@ enum status nodal_volumes_build(const struct body_input *input, struct body *bod
     struct nodal_volumes *volumes = &body->volumes;
     int vertices = body->dim + 1;
     int64_t slots = body->point_count * vertices;
-    SCRATCH struct placed *keys = NULL;
     SCRATCH bool *at_edge = NULL; /* points of cells with a node at an edge and others */
-    RETURN_IF_ERROR(NEW_ARRAY(&keys, slots, error));
+    NEW_SCRATCH(struct placed, keys, slots, error);
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->of_point, slots, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->share, slots, error));
     RETURN_IF_ERROR(NEW_ARRAY(&volumes->slot, slots, error));

@@ -60,8 +60,7 @@ static enum status match_edges(const struct smoothed_cells_input *input, const s
 static enum status place_rows(const struct faces *faces, const double *nodes, double *x, struct error *error)
 {
     int dim = faces->dim;
-    SCRATCH int32_t *ends = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&ends, faces->edge_count * 2, error));
+    NEW_SCRATCH(int32_t, ends, faces->edge_count * 2, error);
     RETURN_IF_ERROR(face_edges_ends(faces, ends, error));
     for (int64_t e = 0; e < faces->edge_count; e++) {
         vector_middle(dim, nodes, 2, ends + 2 * e, x + e * dim);
@@ -79,10 +78,10 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
 {
     const struct faces *faces = input->faces;
     int dim = body->dim;
-    SCRATCH int32_t *cell = NULL, *face = NULL;
+    SCRATCH int32_t *face = NULL;
     SCRATCH int64_t *ptr = NULL;
     tables->face_count = faces->boundary_count;
-    RETURN_IF_ERROR(NEW_ARRAY(&cell, tables->face_count, error));
+    NEW_SCRATCH(int32_t, cell, tables->face_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&tables->face_cell, tables->face_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&tables->face_vertex, tables->face_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(face_row, tables->face_count, error));
@@ -178,8 +177,8 @@ static enum status list_edges(const struct smoothed_cells_input *input, const st
                               struct error *error)
 {
     const struct field_averages *averages = &body->cells.averages;
-    SCRATCH bool *touched = NULL, *in_order = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&touched, averages->row_count, error));
+    SCRATCH bool *in_order = NULL;
+    NEW_SCRATCH(bool, touched, averages->row_count, error);
     RETURN_IF_ERROR(body_share_values(body, &in_order, error));
     RETURN_IF_ERROR(read_rows_with(rows, body_share_owner, body, wanted, error));
     for (int64_t r = 0; r < averages->row_count; r++) {
@@ -209,8 +208,7 @@ static enum status fetch_edges(const struct smoothed_cells_input *input, struct 
                                    .idx = input->edge_idx,
                                    .value = input->edge_phi,
                                    .reader = input->edge_reader};
-    SCRATCH bool *wanted = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, face_row_count(input->faces), error));
+    NEW_SCRATCH(bool, wanted, face_row_count(input->faces), error);
     RETURN_IF_ERROR(list_edges(input, &rows, body, edges->order, wanted, error));
     RETURN_IF_ERROR(read_rows_fetch(&rows, wanted, fetched, error));
     edges->ptr = fetched->ptr;
@@ -264,15 +262,14 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     const struct faces *faces = input->faces;
     int64_t rows = face_row_count(faces);
     SCRATCH int64_t *order = NULL;
-    SCRATCH int32_t *vertex_of_cell = NULL, *edge_of_cell = NULL, *face_row = NULL, *place = NULL;
-    SCRATCH double *x = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&place, body->point_count, error));
+    SCRATCH int32_t *face_row = NULL;
+    NEW_SCRATCH(int32_t, place, body->point_count, error);
     for (int64_t q = 0; q < body->point_count; q++) {
         place[body->order[q]] = (int32_t)q;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&edge_of_cell, body->point_count * CELL_EDGES(dim), error));
+    NEW_SCRATCH(int32_t, edge_of_cell, body->point_count * CELL_EDGES(dim), error);
     RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&x, rows * dim, error));
+    NEW_SCRATCH(double, x, rows *dim, error);
     RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
     const struct given_table edges = {
         "edge.phi",      "edge",          input->edge_reader, ranks_rank(body->share.ranks),
@@ -284,7 +281,7 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
     RETURN_IF_ERROR(NEW_ARRAY(&order, rows, error));
     RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&vertex_of_cell, body->point_count * corners, error));
+    NEW_SCRATCH(int32_t, vertex_of_cell, body->point_count * corners, error);
     for (int64_t q = 0; q < body->point_count; q++) {
         memcpy(vertex_of_cell + q * corners, input->cell_node + body->order[q] * corners,
                (size_t)corners * sizeof *vertex_of_cell);

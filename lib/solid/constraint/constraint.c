@@ -143,12 +143,11 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
     FREED_BY(sparse_free) struct sparse of_node = {0};
     SCRATCH int64_t *touched = NULL, *last = NULL;
     int64_t capacity = 0, at = 0; /* last: the list that touched each last */
-    SCRATCH double *sum = NULL;
     RETURN_IF_ERROR(sparse_transpose(&lists, &of_node, error));
     RETURN_IF_ERROR(NEW_ARRAY(ptr, rows->count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&touched, rows->list_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&last, rows->list_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&sum, rows->list_count, error));
+    NEW_SCRATCH(double, sum, rows->list_count, error);
     for (int64_t l = 0; l < rows->list_count; l++) {
         int64_t count = 0;
         for (int64_t i = rows->ptr[l]; i < rows->ptr[l + 1]; i++) {
@@ -200,9 +199,8 @@ static enum status share(struct constraint *constraint, bool **wanted, struct er
 {
     const struct constraint_rows *rows = constraint->rows;
     const struct ranks *ranks = constraint->inverse->ranks;
-    SCRATCH double *work = NULL;
     RETURN_IF_ERROR(inverse_factor_wanted(constraint->inverse, wanted, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&work, rows->list_count, error));
+    NEW_SCRATCH(double, work, rows->list_count, error);
     for (int64_t l = 0; l < rows->list_count; l++) {
         work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
     }

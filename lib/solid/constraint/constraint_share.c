@@ -10,11 +10,9 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
 {
     const struct constraint_rows *rows = constraint->rows;
     int64_t size = constraint->node_count * rows->dim;
-    SCRATCH int64_t *dropped = NULL;
-    SCRATCH double *unit = NULL, *u = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&dropped, constraint->factor.dropped, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&unit, rows->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
+    NEW_SCRATCH(int64_t, dropped, constraint->factor.dropped, error);
+    NEW_SCRATCH(double, unit, rows->count, error);
+    NEW_SCRATCH(double, u, size, error);
     envelope_dropped(&constraint->factor, dropped);
     for (int64_t d = 0; d < constraint->factor.dropped; d++) {
         double *combination = null + d * rows->count;
@@ -46,16 +44,15 @@ static void diagonal(const struct constraint *constraint, double *scale)
 enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
 {
     int64_t dropped = constraint->factor.dropped, count = dropped > 0 ? constraint->rows->count : 0;
-    SCRATCH double *null = NULL, *scale = NULL, *gram = NULL, *amount = NULL;
     if (dropped == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&null, count * dropped, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&scale, count, error));
+    NEW_SCRATCH(double, null, count *dropped, error);
+    NEW_SCRATCH(double, scale, count, error);
     RETURN_IF_ERROR(null_rows(constraint, null, error));
     diagonal(constraint, scale);
-    RETURN_IF_ERROR(NEW_ARRAY(&gram, dropped * dropped, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&amount, dropped, error));
+    NEW_SCRATCH(double, gram, dropped *dropped, error);
+    NEW_SCRATCH(double, amount, dropped, error);
     for (int64_t i = 0; i < dropped; i++) {
         for (int64_t r = 0; r < count; r++) {
             double part = scale[r] * null[i * count + r];

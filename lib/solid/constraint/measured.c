@@ -130,9 +130,7 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
                                struct error *error)
 {
     FREED_BY(envelope_free) struct envelope factor = {0};
-    SCRATCH int64_t *dropped = NULL;
-    SCRATCH double *mass = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&mass, node_count, error));
+    NEW_SCRATCH(double, mass, node_count, error);
     for (int64_t n = 0; n < node_count; n++) {
         mass[n] = 1.0;
     }
@@ -143,7 +141,7 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
         return STATUS_OK;
     }
     RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_independent, &factor, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&dropped, factor.dropped, error));
+    NEW_SCRATCH(int64_t, dropped, factor.dropped, error);
     envelope_dropped(&factor, dropped);
     for (int64_t d = 0; d < factor.dropped; d++) {
         dependent[dropped[d]] = true;

@@ -46,17 +46,15 @@ static enum status find_inside(const struct contact *contact, const struct facet
     int dim = contact->dim;
     int64_t count = contact->surface.vertex_count;
     FREED_BY(rigid_free) struct rigid_surface facets = {0};
-    SCRATCH double *corners = NULL, *place = NULL, *spacing = NULL;
-    SCRATCH bool *outside = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&place, count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&outside, count, error));
+    NEW_SCRATCH(double, place, count *dim, error);
+    NEW_SCRATCH(bool, outside, count, error);
     for (int64_t v = 0; v < count; v++) {
         rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place + v * dim);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&spacing, cells->node_count, error));
+    NEW_SCRATCH(double, spacing, cells->node_count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
     RETURN_IF_ERROR(field_outside(cells, spacing, 0.0, count, place, outside, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&corners, set->count * dim * dim, error));
+    NEW_SCRATCH(double, corners, set->count *dim *dim, error);
     for (int64_t i = 0; i < set->count * dim; i++) {
         for (int a = 0; a < dim; a++) {
             corners[i * dim + a] = cells->x[(int64_t)set->facet[i] * dim + a];

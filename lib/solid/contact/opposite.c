@@ -18,11 +18,9 @@ enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
 {
     int corners = cells->dim + 1;
-    SCRATCH int32_t *of_cell = NULL;
     int32_t count;
-    SCRATCH bool *seen = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&of_cell, cells->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&seen, cells->node_count, error));
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    NEW_SCRATCH(bool, seen, cells->node_count, error);
     RETURN_IF_ERROR(cells_parts(cells, of_cell, &count, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int32_t node = cells->node[i], here = of_cell[i / corners];
@@ -67,9 +65,8 @@ static enum status number_vertices(struct opposite *opposite, const struct face_
 {
     struct rigid_surface *surface = &opposite->surface;
     int dim = table->dim;
-    SCRATCH int32_t *number = NULL;
     surface->vertex_count = opposite->rows.count;
-    RETURN_IF_ERROR(NEW_ARRAY(&number, table->node_count, error));
+    NEW_SCRATCH(int32_t, number, table->node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, surface->vertex_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, surface->facet_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&opposite->rest, surface->vertex_count * dim, error));

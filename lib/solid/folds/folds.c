@@ -55,9 +55,9 @@ static enum status list_cells(struct folds *folds, struct error *error)
 {
     int corners = folds->input.dim + 1;
     int64_t count = folds->input.cell_count * (corners == 3 ? 3 : 6);
-    SCRATCH int32_t *ring = NULL, *part = NULL;
+    SCRATCH int32_t *part = NULL;
     int32_t node[4];
-    RETURN_IF_ERROR(NEW_ARRAY(&ring, count, error));
+    NEW_SCRATCH(int32_t, ring, count, error);
     for (int64_t i = 0; i < count; i++) {
         part_nodes(&folds->input, i, node);
         ring[i] = find_ring(folds, node);
@@ -164,9 +164,6 @@ static bool interpenetrates(const struct fold *fold)
 
 enum status folds_build(const struct fold_input *input, struct folds *folds, struct error *error)
 {
-    SCRATCH struct ridge *sides = NULL;
-    SCRATCH double *u = NULL;
-    SCRATCH bool *stopped = NULL;
     int64_t size = input->node_count * input->dim;
     *folds = (struct folds){.input = *input};
     struct box box = box_of(input->dim, input->node_count, input->x);
@@ -176,13 +173,13 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
-    RETURN_IF_ERROR(NEW_ARRAY(&sides, input->facet_count * input->dim, error));
+    NEW_SCRATCH(struct ridge, sides, input->facet_count * input->dim, error);
     ridges_list(input->dim, input->facet_count, input->facet, sides);
     RETURN_IF_ERROR(build_rings(folds, sides, error));
     RETURN_IF_ERROR(find_supports(folds, sides, error));
     RETURN_IF_ERROR(find_rims(folds, sides, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&stopped, input->node_count, error));
+    NEW_SCRATCH(double, u, size, error);
+    NEW_SCRATCH(bool, stopped, input->node_count, error);
     RETURN_IF_ERROR(folds_find_bodies(folds, error));
     struct fold at_rest = folds_find(folds, u, stopped);
     if (!interpenetrates(&at_rest) && folds->body_count > 1) {

@@ -177,11 +177,10 @@ enum status field_averages_drop_copied(const struct sparse *matrix, struct field
     struct average_table *edges = &averages->given[0];
     const int64_t *ptr = matrix->ptr;
     int64_t at = 0, begin = 0;
-    SCRATCH bool *kept = NULL;
     if (fetched->ptr == NULL) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&kept, fetched->row_count, error));
+    NEW_SCRATCH(bool, kept, fetched->row_count, error);
     for (int64_t r = 0; r < fetched->row_count; r++) {
         kept[edges->order[r]] = ptr[r] == ptr[r + 1];
     }

@@ -56,11 +56,11 @@ enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_
                                 struct error *error)
 {
     const struct sparse *table = row_operator_columns(rows);
-    SCRATCH int32_t *count = NULL, *range = NULL;
+    SCRATCH int32_t *range = NULL;
     if (table->column_count > INT32_MAX) {
         return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&count, table->column_count, error));
+    NEW_SCRATCH(int32_t, count, table->column_count, error);
     for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
         count[table->idx[i]]++;
     }
@@ -126,10 +126,9 @@ enum status row_operator_transpose(const struct row_operator *rows, const int32_
                                    struct sparse *transposed, struct error *error)
 {
     const struct sparse *table = row_operator_columns(rows);
-    SCRATCH int64_t *next = NULL;
     int64_t sum = 0;
     *transposed = (struct sparse){0};
-    RETURN_IF_ERROR(NEW_ARRAY(&next, count, error));
+    NEW_SCRATCH(int64_t, next, count, error);
     for (int64_t c = 0; c < count; c++) {
         slot[column[c]] = (int32_t)c;
     }

@@ -39,13 +39,13 @@ enum status centre_sums_make_room(struct centre_sums *sums, int64_t more, struct
 enum status centre_sums_send(const struct ranks *ranks, int owner, struct centre_sums *sums,
                              struct error *error)
 {
-    SCRATCH int64_t *count = NULL, *first = NULL;
+    SCRATCH int64_t *count = NULL;
     int processes = ranks_count(ranks);
     if (processes == 1) { /* nothing to send */
         return STATUS_OK;
     }
     RETURN_IF_ERROR(ranks_list(ranks, sums->count, &count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&first, processes + 1, error));
+    NEW_SCRATCH(int64_t, first, processes + 1, error);
     enum status status = STATUS_OK;
     if (ranks_rank(ranks) != owner) {
         status = centre_sums_make_room(sums, count[owner], error);

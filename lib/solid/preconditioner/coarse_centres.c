@@ -225,9 +225,8 @@ static enum status list_some(const struct coarse_space *coarse, const struct way
 static enum status join_lists(struct coarse_space *coarse, const struct ways *ways, const struct near *near,
                               struct error *error)
 {
-    SCRATCH bool *listed = NULL;
     int64_t entries = coarse->node_count, at = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&listed, coarse->node_count, error));
+    NEW_SCRATCH(bool, listed, coarse->node_count, error);
     for (int64_t c = 0; c < coarse->centre_count; c++) {
         entries += near[c].count;
         for (int64_t i = 0; i < near[c].count; i++) {
@@ -262,20 +261,15 @@ static enum status join_lists(struct coarse_space *coarse, const struct ways *wa
 static enum status list_near(struct coarse_space *coarse, const struct ways *ways, const int64_t *from,
                              struct near *near, struct error *error)
 {
-    enum status status = STATUS_OK;
+    struct first_failure failure = {STATUS_OK};
     struct chunks chunks = chunks_for_threads(coarse->centre_count, coarse->node_count, NODES_FOR_THREAD);
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         struct error own;
-        enum status made =
-            list_some(coarse, ways, from, chunks_begin(&chunks, c), chunks_begin(&chunks, c + 1), near, &own);
-#pragma omp critical
-        if (made != STATUS_OK) {
-            status = made;
-            *error = own;
-        }
+        int64_t begin = chunks_begin(&chunks, c), end = chunks_begin(&chunks, c + 1);
+        note_failure(&failure, c, list_some(coarse, ways, from, begin, end, near, &own), &own, error);
     }
-    return status == STATUS_OK ? join_lists(coarse, ways, near, error) : status;
+    return failure.status == STATUS_OK ? join_lists(coarse, ways, near, error) : failure.status;
 }
 
 enum status coarse_centres_pick(struct coarse_space *coarse, const struct neighbours *neighbours,

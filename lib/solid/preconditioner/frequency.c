@@ -269,12 +269,11 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
                             const double *residual, int most_iterations, const double *start, double *scratch,
                             struct spectrum *spectrum, struct error *error)
 {
-    SCRATCH double *diagonal = NULL, *off_diagonal = NULL;
     double last = INFINITY, largest = 0.0;
     int next_check = first_check;
     *spectrum = (struct spectrum){.lowest = INFINITY};
-    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, most_iterations, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, most_iterations, error));
+    NEW_SCRATCH(double, diagonal, most_iterations, error);
+    NEW_SCRATCH(double, off_diagonal, most_iterations, error);
     struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     if (!lanczos_begin(&l)) {
         spectrum->lowest = spectrum->largest = 1.0;
@@ -306,16 +305,15 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
 {
     int count = spectrum->iterations;
     int64_t size = system->node_count * system->dim;
-    SCRATCH double *diagonal = NULL, *off_diagonal = NULL, *share = NULL, *pivot = NULL, *mode = NULL;
     *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
     if (!(spectrum->lowest < least_told * spectrum->largest)) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&diagonal, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&off_diagonal, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&share, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&pivot, count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&mode, size, error));
+    NEW_SCRATCH(double, diagonal, count, error);
+    NEW_SCRATCH(double, off_diagonal, count, error);
+    NEW_SCRATCH(double, share, count, error);
+    NEW_SCRATCH(double, pivot, count, error);
+    NEW_SCRATCH(double, mode, size, error);
     struct lanczos l = lanczos_at(system, p, u, residual, start, scratch);
     (void)lanczos_begin(&l);
     for (int k = 0; k < count; k++) { /* the matrix first, */

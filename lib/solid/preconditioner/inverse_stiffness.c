@@ -69,8 +69,7 @@ static enum status add_rows(const struct solid_system *system, int64_t first, in
                             const struct sparse *rows, const int64_t *length, struct lower *lower,
                             struct error *error)
 {
-    SCRATCH bool *wanted = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&wanted, system->node_count, error));
+    NEW_SCRATCH(bool, wanted, system->node_count, error);
     for (int64_t p = first; p < last; p++) {
         for (int64_t k = 0; k < length[p]; k++) {
             wanted[rows->idx[p * MOST_ENTRIES + k]] = true;
@@ -87,13 +86,12 @@ static enum status make_rows(const struct solid_system *system, int64_t first, i
 {
     const int64_t *node = system->body.node_order;
     const struct chunks chunks = chunks_of(last - first, worthwhile);
-    SCRATCH struct placed *near = NULL;
     int64_t most = 0;
     for (int64_t p = first; p < last; p++) {
         int64_t entries = lower_row(lower, node[p]).count;
         most = entries > most ? entries : most;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&near, most * chunks.count, error));
+    NEW_SCRATCH(struct placed, near, most * chunks.count, error);
 #pragma omp parallel for schedule(static, 1) num_threads(chunks.threads)
     for (int64_t c = 0; c < chunks.count; c++) {
         for (int64_t p = first + chunks_begin(&chunks, c); p < first + chunks_begin(&chunks, c + 1); p++) {
@@ -141,7 +139,6 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
                                struct error *error)
 {
     int count = ranks_count(share->ranks);
-    SCRATCH int64_t *first = NULL;
     ranks_gather(share->ranks, length, sizeof *length, share->node_first);
     for (int64_t p = 0; p < rows->row_count; p++) {
         rows->ptr[p + 1] = rows->ptr[p] + length[p];
@@ -151,7 +148,7 @@ static enum status gather_rows(const struct body_share *share, int64_t *length, 
         memmove(rows->idx + to, rows->idx + from, (size_t)length[p] * sizeof *rows->idx);
         memmove(rows->value + to, rows->value + from, (size_t)length[p] * sizeof *rows->value);
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&first, count + 1, error));
+    NEW_SCRATCH(int64_t, first, count + 1, error);
     for (int r = 0; r <= count; r++) {
         first[r] = rows->ptr[share->node_first[r]];
     }
@@ -196,13 +193,12 @@ enum status inverse_stiffness_factor_by(const struct solid_system *system, int64
     FREED_BY(sparse_free) struct sparse by_place = {0};
     const struct body_share *share = &system->body.share;
     int64_t nodes = system->node_count;
-    SCRATCH int64_t *length = NULL;
     SCRATCH bool *wanted = NULL;
     *factor = (struct inverse_factor){.ranks = share->ranks};
     RETURN_IF_ERROR(ranks_share(factor->ranks, nodes, NULL, &factor->first, error));
     RETURN_IF_ERROR(lower_begin(system, &lower, error));
     RETURN_IF_ERROR(sparse_new(nodes, nodes, nodes * MOST_ENTRIES, &by_place, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
+    NEW_SCRATCH(int64_t, length, nodes, error);
     RETURN_IF_ERROR(make_own_rows(system, batch, &lower, &by_place, length, error));
     RETURN_IF_ERROR(gather_rows(share, length, &by_place, error));
     lower_free(&lower);
@@ -216,13 +212,10 @@ enum status inverse_stiffness_rows(const struct inverse_factor *factor, const st
                                    struct constraint_rows *transformed, struct error *error)
 {
     const struct sparse *matrix = &factor->transposed;
-    SCRATCH int64_t *at = NULL;
-    SCRATCH int32_t *idx = NULL;
-    SCRATCH double *phi = NULL;
     constraint_rows_init(transformed, rows->dim);
-    RETURN_IF_ERROR(NEW_ARRAY(&at, matrix->row_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&idx, matrix->row_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&phi, matrix->row_count, error));
+    NEW_SCRATCH(int64_t, at, matrix->row_count, error);
+    NEW_SCRATCH(int32_t, idx, matrix->row_count, error);
+    NEW_SCRATCH(double, phi, matrix->row_count, error);
     memset(at, -1, (size_t)matrix->row_count * sizeof *at);
     for (int64_t l = 0, r = 0; l < rows->list_count; l++) {
         struct average average = constraint_rows_average(rows, r);

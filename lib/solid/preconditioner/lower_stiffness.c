@@ -59,7 +59,7 @@ static enum status make_piece(const int32_t *place, int64_t count, int number, s
 static enum status make_some(const int32_t *place, const struct chunks *chunks, int64_t begin, int64_t end,
                              struct lower *lower, struct error *error)
 {
-    enum status status = STATUS_OK;
+    struct first_failure failure = {STATUS_OK};
     int64_t at = chunks_begin(chunks, begin);
     RETURN_IF_ERROR(
         scalar_stiffness_prepare(&lower->stiffness, place + at, chunks_begin(chunks, end) - at, error));
@@ -77,14 +77,10 @@ static enum status make_some(const int32_t *place, const struct chunks *chunks, 
             }
         }
         scalar_row_free(&row);
-#pragma omp critical
-        if (made != STATUS_OK) {
-            status = made;
-            *error = own;
-        }
+        note_failure(&failure, 0, made, &own, error);
     }
     lower->piece_count += (int)(end - begin);
-    return status;
+    return failure.status;
 }
 
 /* Make the rows of nodes as further pieces. The nodes are prepared some chunks at a time: it takes a pass
@@ -123,11 +119,10 @@ static void drop_pieces(struct lower *lower)
 enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct error *error)
 {
     size_t nodes = (size_t)lower->stiffness.system->node_count;
-    SCRATCH int32_t *place = NULL;
     drop_pieces(lower);
     memset(lower->begin, 0, nodes * sizeof *lower->begin);
     memset(lower->end, 0, nodes * sizeof *lower->end);
-    RETURN_IF_ERROR(NEW_ARRAY(&place, last - first, error));
+    NEW_SCRATCH(int32_t, place, last - first, error);
     for (int64_t p = first; p < last; p++) {
         place[p - first] = (int32_t)p;
     }
@@ -137,9 +132,8 @@ enum status lower_make(int64_t first, int64_t last, struct lower *lower, struct 
 enum status lower_add(const bool *wanted, struct lower *lower, struct error *error)
 {
     const struct solid_system *system = lower->stiffness.system;
-    SCRATCH int32_t *place = NULL;
     int64_t count = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&place, system->node_count, error));
+    NEW_SCRATCH(int32_t, place, system->node_count, error);
     for (int64_t p = 0; p < system->node_count; p++) {
         int64_t i = system->body.node_order[p];
         if (wanted[i] && lower->begin[i] == lower->end[i]) {
@@ -191,15 +185,12 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
     const struct ranks *ranks = system->body.share.ranks;
     int64_t nodes = system->node_count;
     FREED_BY(halo_free) struct halo halo = {0};
-    SCRATCH double *length = NULL, *value = NULL;
-    SCRATCH int32_t *idx = NULL;
-    SCRATCH int64_t *send_first = NULL, *receive_first = NULL;
     int64_t at = 0;
     struct lower_piece *fetched = &lower->piece[lower->piece_count++];
     RETURN_IF_ERROR(halo_build(ranks, nodes, wanted, 1, body_share_owner, &system->body, &halo, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&length, nodes, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&send_first, ranks->count + 1, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&receive_first, ranks->count + 1, error));
+    NEW_SCRATCH(double, length, nodes, error);
+    NEW_SCRATCH(int64_t, send_first, ranks->count + 1, error);
+    NEW_SCRATCH(int64_t, receive_first, ranks->count + 1, error);
     for (int64_t i = 0; i < nodes; i++) {
         length[i] = (double)(lower->end[i] - lower->begin[i]);
     }
@@ -219,8 +210,8 @@ enum status lower_fetch(const bool *wanted, struct lower *lower, struct error *e
         }
     }
     RETURN_IF_ERROR(make_room(fetched, receive_first[ranks->count], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&idx, send_first[ranks->count], error));
-    RETURN_IF_ERROR(NEW_ARRAY(&value, send_first[ranks->count], error));
+    NEW_SCRATCH(int32_t, idx, send_first[ranks->count], error);
+    NEW_SCRATCH(double, value, send_first[ranks->count], error);
     for (int64_t i = 0; i < halo.send_first[ranks->count]; i++) {
         struct lower_row row = lower_row(lower, halo.send[i]);
         memcpy(idx + at, row.idx, (size_t)row.count * sizeof *idx);

@@ -115,8 +115,7 @@ static enum status keep(int64_t near_count, int64_t numbers, int64_t c, const do
 static enum status sort(int64_t near_count, const struct entries *entries, struct moved_fields *fields,
                         struct error *error)
 {
-    SCRATCH int64_t *next = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&next, near_count + 1, error));
+    NEW_SCRATCH(int64_t, next, near_count + 1, error);
     RETURN_IF_ERROR(NEW_ARRAY(&fields->ptr, near_count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&fields->at, entries->count, error));
     for (int64_t i = 0; i < entries->count; i++) {
@@ -135,14 +134,13 @@ enum status moved_fields_build(const struct preconditioner *p, struct moved_fiel
                                struct error *error)
 {
     int64_t values = p->node_count * p->dim, numbers = p->dim * (p->dim + 1) * p->dim;
-    SCRATCH double *amount = NULL, *field = NULL, *move = NULL;
     FREED_BY(entries_free) struct entries entries = {0};
     *fields = (struct moved_fields){.p = p};
     RETURN_IF_ERROR(NEW_ARRAY(&fields->near, p->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&amount, p->constraint.rows->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&field, values, error));
+    NEW_SCRATCH(double, amount, p->constraint.rows->count, error);
+    NEW_SCRATCH(double, field, values, error);
     int64_t count = find_near(p, amount, field, fields->near);
-    RETURN_IF_ERROR(NEW_ARRAY(&move, count * numbers, error));
+    NEW_SCRATCH(double, move, count *numbers, error);
     for (int64_t c = 0; c < p->coarse.centre_count && count > 0; c++) {
         memset(move, 0, (size_t)(count * numbers) * sizeof *move);
         take_fields(p, fields->near, c, move);

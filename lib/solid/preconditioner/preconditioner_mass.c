@@ -76,9 +76,9 @@ static enum status weigh_inverse_fields(struct preconditioner *p, struct error *
     int64_t count = p->coarse.count, values = p->node_count * FIELDS_AT_ONCE;
     int64_t times = (count + FIELDS_AT_ONCE - 1) / FIELDS_AT_ONCE;
     SCRATCH int64_t *firsts = NULL;
-    SCRATCH double *rows = NULL, *vectors = NULL;
+    SCRATCH double *vectors = NULL;
     RETURN_IF_ERROR(ranks_share(ranks, times, NULL, &firsts, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows, times * count * FIELDS_AT_ONCE, error));
+    NEW_SCRATCH(double, rows, times *count *FIELDS_AT_ONCE, error);
     const int64_t *first = firsts + ranks_rank(ranks);
     struct chunks chunks = chunks_for_threads(first[1] - first[0], values, NODES_FOR_THREAD);
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&vectors, chunks.threads * values, error));
@@ -131,8 +131,7 @@ static enum status weigh_conditions(struct preconditioner *p, struct error *erro
     const struct ranks *ranks = p->factor.ranks;
     const int64_t *first = p->column_first;
     int64_t dim = p->dim;
-    SCRATCH double *column = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&column, p->constraint.rows->count, error));
+    NEW_SCRATCH(double, column, p->constraint.rows->count, error);
     for (int64_t k = first[ranks_rank(ranks)]; k < first[ranks_rank(ranks) + 1]; k++) {
         double *weight = p->free_weight + k * p->size; /* or row: symmetric */
         memset(weight, 0, (size_t)p->size * sizeof *weight);

@@ -93,10 +93,9 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
                                           const double *u, const double *at_u, struct error *error)
 {
     int64_t values = p->node_count * p->dim;
-    SCRATCH double *moved = NULL, *force = NULL;
     double epsilon = strain * system_node_spacing(system), *one = p->amount;
-    RETURN_IF_ERROR(NEW_ARRAY(&moved, values, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&force, values, error));
+    NEW_SCRATCH(double, moved, values, error);
+    NEW_SCRATCH(double, force, values, error);
     for (int64_t k = 0; k < p->size; k++) {
         memset(one, 0, (size_t)p->size * sizeof *one);
         one[k] = 1.0;
@@ -116,12 +115,11 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    int64_t *evaluations, struct error *error)
 {
-    SCRATCH double *at_u = NULL;
     preconditioner_drop_slow_modes(p);
     if (p->size == 0) {
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(NEW_ARRAY(&at_u, p->node_count * p->dim, error));
+    NEW_SCRATCH(double, at_u, p->node_count * p->dim, error);
     system_resist(system, u, at_u);
     ++*evaluations;
     if (system->body.smoothed) {

@@ -306,7 +306,7 @@ static enum status make_field_rows(struct scalar_stiffness *stiffness, struct er
 {
     struct sparse *cells = &stiffness->cells;
     SCRATCH int32_t *field = NULL;
-    enum status status = STATUS_OK;
+    struct first_failure failure = {STATUS_OK};
     RETURN_IF_ERROR(list_fields(stiffness, &field, error));
 #pragma omp parallel num_threads(chunks_of(cells->row_count, worthwhile).threads)
     {
@@ -326,13 +326,9 @@ static enum status make_field_rows(struct scalar_stiffness *stiffness, struct er
             }
         }
         scalar_row_free(&row);
-#pragma omp critical
-        if (made != STATUS_OK) {
-            status = made;
-            *error = own;
-        }
+        note_failure(&failure, 0, made, &own, error);
     }
-    return status;
+    return failure.status;
 }
 
 enum status scalar_stiffness_prepare(struct scalar_stiffness *stiffness, const int32_t *place, int64_t count,

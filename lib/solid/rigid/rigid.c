@@ -63,9 +63,8 @@ static enum status number_vertices(struct rigid_surface *surface, const double *
 {
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
-    SCRATCH int64_t *same = NULL;
     SCRATCH int32_t *number = NULL; /* of the vertex of each first corner, + 1 */
-    RETURN_IF_ERROR(NEW_ARRAY(&same, count, error));
+    NEW_SCRATCH(int64_t, same, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&number, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->vertex, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->facet, count, error));

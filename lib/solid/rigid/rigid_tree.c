@@ -53,8 +53,7 @@ static void grow(struct rigid_surface *surface, struct placed *placed, int64_t f
 enum status rigid_grow_tree(struct rigid_surface *surface, struct error *error)
 {
     int64_t count = surface->facet_count;
-    SCRATCH struct placed *placed = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
+    NEW_SCRATCH(struct placed, placed, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&surface->branch, 2 * count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->in_order, count, error));
     for (int64_t f = 0; f < count; f++) {

@@ -99,12 +99,11 @@ static enum status check_dropped(const struct solid_system *system, struct const
                                  struct error *error)
 {
     const struct constraint_rows *rows = &system->rows;
-    SCRATCH double *u = NULL, *factor = NULL;
     double largest = 0.0, worst = 0.0;
     int64_t size = system->node_count * system->dim, row = 0, worst_row = -1;
     enum { TIMES = 5 };
-    RETURN_IF_ERROR(NEW_ARRAY(&u, size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&factor, system->curve_count, error));
+    NEW_SCRATCH(double, u, size, error);
+    NEW_SCRATCH(double, factor, system->curve_count, error);
     for (int64_t r = 0; r < rows->count; r++) {
         largest = fmax(largest, fabs(rows->target[r]));
     }
