@@ -127,6 +127,7 @@ SCENE
     shapefn cube.mts > table.mts 2> note
     every_load > run.scene
     same '2 4' run.scene
+    OMP_WAIT_POLICY=active same 2 run.scene # processes that wait do so at work
     in_parts 8 cube.mts
     same_of_parts '1 3 7' run.scene
 }

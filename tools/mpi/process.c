@@ -90,8 +90,13 @@ static void gather(const struct ranks *ranks, void *items, size_t size, const in
         own.count[r] = first != NULL ? (int)(first[r + 1] - first[r]) : 1;
         own.place[r] = first != NULL ? (int)first[r] : r;
     }
-    MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD, own.requests);
-    wait_for(1, own.requests);
+    if (own.patient) {
+        MPI_Iallgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD,
+                        own.requests);
+        wait_for(1, own.requests);
+    } else { /* 3 % less time of two processes than by requests */
+        MPI_Allgatherv(MPI_IN_PLACE, 0, type, items, own.count, own.place, type, MPI_COMM_WORLD);
+    }
     MPI_Type_free(&type);
     own.sent += (double)own.count[ranks->rank] * (double)size * (ranks->count - 1);
     end_message(&message);
