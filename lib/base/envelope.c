@@ -238,7 +238,7 @@ static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *colu
     int64_t count = factor->dropped, strong = 0, weak = 0;
     NEW_SCRATCH(int64_t, behind, count, error);
     NEW_SCRATCH(int64_t, by_pivot, count, error);
-    NEW_SCRATCH(double, matrix, count *count, error);
+    NEW_SCRATCH(double, matrix, count * count, error);
     NEW_SCRATCH(double, diagonal, count, error);
     for (int64_t i = 0; i < n; i++) {
         if (isinf(row_at(factor, i)[i])) {

@@ -130,7 +130,7 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
     char attributes[64];
     RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
     int64_t count = faces.count, points = face_point_count(&faces);
-    NEW_SCRATCH(double, x, points *dim, error);
+    NEW_SCRATCH(double, x, points * dim, error);
     face_points(&faces, cells->x, x);
     RETURN_IF_ERROR(
         stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));

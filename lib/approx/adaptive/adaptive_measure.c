@@ -145,7 +145,7 @@ static enum status measure(const struct refinement *refinement, const struct sam
     NEW_SCRATCH(int32_t, united, pairs, error);
     NEW_SCRATCH(int32_t, place, pairs, error);
     int64_t n = unite(lists, first, last, united, place);
-    NEW_SCRATCH(double, matrix, n *n, error);
+    NEW_SCRATCH(double, matrix, n * n, error);
     for (int64_t p = first; p < last; p++) {
         int64_t at = lists->ptr[p], count = lists->ptr[p + 1] - at;
         double weight = volume * refinement->rule.weight[(p - first) % per_rule];

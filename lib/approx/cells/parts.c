@@ -106,7 +106,7 @@ enum status boundary_sides(const double *x, const struct faces *boundary, double
     SCRATCH int32_t *parent = NULL;
     SCRATCH double *area = NULL;
     RETURN_IF_ERROR(parts_begin(boundary->count, &parent, &area, error));
-    NEW_SCRATCH(double, normal, boundary->count *dim, error);
+    NEW_SCRATCH(double, normal, boundary->count * dim, error);
     NEW_SCRATCH(struct ridge, ridges, ridge_count, error);
     for (int64_t f = 0; f < boundary->count; f++) {
         face_area_vector(dim, x, &boundary->node[f * dim], &normal[f * dim]);

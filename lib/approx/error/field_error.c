@@ -116,8 +116,8 @@ enum status field_error_recovered(const struct cells *cells, const int32_t *regi
             return fail(error, STATUS_INPUT, "row %lld: not a finite number", (long long)(i / cols));
         }
     }
-    NEW_SCRATCH(double, gradient, cells->count *size, error);
-    NEW_SCRATCH(double, recovered, cells->node_count *size, error);
+    NEW_SCRATCH(double, gradient, cells->count * size, error);
+    NEW_SCRATCH(double, recovered, cells->node_count * size, error);
     NEW_SCRATCH(double, volume, cells->node_count, error);
     for (int64_t q = 0; q < cells->count; q++) {
         cell_gradient(cells, q, cols, values, gradient + q * size);

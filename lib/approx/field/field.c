@@ -60,7 +60,7 @@ static enum status nearest_cells(const struct cells *cells, const double *spacin
     int dim = cells->dim;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
-    NEW_SCRATCH(double, centre, cells->count *dim, error);
+    NEW_SCRATCH(double, centre, cells->count * dim, error);
     NEW_SCRATCH(double, radius, cells->count, error);
     NEW_SCRATCH(double, size, cells->count, error);
     enclose(cells, spacing, within, centre, radius, size);

@@ -72,7 +72,7 @@ static enum status own_voxels(const struct labels *labels, const struct label_ce
 {
     int dim = labels->dim;
     int64_t doubly;
-    NEW_SCRATCH(double, x, mesh->node_count *dim, error);
+    NEW_SCRATCH(double, x, mesh->node_count * dim, error);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double voxel[3];
         labels_to_voxel(labels, mesh->x + n * dim, voxel);

@@ -128,7 +128,7 @@ static enum status list_points(const struct visibility *visibility, const struct
 static enum status list_all(const struct visibility *visibility, const struct shaded *points,
                             struct pair_list *all, struct error *error)
 {
-    enum status failure = STATUS_OK;
+    struct first_failure failure = {STATUS_OK};
 #pragma omp parallel
     {
         enum status status = STATUS_OK;
@@ -141,17 +141,12 @@ static enum status list_all(const struct visibility *visibility, const struct sh
                                          : status;
         }
 #pragma omp critical
-        {
-            status = status == STATUS_OK ? pair_list_append(all, &pairs, &own) : status;
-            if (status != STATUS_OK && failure == STATUS_OK) {
-                failure = status;
-                *error = own;
-            }
-        }
+        status = status == STATUS_OK ? pair_list_append(all, &pairs, &own) : status;
+        note_failure(&failure, 0, status, &own, error);
         free(near.index);
         pair_list_free(&pairs);
     }
-    return failure;
+    return failure.status;
 }
 
 enum status visibility_shadows_build(const struct visibility *visibility, int64_t count, const double *x,

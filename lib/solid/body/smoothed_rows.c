@@ -269,7 +269,7 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     }
     NEW_SCRATCH(int32_t, edge_of_cell, body->point_count * CELL_EDGES(dim), error);
     RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
-    NEW_SCRATCH(double, x, rows *dim, error);
+    NEW_SCRATCH(double, x, rows * dim, error);
     RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
     const struct given_table edges = {
         "edge.phi",      "edge",          input->edge_reader, ranks_rank(body->share.ranks),

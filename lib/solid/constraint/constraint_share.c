@@ -47,11 +47,11 @@ enum status constraint_share_out(const struct constraint *constraint, double *fo
     if (dropped == 0) {
         return STATUS_OK;
     }
-    NEW_SCRATCH(double, null, count *dropped, error);
+    NEW_SCRATCH(double, null, count * dropped, error);
     NEW_SCRATCH(double, scale, count, error);
     RETURN_IF_ERROR(null_rows(constraint, null, error));
     diagonal(constraint, scale);
-    NEW_SCRATCH(double, gram, dropped *dropped, error);
+    NEW_SCRATCH(double, gram, dropped * dropped, error);
     NEW_SCRATCH(double, amount, dropped, error);
     for (int64_t i = 0; i < dropped; i++) {
         for (int64_t r = 0; r < count; r++) {

@@ -46,7 +46,7 @@ static enum status find_inside(const struct contact *contact, const struct facet
     int dim = contact->dim;
     int64_t count = contact->surface.vertex_count;
     FREED_BY(rigid_free) struct rigid_surface facets = {0};
-    NEW_SCRATCH(double, place, count *dim, error);
+    NEW_SCRATCH(double, place, count * dim, error);
     NEW_SCRATCH(bool, outside, count, error);
     for (int64_t v = 0; v < count; v++) {
         rigid_place_from_rest(&contact->place, dim, contact->surface.vertex + v * dim, place + v * dim);
@@ -54,7 +54,7 @@ static enum status find_inside(const struct contact *contact, const struct facet
     NEW_SCRATCH(double, spacing, cells->node_count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
     RETURN_IF_ERROR(field_outside(cells, spacing, 0.0, count, place, outside, error));
-    NEW_SCRATCH(double, corners, set->count *dim *dim, error);
+    NEW_SCRATCH(double, corners, set->count * dim * dim, error);
     for (int64_t i = 0; i < set->count * dim; i++) {
         for (int a = 0; a < dim; a++) {
             corners[i * dim + a] = cells->x[(int64_t)set->facet[i] * dim + a];

@@ -144,7 +144,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
     int64_t count = folds->input.cell_count;
     FREED_BY(point_grid_free) struct point_grid grid = {0};
     FREED_BY(index_list_free) struct index_list near = {0};
-    NEW_SCRATCH(double, middle, count *dim, error);
+    NEW_SCRATCH(double, middle, count * dim, error);
     NEW_SCRATCH(double, radius, count, error);
     for (int64_t c = 0; c < count; c++) {
         find_middle(folds, folds->y, c, middle + c * dim);

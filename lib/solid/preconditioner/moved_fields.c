@@ -140,7 +140,7 @@ enum status moved_fields_build(const struct preconditioner *p, struct moved_fiel
     NEW_SCRATCH(double, amount, p->constraint.rows->count, error);
     NEW_SCRATCH(double, field, values, error);
     int64_t count = find_near(p, amount, field, fields->near);
-    NEW_SCRATCH(double, move, count *numbers, error);
+    NEW_SCRATCH(double, move, count * numbers, error);
     for (int64_t c = 0; c < p->coarse.centre_count && count > 0; c++) {
         memset(move, 0, (size_t)(count * numbers) * sizeof *move);
         take_fields(p, fields->near, c, move);

@@ -78,7 +78,7 @@ static enum status weigh_inverse_fields(struct preconditioner *p, struct error *
     SCRATCH int64_t *firsts = NULL;
     SCRATCH double *vectors = NULL;
     RETURN_IF_ERROR(ranks_share(ranks, times, NULL, &firsts, error));
-    NEW_SCRATCH(double, rows, times *count *FIELDS_AT_ONCE, error);
+    NEW_SCRATCH(double, rows, times * count * FIELDS_AT_ONCE, error);
     const int64_t *first = firsts + ranks_rank(ranks);
     struct chunks chunks = chunks_for_threads(first[1] - first[0], values, NODES_FOR_THREAD);
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&vectors, chunks.threads * values, error));
