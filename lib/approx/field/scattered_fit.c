@@ -187,16 +187,10 @@ static void part_free(struct part *part)
 }
 
 /* Decompose the columns in U, which receives the left singular vectors. largest: singular value to which the
- * cut refers; 0: the largest one. */
+ * cut refers; 0: the largest one. By the method of Jacobi: the other one of GSL takes memory unchecked. */
 static enum status part_decompose(struct part *part, double largest, struct error *error)
 {
-    gsl_vector *work = gsl_vector_alloc(part->s->size);
-    if (work == NULL) {
-        return fail_memory(error, "interpolation of a table");
-    }
-    int failure = gsl_linalg_SV_decomp(part->U, part->V, part->s, work);
-    gsl_vector_free(work);
-    if (failure != GSL_SUCCESS) {
+    if (gsl_linalg_SV_decomp_jacobi(part->U, part->V, part->s) != GSL_SUCCESS) {
         return fail(error, STATUS_VERDICT, "interpolation of a table: no singular value decomposition");
     }
     double least = cut * (largest > 0.0 ? largest : gsl_vector_get(part->s, 0));

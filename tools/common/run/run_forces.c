@@ -115,7 +115,9 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
             }
         }
     }
-    if (text == NULL || fclose(text) != 0) {
+    bool failed = text == NULL || fflush(text) != 0 || ferror(text) != 0;
+    if ((text != NULL && fclose(text) != 0) || failed ||
+        attributes == NULL) { /* fclose cuts it to size, unchecked */
         tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
     }
     return attributes;
