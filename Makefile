@@ -1,7 +1,8 @@
 # make            build the tools into build/bin
 # make deps       install what is missing (Debian, Ubuntu)
 # make mpi        mtled for several processes under mpirun, build/bin/mtled-mpi
-# make check      run all tests                         make SAN=1 check   ... under sanitizers
+# make check      run the tests                         make SAN=1 check   ... under sanitizers
+# make check-all  the same, and those that take long and repeat on larger cases
 # make faults, fuzz, lint, coverage: what the programs survive, what a fuzzer finds, static checks, lines under test
 # make STUDY      run a study of pipelines/: tables and pictures into build/out/STUDY; minutes each:
 #   table1  brain2d  brain3d    as in the papers: approximation, a brain section, the whole brain
@@ -58,7 +59,7 @@ MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/ma
 # Programs that the command-line tests use.
 TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/filled $(BUILD)/tests/helper/deny.so
 
-.PHONY: all lib man deps check clean always
+.PHONY: all lib man deps check check-all clean always
 all: $(PROGRAMS) $(MAN_PAGES)
 man: $(MAN_PAGES)
 lib: $(LIBRARY)
@@ -133,8 +134,8 @@ endif
 deps:
 	@bash pipelines/deps.sh
 
-check: all $(if $(HAS_MPI),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
-	@BUILD="$(abspath $(BUILD))" bash tests/run.sh
+check check-all: all $(if $(HAS_MPI),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
+	@BUILD="$(abspath $(BUILD))" $(if $(SAN)$(COVERAGE),LIMIT=3600) bash tests/run.sh $(if $(filter %-all,$@),all)
 
 clean:
 	rm -rf build build-*

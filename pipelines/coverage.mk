@@ -1,5 +1,5 @@
 # Not a study: which share of the lines of lib/ and tools/ the tests run, by gcov, into build/out/coverage/coverage.tsv.
-# Fails below 95 %.
+# Fails below 93 %.
 
 .PHONY: coverage
 coverage:
@@ -9,4 +9,4 @@ coverage:
 	@bash pipelines/coverage.sh build-coverage > $(OUT)/coverage/new.tsv
 	@mv $(OUT)/coverage/new.tsv $(OUT)/coverage/coverage.tsv
 	@cat $(OUT)/coverage/coverage.tsv
-	@awk -F '\t' '$$1 == "all" { exit !($$4 >= 95) }' $(OUT)/coverage/coverage.tsv
+	@awk -F '\t' '$$1 == "all" { exit !($$4 >= 93) }' $(OUT)/coverage/coverage.tsv
