@@ -6,7 +6,6 @@ load faults.bash # its `refused` is another one
 
 setup() {
     enter_loosely
-    export OMP_NUM_THREADS=1
     mesh > square.msh
     /usr/bin/python3 "$BATS_TEST_DIRNAME/helper/nifti.py" step slice.nii 1 2
     pressed_block > block.scene
@@ -365,59 +364,4 @@ walls() { printf '[displacement %s]\nfacets = %s\nnormal = 0\n' left xmin right 
     refused "quasi-static, out of steps" 1 "not converged after 30 steps" 'mtled edited.scene table.mts'
     { swinging_block; printf 'max_steps = 3\n'; } > edited.scene
     refused "dynamic, out of steps" 1 "after 3 steps" 'mtled edited.scene table.mts'
-}
-
-# For the programs under test: the allocation number DENY fails. Under sanitizers, a leak or any other finding is status 99.
-deny() {
-    LD_PRELOAD=$BUILD/tests/helper/deny.so UBSAN_OPTIONS=exitcode=99 \
-        ASAN_OPTIONS=verify_asan_link_order=0:allocator_may_return_null=1:detect_leaks=1:fast_unwind_on_malloc=0:exitcode=99 "$@"
-}
-
-# denied COMMAND...: let its allocations fail in turn. Where one does, status 3, one line, no whole
-# stream; or it was not needed, and the output is what it is else.
-denied() {
-    local total step bad=0 hit=0 spared=0 status
-    DENY_COUNT=count deny "$@" > whole 2> whole.message
-    total=$(cat count)
-    step=$(every $((total / samples + 1)))
-    for ((i = 0; i < total; i += step)); do
-        status=0
-        DENY=$i deny "$@" > out 2> message || status=$?
-        if [ "$status" -eq 0 ] && cmp -s out whole; then
-            spared=$((spared + 1))
-        elif [ "$status" -eq 3 ] && { cmp -s out whole || ! mts list out > /dev/null 2>&1; } &&
-            [ "$(grep -c . message)" -le $(($(grep -c . whole.message) + 1)) ] && tail -n 1 message | grep -q '[a-z]: '; then
-            hit=$((hit + 1))
-        else
-            bad=$((bad + 1))
-            echo "$*: allocation $i: status $status: $(cat message)"
-        fi
-    done
-    record "$*$sanitized" 3 "$hit of $total allocations denied, each: status 3, one line; $spared not needed; $bad else" "$([ $bad -eq 0 ] && echo yes || echo no)"
-    [ "$bad" -eq 0 ] && [ "$hit" -gt 0 ]
-}
-
-loads() {
-    printf '[%s top]\nfacets = ymax\n%s\n' pressure 'value = 10' traction 'components = 0, -10'
-    printf '[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\n'
-}
-
-@test "fault 25: malloc fails at each call" {
-    [[ $BUILD != *-coverage* ]] || skip "gcov allocates as well"
-    [[ $BUILD != *-san*-clang ]] || skip "clang's sanitizers are in the programs, and come before what is preloaded"
-    samples=30 sanitized=
-    [[ $BUILD != *-san* ]] || { samples=8 sanitized=', under sanitizers: no leak'; }
-    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > cloud.mts
-    ipoints cloud.mts > points.mts
-    support points.mts > lists.mts
-    shapefn lists.mts > table.mts
-    printf '[output]\nstress = yes\nreactions = yes\nframes = 2\n[solver]\ntolerance = 1e-3\n' >> block.scene
-    mtled block.scene table.mts > u.mts
-    cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
-    printf -- '-1 -0.001\n2 -0.001\n' > floor.tsv
-    { pressed_block | sed '/bottom/,/^$/d' && loads; } > loaded.scene
-    { swinging_block | sed '/bottom/,/^$/d; s/0.05/0.01/' && loads; printf '[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
-    while IFS= read -r command; do
-        denied $command
-    done < <(commands | grep -v -e ' -h$' -e '--version$' && printf 'mtled %s.scene table.mts\n' loaded moving)
 }
