@@ -78,7 +78,7 @@ lid() {
 
 @test "a disc that sinks into a cup not much larger comes to rest, and weighs what it weighs" {
     # Nodes lie in the creases of the wall's polygon.
-    for case in '51 7' '52 5' '52 4'; do
+    for case in '51 7' '52 4'; do
         read -r cup size <<< "$case"
         printf 'SetFactory("OpenCASCADE");Disk(1)={0,0,0,.05};Rectangle(4)={0,-1,0,1,2};\n' > disc.geo
         printf 'BooleanIntersection(5)={Surface{1};Delete;}{Surface{4};Delete;};Physical Surface("body")={5};\n' >> disc.geo

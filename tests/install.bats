@@ -97,6 +97,7 @@ complete_words() {
     [ "$(complete_words mts keep '')" = "" ]
 }
 
+# bats test_tags=thorough
 @test "deb: unpacked elsewhere it computes a scene; its dependencies are there, with dpkg-shlibdeps and without" {
     command -v dpkg-deb > /dev/null || skip "not Debian" # where there are no such packages
     build deb DEB="$PWD/mtled.deb"

@@ -28,13 +28,8 @@ with_section() {
         { print }'
 }
 
-@test "usage, version, and wrong command lines" {
-    run -0 --separate-stderr interp -h
-    [[ "$output" == "interp - "* ]]
-    [ -z "$stderr" ]
-    run -0 --separate-stderr interp --version
-    [[ "$output" =~ ^interp\ [0-9.]+$ ]]
-    for arguments in "--nonsense" "-t -t" "-f" "-f u -f u" "-p" "a b" "-u mm linear.mts" "-k 2 linear.mts" "-b mls1 linear.mts" \
+@test "wrong command lines" {
+    for arguments in "-f u -f u" "-p" "a b" "-u mm linear.mts" "-k 2 linear.mts" "-b mls1 linear.mts" \
         "-p x -k 2 -R 3 linear.mts" "-p x -k 0 linear.mts" "-p x -u foot linear.mts" "-p x -R 1foot linear.mts" \
         "-p missing.mts linear.mts" "-p missing.tsv -u mm linear.mts" "-p . linear.mts" "-p . -u m linear.mts" "missing.mts"; do
         run -2 --separate-stderr interp $arguments
@@ -79,14 +74,6 @@ with_section() {
     interp -b mls1 -p points.mts field.mts | mts print u > u
     near 5e-2 u expected
     run ! near 1e-4 u expected
-}
-
-@test "own points and the same points from elsewhere give the same values" {
-    ipoints -g 3 linear.mts | support | shapefn > table.mts
-    interp table.mts > own.mts
-    interp -p own.mts linear.mts | mts print u > u
-    mts print u own.mts > own
-    near 1e-12 u own
 }
 
 @test "a table of points in a unit, with comments; displaced points" {

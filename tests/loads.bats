@@ -3,10 +3,15 @@
 
 load common.bash
 
-setup() {
-    enter_alone
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || return
     square_msh
     nodes -u mm body.msh 2> note | shapefn > square.mts 2> note
+}
+
+setup() {
+    enter_alone
+    cp "$BATS_FILE_TMPDIR"/{body.msh,square.mts} .
     { block quasi-static && held_below && walls; } > held.scene
 }
 

@@ -7,6 +7,7 @@ setup() {
     scripts=$top/pipelines/neurosurgery
 }
 
+# bats test_tags=thorough
 @test "from a label image: the exposed cortex predicts half of the shift of landmarks, with the weight found from it, or with given gravity, four fifths" {
     at=$PWD/out/neurosurgery
     make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" NEURO_SPACING=12mm NEURO_TRUE_SPACING=11mm \
@@ -42,6 +43,7 @@ scenario() {
     awk -f "$scripts/target.awk" "$at"/{true,"$1","$1"_position}.landmarks | tee rows
 }
 
+# bats test_tags=thorough
 @test "a resection: the cavity has a wall, fluid stands below a level; points of cortex and cavity predict most of the shift" {
     scenario resection 14mm 13mm
     awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.6 * $2 && $4 < 0.35 * $2) }' rows
@@ -49,6 +51,7 @@ scenario() {
     awk 'NF != 7 || $7 != 0.5 { bad = !/^#/ } END { exit bad }' out/neurosurgery/resection/measured.tsv
 }
 
+# bats test_tags=thorough
 @test "electrodes: points inside predict most of the shift, without a load" {
     scenario electrodes 14mm 13mm
     awk -F '\t' 'NR == 1 { exit !($2 > 3 && $3 < 0.35 * $2 && $4 < 0.25 * $2) }' rows

@@ -22,10 +22,6 @@ make_patch() {
     printf '0 10\n10 10\n' | side > ymax.tsv
 }
 
-@test "scripts are clean under shellcheck" {
-    find "$BATS_TEST_DIRNAME/../pipelines" "$BATS_TEST_DIRNAME/../examples" -name '*.sh' -print0 | xargs -0 shellcheck -x -P SCRIPTDIR -S warning
-}
-
 @test "CalculiX passes the linear patch test through our deck and back" {
     make_patch
     bash "$pipelines/calculix/solve.sh" patch.scene square.dat > u.dat 2> log
@@ -35,16 +31,6 @@ make_patch() {
         { a = $3 - .05 * $1 - .02 * $2; b = $4 + .03 * $1 + .04 * $2; error = a * a + b * b; n++ }
         !(error < 1e-8 ^ 2) { print "node", n - 1, "is off by", sqrt(error); failed = 1 }
         END { exit failed || n != 16 }'
-}
-
-@test "deck: a traction along a side is what the other side holds" {
-    make_patch
-    {
-        sed '/^\[displacement/,$d' patch.scene
-        printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 3, -5\n'
-    } > pull.scene
-    bash "$pipelines/calculix/solve.sh" pull.scene square.dat > u.dat 2> log
-    mts print reactions u.dat | awk '!(($1 + 0.3)^2 < 1e-10 && ($2 - 0.5)^2 < 1e-10) { print; exit 1 }'
 }
 
 # A cube of 3 x 3 x 3 nodes whose sides follow u = (.05 x + .02 y, -.03 y + .01 z, .02 x - .04 z).
@@ -140,22 +126,7 @@ END
     done
 }
 
-@test "mixed elements: sides that tables displace, a linear field to round-off in 2D and 3D, middles of edges too" {
-    make_patch
-    bash "$pipelines/mixed/solve.sh" patch.scene square.dat > u.dat 2> log
-    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
-        { a = $3 - .05 * $1 - .02 * $2; b = $4 + .03 * $1 + .04 * $2; if (!(a * a + b * b < 1e-24)) { print; exit 1 } }
-        END { if (NR != 49) exit 1 }'
-    make_cube
-    bash "$pipelines/mixed/solve.sh" cube.scene cube.dat > u.dat 2> log
-    # A table on a surface is fitted, with combinations of the points that it does not tell kept small: to 1e-8 of it.
-    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
-        { a = $4 - .05 * $1 - .02 * $2; b = $5 + .03 * $2 - .01 * $3; c = $6 - .02 * $1 + .04 * $3 }
-        !(a * a + b * b + c * c < 1e-14) { print; exit 1 }
-        END { if (NR != 125) exit 1 }'
-}
-
-@test "mixed elements: their field at places, quadratic within an element, beyond the mesh that at the nearest place" {
+@test "mixed elements: a traction is what the held side bears, as by CalculiX; their field at places, quadratic within an element, beyond the mesh that at the nearest place" {
     make_patch
     # A bar that its weight of tractions bends: a field that is not linear in an element.
     {
@@ -163,6 +134,9 @@ END
         printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 30, 0\n'
     } > pull.scene
     bash "$pipelines/mixed/solve.sh" pull.scene square.dat > u.dat 2> log
+    mts print reactions u.dat | awk '!(($1 + 3)^2 < 1e-8 && $2^2 < 1e-8) { print; exit 1 }'
+    bash "$pipelines/calculix/solve.sh" pull.scene square.dat > other.dat 2> log
+    mts print reactions other.dat | awk '!(($1 + 3)^2 < 1e-8 && $2^2 < 1e-8) { print; exit 1 }'
     bash "$pipelines/mixed/solve.sh" pull.scene square.dat u.dat > at.dat 2> log
     mts check at.dat
     run -0 cmp <(mts print nodes.x u.dat) <(mts print nodes.x at.dat)
@@ -207,16 +181,6 @@ END
     bash "$pipelines/mixed/solve.sh" pushed.scene body.dat > pushed.dat 2> log
     paste <(mts print u held.dat) <(mts print u pushed.dat) | awk '
         { a = $3 - $1; b = $4 - $2 + 0.002 } !(a * a + b * b < 1e-10) { print; exit 1 } END { if (NR < 20) exit 1 }'
-}
-
-@test "mixed elements: a traction along a side is what the other side holds" {
-    make_patch
-    {
-        sed '/^\[displacement/,$d' patch.scene
-        printf '[displacement foot]\nfacets = ymin\ncomponents = 0, 0\n[traction pull]\nfacets = ymax\ncomponents = 3, -5\n'
-    } > pull.scene
-    bash "$pipelines/mixed/solve.sh" pull.scene square.dat > u.dat 2> log
-    mts print reactions u.dat | awk '!(($1 + 0.3)^2 < 1e-10 && ($2 - 0.5)^2 < 1e-10) { print; exit 1 }'
 }
 
 @test "mixed elements: what they do not understand, and a missing or failing FreeFEM, are one line" {
@@ -284,18 +248,6 @@ END
     run -1 awk -f "$pipelines/table1.awk" "$paper" empty.tsv
 }
 
-@test "brain2d, brain3d: a row of the comparison from errors and log; none from half a log" {
-    printf 'avg\t0.00005\nmax\t0.0002\nn\t700\n' > errors
-    printf '# nodes.x f8 707 2 enc=text\n' > u.dat
-    printf 'support: widened at 34 points, at most 1.2 times\npoints\t5052\nsteps\t3720\nsolve seconds\t2.446\n' > log
-    run -0 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat -v digits=2 log errors
-    [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t0.0500\t0.2000\t3720\t2.45')" ]
-    run -0 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat log
-    [ "$output" = "$(printf 'MMLS, 34 points widened\t707\t5052\t-\t-\t3720\t2.4')" ]
-    head -n 1 log > half
-    run -1 awk -f "$pipelines/row.awk" -v scheme=MMLS -v field=u.dat half errors
-}
-
 @test "convergence: orders between sizes, and the slope over all" {
     for n in 100 400 1600; do
         printf 'avg\t%s\nmax\t0.01\n' "$(awk "BEGIN { print 1e-3 * 100 / $n }")" > "block-default-$n.errors"
@@ -319,17 +271,6 @@ END
     grep -q "^c	calculix	40	>80	>80	80	4	>8	>8$" reach
     grep -q "^c	mixed	8	>16	>16	16	4	>8	>8$" reach
     grep -q "^c	mixed_solver	2	>4	>4	4	2	>4	>4$" reach
-}
-
-@test "speed-error: a row from errors, times and force; none where one of the first two is missing" {
-    printf 'avg_relative\t0.0123\n' > cube-mixed-0.03.errors
-    printf 'prepare\t0.5\nsolve\t1.5\nsolver\t1\nnodes\t100\n' > cube-mixed-0.03.time
-    awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors > table
-    grep -q "^cube	mixed	0.03	100	0.500	1.500	2.000	1.2300	-	1.000$" table
-    printf '0.1 -9.5 -9.25\n' > cube-mixed-0.03.force
-    awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors | grep -q "1.2300	9.25	1.000$"
-    rm cube-mixed-0.03.time
-    run -1 awk -f "$pipelines/speed-error/table.awk" cube-mixed-0.03.errors
 }
 
 @test "the tables of the brain section are those that its geometry gives" {
@@ -368,19 +309,14 @@ for row in read('u.dat')['$name'].tolist(): print(*row)" > rows
 }
 
 @test "foreign: meshes are as poor as they are meant to be; a row for each, whatever comes of it" {
-    for name in delaunay-2 jittered-1 voxels-hex coincident; do bash "$pipelines/foreign/mesh.sh" $name $name.msh; done
+    for name in jittered-1 voxels-hex; do bash "$pipelines/foreign/mesh.sh" $name $name.msh; done
     # between LEAST MOST MESH: its least quality
     between() {
-        nodes -v -u mm "$3.msh" 2> "$3.said" > "$3.mts"
-        sed -nE 's/^nodes: quality of the cells: least ([^,]*),.*/\1/p' "$3.said" | awk -v low="$1" -v high="$2" '
-            { n++; bad = !($1 >= low && $1 <= high) } END { exit bad || n != 1 }'
+        nodes -v -u mm "$3.msh" 2>&1 > "$3.mts" | sed -nE 's/^nodes: quality of the cells: least ([^,]*),.*/\1/p' |
+            awk -v low="$1" -v high="$2" '{ bad = !($1 >= low && $1 <= high) } END { exit bad || NR != 1 }'
     }
-    between 1e-9 1e-3 delaunay-2
     between 0.001 0.02 jittered-1
     between 0.5 1 voxels-hex
-    between 0.2 1 coincident
-    mts check delaunay-2.mts | grep -q '^cells: row [0-9]*: poor: quality'
-    mts check coincident.mts | grep -qx 'cells: 2 connected bodies'
     run -2 bash "$pipelines/foreign/mesh.sh" none none.msh
 
     cat > fake << 'END'

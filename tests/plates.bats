@@ -117,6 +117,7 @@ crushed() {
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
 
+# bats test_tags=thorough
 @test "flat cells across which the field bends are no fold; those that the field turns over are" {
     # Random points, least quality 1e-7: beneath facets of a side that bulges their nodes get outside of the chords.
     bash "$top/pipelines/foreign/mesh.sh" delaunay-19 slivers.msh
@@ -201,8 +202,7 @@ buckled() {
 }
 
 @test "a body that buckles is told, with its place, be it before or after; one that is stable is not" {
-    # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5, with 6 nodes a side of .53 and .51
-    # (with 5 it was .5 and .495 while 2 mu / 3 |F_h - F|^2 / 2 stabilised, which held the edges more).
+    # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5.
     buckled 5 0.495 1e-5 ''
     refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
     [[ $stderr == *" at (0.1, 0.1, "*": press less, hold it there, or allow it ([output] folds = allowed)" ]]
@@ -213,17 +213,9 @@ buckled() {
     run --separate-stderr mtled -o u.dat buckled.scene cube.mts
     [ "$status" -eq 0 ]
     [[ $stderr == "mtled: buckled.scene: the body folds at the whole load: it buckles"* && $(wc -l <<< "$stderr") -eq 1 ]]
-    buckled 5 0.495 1e-5 'frames = 10'
-    run --separate-stderr mtled -o u.dat buckled.scene cube.mts
-    [ "$status" -eq 1 ]
-    [[ $stderr == *"the body folds "* ]]
-    buckled 6 0.51 1e-5 ''
-    refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
-    for tolerance in 1e-5 1e-8; do
-        buckled 5 0.51 $tolerance ''
-        mtled buckled.scene cube.mts > u.dat 2> said
-        [ ! -s said ]
-    done
+    buckled 5 0.51 1e-5 ''
+    mtled buckled.scene cube.mts > u.dat 2> said
+    [ ! -s said ]
 }
 
 @test "a slender body that buckles under a load that is held comes to a stable state: a note, no verdict" {
@@ -241,6 +233,7 @@ buckled() {
         ratio = bow / (0.1 * sqrt(k2) / (3.14159265 / 2 * (1 + k2 / 4))); exit !(ratio > 0.98 && ratio < 1.02) }'
 }
 
+# bats test_tags=thorough
 @test "a rod that turns about the line between its ends, with hardly any stiffness, comes to rest in 1 400 steps" {
     # 1 730 without slow modes. The end moves by .02 m, the middle by .04: 1e-6 m is 2.5 times what the tolerance, 1e-5, leaves.
     rod
@@ -251,6 +244,7 @@ buckled() {
     fieldcmp --tol-max 1e-6 u.dat fine.dat
 }
 
+# bats test_tags=thorough
 @test "a lattice whose struts bend has buckled: a note, though they are compressed by more than creases a side" {
     printf '%s\n' 'SetFactory("OpenCASCADE");' 'For i In {0:3}' 'Box(1 + i) = {0, 15 * i, 0, 51, 6, 6};' 'Box(11 + i) = {15 * i, 0, 0, 6, 51, 6};' 'EndFor' \
         'BooleanUnion(30) = { Volume{1}; Delete; }{ Volume{2:4, 11:14}; Delete; };' 'Mesh.MeshSizeMax = 4;' > lattice.geo
@@ -267,10 +261,6 @@ buckled() {
     buckled 5 0.495 1e-5 '[contact all]\nfacets = *\nagainst = *'
     sed -i '/^\[output/d' buckled.scene
     refused 1 'buckled.scene: the body folds at the whole load: it buckles or wrinkles' mtled buckled.scene cube.mts
-    buckled 5 0.51 1e-5 '[contact all]\nfacets = *\nagainst = *'
-    sed -i '/^\[output/d' buckled.scene
-    mtled buckled.scene cube.mts > u.dat 2> said
-    [ ! -s said ]
 }
 
 @test "what was seen of a body that buckles outlasts an interruption" {

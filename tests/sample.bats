@@ -141,12 +141,3 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     [ "$index" -lt "$(grep -vc '^#' all.tsv)" ]
     refused 2 "no region 'nowhere': there are $regions" sample -r "$first,nowhere" step.nii points.mts
 }
-
-@test "output to a file appears when whole; a full device is status 3" {
-    sample -o out.tsv scan.nii.gz cube.mts
-    sample scan.nii.gz cube.mts | cmp - out.tsv
-    run -3 --separate-stderr bash -c "sample scan.nii.gz cube.mts > /dev/full"
-    [[ $stderr == "sample: standard output: No space left on device" ]]
-    run -3 --separate-stderr sample -o /dev/full scan.nii.gz cube.mts
-    [[ $stderr == "sample: /dev/full: No space left on device" ]]
-}

@@ -100,23 +100,6 @@ at_nodes() {
     run -1 grep -q '^parameters' u.vtk
 }
 
-@test "quadratic fields are exact with mls2, as the solver's own field" {
-    cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field quadratic > field.mts
-    cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field quadratic > points.mts
-    # What mtled would write: for this basis the parameters of a quadratic field are its values.
-    ipoints field.mts | support -b mls2 -k 2.6 | mts keep 'nodes.x,cells,u,support.radius' -t |
-        sed 's/^# support.radius /# parameters.radius /' > result.dat
-    mts print u field.mts > u
-    sed -i '/^# end/d' result.dat
-    { printf '# parameters f8 %d 1 enc=text\n' "$(wc -l < u)"; cat u; printf '\n\n# end 5\n'; } >> result.dat
-    mts print u points.mts > expected
-    interp -p points.mts result.dat | mts print u > at
-    below 1e-11 "$(largest expected at)"
-    below 1e-11 "$(fieldcmp points.mts result.dat | awk '$1 == "max" { print $2 }')"
-    mts drop 'parameters*' result.dat | interp -p points.mts | mts print u > at
-    run ! below 1e-11 "$(largest expected at)"
-}
-
 @test "parameters that do not fit are refused or reported" {
     cloud -d 2 -k jittered -n 6 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     scene 2 ymin ymax "0.02, 0.01" > square.scene

@@ -9,30 +9,6 @@ setup() {
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 
-@test "each stage prints its usage and version" {
-    for tool in $tools; do
-        run -0 --separate-stderr "$tool" -h
-        [[ "$output" == "$tool - "* ]]
-        [[ "$output" == *"usage: $tool"* ]]
-        [ -z "$stderr" ]
-        run -0 --separate-stderr "$tool" --help
-        [[ "$output" == "$tool - "* ]]
-        run -0 --separate-stderr "$tool" --version
-        [[ "$output" =~ ^$tool\ [0-9.]+$ ]]
-    done
-}
-
-@test "each stage refuses a wrong command line with status 2" {
-    for tool in $tools; do
-        for arguments in "--nonsense" "-q" "-t -t" "-t --text" "-o" "--output" "-o x -o y" "square.mts square.mts" \
-            "--text=yes" "missing.mts" "."; do
-            run -2 --separate-stderr "$tool" $arguments
-            [[ "$stderr" == "$tool: "* ]]
-            [ -z "$output" ]
-        done
-    done
-}
-
 @test "values out of range are refused with status 2, before the input is read" {
     for command in "ipoints -g 5x" "ipoints -c -g 3" "ipoints --lattice 1" "ipoints --lattice 3,x" "ipoints --lattice 2.5" \
         "ipoints -g 3 --lattice 4,4" "support -k 0" "support -k nan" "support -R 8parsec" "support -R -3mm" \
@@ -253,30 +229,6 @@ END
     hostile 2 shapefn bad.txt "points.x: row 2"
 }
 
-@test "an unfit support is a verdict that names the point" {
-    ipoints -g 3 square.mts > points.mts
-    support -k 1.2 --no-widen -b mls2 points.mts > lists.mts
-    run -1 --separate-stderr shapefn lists.mts
-    [[ "$stderr" == *"row "*" at ("*"mls2"*"widen the support"* ]]
-    [ -z "$output" ]
-    cat > line.txt <<'END'
-# mts 1
-# nodes.x f8 5 2 enc=text unit=m
-0 0
-1 1
-2 2
-3 3
-4 4
-
-
-# end 1
-END
-    ipoints --lattice 3 line.txt > line.mts
-    run -1 --separate-stderr support line.mts
-    [[ "$stderr" == *"points.x: row 0 at (0, 0): no good support"* ]]
-    [ -z "$output" ]
-}
-
 @test "supports: constant radius in any unit, caps, widening reported" {
     ipoints square.mts > points.mts
     support -R 30mm points.mts | mts print support.radius | sort -u > mm
@@ -306,14 +258,4 @@ END
         ipoints $rule brick.mts | mts print points.weight | awk '{ s += $1 } END { exit !(s > 0.00199999999 && s < 0.00200000001) }'
     done
     ipoints --lattice 5,3 square.mts | mts print points.x | awk 'END { exit !(NR == 15 && $1 == 0.1 && $2 == 0.1) }'
-}
-
-@test "the truncated stream of an upstream that died is refused" {
-    ipoints square.mts > points.mts
-    for part in 0 10 200 3000; do
-        head -c $part points.mts > part.mts
-        run -2 --separate-stderr support part.mts
-        [ -z "$output" ]
-    done
-    head -c -7 points.mts | { run -2 --separate-stderr support; [[ "$stderr" == *"support: "* ]]; }
 }

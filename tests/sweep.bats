@@ -178,6 +178,7 @@ AWK
     grep -q 'case short: [0-9]* rows, but the mesh has [0-9]* nodes' said
 }
 
+# bats test_tags=thorough
 @test "uncertainty: the same samples give the same table, others another one" {
     table() {
         make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/$1" UNCERTAINTY_SAMPLES="$2" UNCERTAINTY_SEED="$3" \

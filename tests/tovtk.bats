@@ -299,64 +299,10 @@ END
     [ "$stderr" = "tovtk: only the final state is written: name a .pvd file for all 2 frames" ]
 }
 
-@test "a stream without frames makes a series of one" {
-    cloud -d 2 -k regular -n 3 --box 0,1,0,1 | tovtk -o one.pvd
-    [ "$(ls one* | xargs)" = "one-0000.vtu one.pvd" ]
-}
-
-@test "nodes without cells become points" {
-    cloud -d 2 -k halton -n 5 --box 0,1,0,1 --field linear | tovtk -t > out.vtu
-    well_formed out.vtu
-    [ "$(array out.vtu types | xargs)" = "1 1 1 1 1" ]
-    [ "$(array out.vtu connectivity | xargs)" = "0 1 2 3 4" ]
-    [ "$(array out.vtu u | wc -l)" -eq 5 ]
-}
-
-@test "the same bytes from a file, from standard input, to a file, to standard output" {
-    two_triangles > stream
-    for options in "" "-t"; do
-        tovtk $options stream 2> note > from_file
-        tovtk $options < stream 2> note > from_stdin
-        tovtk $options -o to_file stream 2> note
-        cmp from_file from_stdin
-        cmp from_file to_file
-    done
-}
-
-@test "an output stays as it was when the input is cut" {
-    two_triangles > stream
-    echo before > out.vtu
-    for size in 0 7 100 400 $(($(stat -c %s stream) - 1)); do
-        run --separate-stderr tovtk -o out.vtu <(head -c "$size" stream)
-        [ "$status" -eq 2 ]
-        [ "${#stderr_lines[@]}" -eq 1 ]
-        [ "$(cat out.vtu)" = before ]
-    done
-    [ "$(ls -A | grep -v separate-stderr | xargs)" = "out.vtu stream" ] # nothing temporary left
-}
-
-@test "a full device is reported" {
-    two_triangles > stream
-    run --separate-stderr bash -c "tovtk stream 2> err > /dev/full; echo \$?; tail -1 err"
-    [ "${lines[0]}" = 3 ]
-    [[ ${lines[1]} == "tovtk: standard output: "* ]]
-}
-
 @test "wrong use: one line and status 2" {
     two_triangles > stream
-    for options in "-f vtu" "-x" "-t -t" "stream stream" "missing"; do
-        run --separate-stderr tovtk $options
-        [ "$status" -eq 2 ]
-        [ -z "$output" ]
-        [ "${#stderr_lines[@]}" -eq 1 ]
-    done
-    run -0 tovtk -h
-    [[ $output == "tovtk - "* ]]
-}
-
-@test "regions that do not match the cells are refused" {
-    two_triangles | sed '/^# cells.region/ { s/ 2 1 / 1 1 /; n; d }' > stream
-    run --separate-stderr tovtk stream
-    [ "$status" -eq 2 ]
-    [[ $stderr == *"cells.region: does not fit cells: 1 rows instead of 2"* ]]
+    refused 2 "" tovtk -f vtu
+    refused 2 "" tovtk stream stream
+    sed '/^# cells.region/ { s/ 2 1 / 1 1 /; n; d }' stream > short
+    refused 2 "cells.region: does not fit cells: 1 rows instead of 2" tovtk short
 }

@@ -62,44 +62,12 @@ press() {
     press body.mts
 }
 
-@test "every shape: valid, angles from 8 to 165 degrees" {
-    while read -r shape seed voxel spacing; do
-        phantom "$shape" "$seed" "$voxel" > image.nii.gz
-        voxels -h "$spacing" -v image.nii.gz > body.mts 2> said
-        [ -z "$(mts check body.mts | grep -v 'connected bodies$')" ]
-        awk '/degrees/ { if ($(NF - 3) >= 8 && $(NF - 1) <= 165) good = 1 } END { exit !good }' said
-        grep -E ' ml of voxels' said > volumes
-        awk '{ sub(/%.*/, ""); sub(/.*\(/, ""); x = $0 + 0; if (!(x < 1 && x > -1)) exit 1 }' volumes
-    done << 'END'
-torus 1 1 5mm
-two 1 1 5mm
-four 1 1 4mm
-thin 1 1 2mm
-layer 1 1 1.5mm
-boxes 1 1 4mm
-blobs 1 1 5mm
-blobs 2 1,1,2 4mm
-two 1 1,1.5,3 6mm
-END
-}
-
-@test "labels that touch and hang by an edge, thin ones: the compression of these runs, too" {
-    while read -r shape spacing; do
-        phantom "$shape" > image.nii.gz
-        voxels --largest -h "$spacing" image.nii.gz > body.mts 2> said
-        press body.mts
-    done << 'END'
-four 8mm
-boxes 6mm
-blobs 7mm
-layer 3mm
-END
-}
-
-@test "crevices narrower than the spacing: the compression runs, and no fold is seen" {
-    for seed in 6 9 16 17; do
-        phantom blobs "$seed" > image.nii.gz
-        voxels --largest -h 5mm image.nii.gz > body.mts 2> said
+# bats test_tags=thorough
+@test "labels that touch and hang by an edge, thin ones, crevices narrower than the spacing: the compression runs, and no fold is seen" {
+    for case in 'four 1 8' 'boxes 1 6' 'blobs 1 7' 'layer 1 3' 'blobs 6 5' 'blobs 9 5' 'blobs 16 5' 'blobs 17 5'; do
+        read -r shape seed spacing <<< "$case"
+        phantom "$shape" "$seed" > image.nii.gz
+        voxels --largest -h "$spacing"mm image.nii.gz > body.mts 2> said
         press body.mts
     done
 }
@@ -138,8 +106,6 @@ END
     [ "$(names cells.region body.mts)" = near ]
     [ "$(names facets.set body.mts | tr '\n' ' ')" = "near|outside near|hole " ]
     grep -q "voxels: hole: .* ml of voxels, left out" said
-    voxels -h 5mm atlas.nii.gz 2> said > body.mts
-    [ "$(names cells.region body.mts | wc -l)" -eq 50 ]
 }
 
 @test "thin parts are reported, and kept by a finer lattice at their interfaces" {
@@ -157,7 +123,7 @@ END
     refused 2 "is not less than the spacing" voxels -h 6mm --fine 6mm thin.nii.gz
 }
 
-@test "gaps that the lattice fills are reported: a thin label that is left out, two balls nearer to each other than the spacing" {
+@test "gaps that the lattice fills are reported: a thin label that is left out" {
     phantom thin > thin.nii.gz
     printf '1 body\n2 fluid -\n' > names
     voxels -h 6mm -l names thin.nii.gz 2> said > coarse.mts
@@ -165,15 +131,9 @@ END
     voxels -h 6mm --fine 1.5mm:fluid -l names thin.nii.gz 2> said > fine.mts
     run -1 grep "are filled" said
     grep -q "^voxels: 2 connected bodies" said
-    phantom balls > balls.nii.gz
-    voxels -h 5mm balls.nii.gz 2> said > body.mts
-    grep -qE "^voxels: outside: 0\.[0-9]+ ml of gaps .* are filled: see --fine$" said
-    voxels -h 5mm --fine 1.25mm balls.nii.gz 2> said > body.mts
-    run -1 grep "are filled" said
-    grep -q "^voxels: 2 connected bodies" said
 }
 
-@test "a bar between two balls that the lattice loses is reported, where and how to keep it; balls that the image does not connect are not" {
+@test "a bar between two balls that the lattice loses is reported, where and how to keep it" {
     phantom bar > bar.nii.gz
     voxels -h 5mm bar.nii.gz 2> said > body.mts
     grep -q "^voxels: 2 connected bodies" said
@@ -184,16 +144,10 @@ END
     voxels -h 5mm --fine 1.25mm bar.nii.gz 2> said > body.mts
     run -1 grep "connect" said
     phantom wire > wire.nii.gz
-    for spacing in 5 1; do
-        voxels -h ${spacing}mm wire.nii.gz 2> said > body.mts
-        grep -q "^voxels: parts .* it is as thin as a voxel there, which no spacing keeps: make it thicker in the image$" said
-    done
+    voxels -h 5mm wire.nii.gz 2> said > body.mts
+    grep -q "^voxels: parts .* it is as thin as a voxel there, which no spacing keeps: make it thicker in the image$" said
     voxels -h 3mm -s z=-0.2mm bar.nii.gz 2> said > body.mts
     grep -qE "^voxels: parts that the image connects at .*, -0\.2\) mm are not connected" said
-    phantom boxes > boxes.nii.gz # by an edge
-    voxels -h 5mm boxes.nii.gz 2> said > body.mts
-    grep -q "^voxels: 2 connected bodies" said
-    run -1 grep "the image connects" said
 }
 
 @test "a layer one cell thick is noted to bend too stiffly, as by nodes" {
@@ -212,32 +166,6 @@ sizes() {
     mts print nodes.x cloud.dat | awk -v s="$1" -v g="$2" -v x="$3" -v y="$4" -v z="$5" \
         '{ print s / 1e3 + g * sqrt(($1 - x / 1e3) ^ 2 + ($2 - y / 1e3) ^ 2 + ($3 - z / 1e3) ^ 2) }'
     printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 1))
-}
-
-@test "--sizes: finer where they ask for it; valid, angles and volumes within their bounds" {
-    while read -r shape seed spacing least gradation place; do
-        phantom "$shape" "$seed" > image.nii.gz
-        # shellcheck disable=SC2086 # three coordinates
-        sizes "$least" "$gradation" $place > sizes.dat
-        voxels -h "$spacing" -v --sizes sizes.dat image.nii.gz > body.mts 2> said
-        [ -z "$(mts check body.mts | grep -v 'connected bodies$')" ]
-        awk '/degrees/ { if ($(NF - 3) >= 8 && $(NF - 1) <= 165) good = 1 } END { exit !good }' said
-        grep -E ' ml of voxels' said > volumes
-        awk '{ sub(/%.*/, ""); sub(/.*\(/, ""); x = $0 + 0; if (!(x < 1 && x > -1)) exit 1 }' volumes
-        voxels -h "$spacing" image.nii.gz > even.mts 2> said
-        [ "$(mts print nodes.x body.mts | wc -l)" -gt $((3 * $(mts print nodes.x even.mts | wc -l) / 2)) ]
-    done << 'END'
-sphere 1 8mm 1 0.3 24 0 0
-torus 1 5mm 1 0.2 -10 5 10
-two 1 5mm 1 0.3 10 5 0
-four 1 5mm 1 0.2 -10 5 10
-blobs 1 5mm 0.7 0.25 -10 0 8
-blobs 4 5mm 1.2 0.15 0 -12 0
-blobs 9 5mm 1 0.2 -10 0 8
-END
-    for threads in 1 2 3; do OMP_NUM_THREADS=$threads voxels -h 5mm --sizes sizes.dat image.nii.gz -o $threads.mts 2> said; done
-    cmp 1.mts 2.mts
-    cmp 1.mts 3.mts
 }
 
 @test "--sizes: bad ones are refused in a line" {
@@ -296,14 +224,6 @@ gzip.open("cut.nii.gz", "w").write(bytes(data))
 END
     voxels -h 6mm cut.nii.gz 2> said | mts check
     grep -q "voxels: label_1 reaches the border of the image: the body ends there" said
-}
-
-@test "parts of a group by place: groups" {
-    phantom sphere > sphere.nii.gz
-    voxels -h 6mm sphere.nii.gz 2> said |
-        groups -u mm -f 'opening=ball:0,0,24,12 and label_1|outside' > opened.mts 2> said
-    names facets.set opened.mts | grep -qx opening
-    [ "$(mts print facets.set opened.mts | sort | uniq -c | wc -l)" -eq 2 ]
 }
 
 # volume FILE: that within the triangles of a table, ml
@@ -368,11 +288,9 @@ rim() {
 @test "a part that reaches into a label within the body leaves its volume alone" {
     # A ball about the opening of the skull, with most of the tumour below it in it.
     at=$BATS_TEST_DIRNAME/../examples/neurosurgery
-    for radius in 20mm 33mm 43mm; do
-        voxels -v "$at/colin27_labels.nii.gz" -h 9mm -l "$at/labels.tsv" --part "exposed=ball:63.5mm,16mm,20mm,$radius" 2> said > body.mts
-        read -r before after < <(said tumour)
-        near "$after" "$before" 0.01
-    done
+    voxels -v "$at/colin27_labels.nii.gz" -h 9mm -l "$at/labels.tsv" --part exposed=ball:63.5mm,16mm,20mm,33mm 2> said > body.mts
+    read -r before after < <(said tumour)
+    near "$after" "$before" 0.01
 }
 
 @test "the surface of a label as a table for contact, at a gap" {

@@ -18,14 +18,15 @@ smooth_u='s = .06; pi = atan2(0, -1); b = .004 * sin(pi * $1 / s) * sin(pi * $2 
 
 setup() {
     enter
-    cloud -d 3 -k jittered -n 13 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
-    with_u cube.mts "$smooth_u" > u.dat
+    cp "$BATS_FILE_TMPDIR"/{cube.mts,u.dat} .
 }
 
 setup_file() {
     cd "$BATS_FILE_TMPDIR"
     nifti smooth scan.nii.gz
     nifti ball ball.nii.gz
+    cloud -d 3 -k jittered -n 13 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
+    with_u cube.mts "$smooth_u" > u.dat
 }
 
 @test "usage, and wrong command lines" {
@@ -50,13 +51,6 @@ setup_file() {
     done
     warp -i cubic -o cubic.nii.gz "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
     nifti moved "$BATS_FILE_TMPDIR/scan.nii.gz" cubic.nii.gz | awk '{ exit !($1 <= .1 * $2) }'
-}
-
-@test "the order and direction of the axes do not matter" {
-    nifti smooth other.nii swapped
-    warp "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat > first.nii.gz
-    warp other.nii u.dat > second.nii.gz
-    nifti reordered first.nii.gz second.nii.gz
 }
 
 @test "fields to and back agree to .05 voxel, and lead to the places of the known field" {
@@ -248,7 +242,7 @@ setup_file() {
 @test "images that are not what they say: one line, status 2, no output" {
     scan=$BATS_FILE_TMPDIR/scan.nii.gz
     size=$(stat -c %s "$scan")
-    for at in 0 1 9 100 3000 $((size / 2)) $((size - 9)) $((size - 1)); do
+    for at in 0 100 $((size - 9)); do
         head -c "$at" "$scan" > cut.nii.gz
         refused 2 "cut.nii.gz: " warp cut.nii.gz u.dat
         refused 2 "standard input: " warp - u.dat < cut.nii.gz
@@ -260,26 +254,6 @@ setup_file() {
     nifti change "$scan" nan.nii nan
     run -0 --separate-stderr warp -o moved.nii nan.nii u.dat
     [[ $stderr == "warp: nan.nii: 1 values are not finite"* ]]
-}
-
-@test "output that cannot be written: status 3, and an existing file stays" {
-    scan=$BATS_FILE_TMPDIR/scan.nii.gz
-    run -3 --separate-stderr bash -c "warp $scan u.dat > /dev/full"
-    [ "$stderr" = "warp: standard output: No space left on device" ]
-    echo precious > kept.nii.gz
-    run -2 warp -o kept.nii.gz "$scan" cube.mts
-    [ "$(cat kept.nii.gz)" = precious ]
-    run -0 bash -c "warp $scan u.dat | head -c 10 > ten"
-}
-
-@test "the result of mtled: a cube pressed by a tenth leaves the upper tenth" {
-    pressed_cube zmin zmax -0.006 > cube.scene
-    cloud -d 3 -k jittered -n 7 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 | shapefn 2> note | mtled -q cube.scene > pressed.dat
-    warp -v --vacated -8 "$BATS_FILE_TMPDIR/scan.nii.gz" pressed.dat 2> said > moved.nii.gz
-    [ "$(nifti value moved.nii.gz 38 38 65)" = -8 ] # at 57 mm
-    [ "$(nifti value moved.nii.gz 38 38 59)" != -8 ]
-    awk '/displacement at most/ { split($0, part, "at most "); d = part[2] + 0; exit !(d > 5.9 && d < 8) }' said
-    grep -q 'Newton did not converge to 1e-04 in 0 voxels,' said
 }
 
 @test "between the nodes: the field that mtled solved for, nearer than a fit of its values" {
