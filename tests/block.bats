@@ -50,14 +50,3 @@ setup() {
     echo "$across $stops"
     awk -v across="$across" -v stops="$stops" 'BEGIN { exit !(stops > 0 && stops < across / 3) }'
 }
-
-@test "block: a misspelt key and a group that is not there are named with their line" {
-    sed 's/^nu = 0.49/nuu = 0.49/' "$block/block.scene" > key.scene
-    run -2 --separate-stderr mtled key.scene table.mts
-    [[ $stderr == *'key.scene:10:'*nuu* ]]
-    [ -z "$output" ]
-    sed 's/^facets = top/facets = roof/' "$block/block.scene" > group.scene
-    run -2 --separate-stderr mtled group.scene table.mts
-    [[ $stderr == *roof*top* ]]
-    [ -z "$output" ]
-}

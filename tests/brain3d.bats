@@ -58,13 +58,6 @@ setup() {
         }' craniotomy -
 }
 
-@test "the brain is not on the other side of its skull" {
-    sed 's/side = back/side = front/' brain3d.scene > outside.scene
-    run -2 --separate-stderr mtled outside.scene table.mts
-    [ -z "$output" ]
-    [[ "$stderr" == *"starts"*"behind the rigid surface"* ]] || { echo "$stderr"; return 1; }
-}
-
 @test "the tables of the whole brain are those that its geometry gives" {
     mkdir -p made
     cp "$EXAMPLE"/{*.geo,*.msh.gz,make-tables.sh} made

@@ -18,27 +18,6 @@ setup() { enter_loosely; }
         END { exit bad }'
 }
 
-@test "every kind, in both dimensions" {
-    for kind in regular jittered halton graded; do
-        local count=4,5,6 more=()
-        [ $kind != halton ] || count=40
-        [ $kind != jittered ] || more=(--jitter 0.15)
-        cloud -d 2 -k $kind -n 12 --box 0,1,0,2 -t > flat.mts
-        cloud -d 3 -k $kind -n $count --box 0,1,0,2,0,3 "${more[@]}" -t > solid.mts
-        grep -q '^# nodes.x f8 [0-9]* 2 enc=text unit=m cols=x,y$' flat.mts
-        grep -q '^# nodes.x f8 [0-9]* 3 enc=text unit=m cols=x,y,z$' solid.mts
-        for stream in flat.mts solid.mts; do
-            if [ $kind = halton ]; then
-                [ -z "$(rows cells $stream)" ]
-            else
-                [ -n "$(rows cells $stream)" ]
-            fi
-        done
-    done
-    [ "$(cloud -d 3 -k regular -n 4,5,6 --box 0,1,0,2,0,3 -t | rows nodes.x | wc -l)" -eq 120 ]
-    [ "$(cloud -d 3 -k regular -n 4,5,6 --box 0,1,0,2,0,3 -t | rows cells | wc -l)" -eq 360 ]
-}
-
 @test "the same command, the same bytes; another seed, another cloud" {
     cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 > one.mts
     cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --seed 3 -o two.mts

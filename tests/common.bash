@@ -118,42 +118,44 @@ with() {
 # A square of 100 mm meshed by gmsh, as body.msh, its sides and a corner named.
 square_msh() {
     cat > square.geo << 'END'
-Point(1) = {0, 0, 0, 25};
-Point(2) = {100, 0, 0, 25};
-Point(3) = {100, 100, 0, 25};
-Point(4) = {0, 100, 0, 25};
-Line(1) = {1, 2};
-Line(2) = {2, 3};
-Line(3) = {3, 4};
-Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-Physical Surface("body") = {1};
-Physical Point("corner") = {3};
-Physical Curve("ymin") = {1};
-Physical Curve("xmax") = {2};
-Physical Curve("ymax") = {3};
-Physical Curve("xmin") = {4};
+Point(1) = {0, 0, 0, 25}; Point(2) = {100, 0, 0, 25}; Point(3) = {100, 100, 0, 25}; Point(4) = {0, 100, 0, 25};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1}; Physical Surface("body") = {1}; Physical Point("corner") = {3}; Physical Curve("ymin") = {1};
+Physical Curve("xmax") = {2}; Physical Curve("ymax") = {3}; Physical Curve("xmin") = {4};
 END
     gmsh -v 1 -2 square.geo -o body.msh
 }
 
-# Begin a run of scene $2 on table.mts with a checkpoint after every step, and end it by signal $1 when two are there; leaves status,
-# part.dat and what was said. On a busy machine the run may be over before that is seen: then once more.
+# begin_and_end SIGNAL SCENE [SECTION]: begin a run on table.mts with a checkpoint after every step, and end it when two are there, or
+# when SECTION of one is not 0 any more; leaves status, part.dat and what was said. The run may be over before that is seen: then once more.
 begin_and_end() {
     local run tries
     for _ in 1 2 3 4 5; do
         rm -f run.ckpt*
         env --default-signal=INT,HUP mtled -q -c run.ckpt -e 0 "$2" table.mts > part.dat 2> said 3>&- &
         run=$!
-        for ((tries = 0; tries < 500; tries++)); do
-            [ ! -e run.ckpt.old ] || break
+        for ((tries = 0; tries < 3000; tries++)); do
+            [ -n "$(jobs -rp)" ] || break
+            if [ -z "${3:-}" ]; then
+                [ ! -e run.ckpt.old ] || break
+            elif [ "$(mts print "$3" run.ckpt 2> note || echo 0)" != 0 ]; then
+                break
+            fi
             sleep 0.02
         done
         kill -s "$1" $run 2> kill.said || true
         status=0
         wait $run || status=$?
         [ $status -eq 0 ] || return 0
+    done
+}
+
+# worked PID HUNDREDTHS: wait until it has had so many hundredths of a second of a processor, or has ended.
+worked() {
+    local tries
+    for ((tries = 0; tries < 6000; tries++)); do
+        [ "$(awk '{ print $3 == "Z" ? 1e6 : $14 + $15 }' "/proc/$1/stat")" -lt "$2" ] || return 0
+        sleep 0.02
     done
 }
 

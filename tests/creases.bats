@@ -56,8 +56,7 @@ same_force() {
     keel 0.2
     sed -e '/^Physical/d' keel.geo > solid.geo
     cat >> solid.geo << 'END'
-Mesh.MeshSizeMax = 20;
-v[] = Extrude {0, 0, 40} { Surface{1}; };
+Mesh.MeshSizeMax = 20; v[] = Extrude {0, 0, 40} { Surface{1}; };
 Physical Volume("body") = {v[1]}; Physical Surface("right") = {v[2]}; Physical Surface("top") = {v[4]}; Physical Surface("left") = {v[6]};
 Physical Surface("ends") = {1, v[0]};
 END

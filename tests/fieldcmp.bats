@@ -185,15 +185,6 @@ square() {
     run -2 --separate-stderr fieldcmp --field nodes.x a.txt <(sed 's/^# nodes.x f8/# nodes.x f4/' b.txt)
 }
 
-@test "any field of one to three columns" {
-    square
-    sed 's/^# u /# heat.flow /' a.txt > a2.txt
-    sed 's/^# u /# heat.flow /' b.txt > b2.txt
-    run -0 --separate-stderr fieldcmp --field heat.flow a2.txt b2.txt
-    [ "$(value max)" = 5 ]
-    run -2 --separate-stderr fieldcmp a2.txt b2.txt
-}
-
 @test "a map of the differences" {
     square
     fieldcmp -t -m map.txt a.txt b.txt > table

@@ -82,11 +82,8 @@ report() {
 
 @test "cavities and separate bodies" {
     cat > two.geo << 'END'
-SetFactory("OpenCASCADE");
-Sphere(1) = {0, 0, 0, 10};
-Sphere(2) = {0, 0, 0, 4};
-BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
-Box(4) = {20, 0, 0, 5, 5, 5};
+SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 10}; Sphere(2) = {0, 0, 0, 4};
+BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; }; Box(4) = {20, 0, 0, 5, 5, 5};
 Mesh.MeshSizeMax = 3;
 END
     gmsh -v 1 -3 two.geo -o two.msh

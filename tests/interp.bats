@@ -136,11 +136,8 @@ with_section() {
 @test "--skip-outside leaves out the points of a grid that lie in no cell, and lists which are there" {
     # A body of two legs with a gap between them: 0 to 1 and 2 to 3, joined above y = 1.
     cat > legs.geo << 'END'
-SetFactory("OpenCASCADE");
-Rectangle(1) = {0, 0, 0, 3, 2};
-Rectangle(2) = {1, 0, 0, 1, 1};
-BooleanDifference(3) = { Surface{1}; Delete; }{ Surface{2}; Delete; };
-Physical Surface("body") = {3};
+SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 3, 2}; Rectangle(2) = {1, 0, 0, 1, 1};
+BooleanDifference(3) = { Surface{1}; Delete; }{ Surface{2}; Delete; }; Physical Surface("body") = {3};
 Mesh.MeshSizeMax = 0.2;
 END
     gmsh -2 -v 1 legs.geo -o legs.msh

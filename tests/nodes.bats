@@ -39,13 +39,10 @@ END
 # A unit cube by gmsh: $1 "hex" or "tet", $2 more options.
 cube() {
     cat > cube.geo <<'END'
-Point(1) = {0, 0, 0};
-line() = Extrude {1, 0, 0} { Point{1}; Layers{3}; Recombine; };
+Point(1) = {0, 0, 0}; line() = Extrude {1, 0, 0} { Point{1}; Layers{3}; Recombine; };
 face() = Extrude {0, 1, 0} { Line{line(1)}; Layers{3}; Recombine; };
-body() = Extrude {0, 0, 1} { Surface{face(1)}; Layers{3}; Recombine; };
-Physical Volume("body", 1) = {body(1)};
-Physical Surface("top", 2) = {body(0)};
-Physical Surface("bottom", 3) = {face(1)};
+body() = Extrude {0, 0, 1} { Surface{face(1)}; Layers{3}; Recombine; }; Physical Volume("body", 1) = {body(1)};
+Physical Surface("top", 2) = {body(0)}; Physical Surface("bottom", 3) = {face(1)};
 Physical Curve("edge", 4) = {line(1)};
 END
     if [ "$1" = tet ]; then
@@ -271,12 +268,8 @@ volumes() {
 
 @test "bodies that touch stay two, cells in two groups are of the first, and both are reported" {
     cat > touching.geo << 'END'
-SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 1, 1, 1};
-Box(2) = {1, 0, 0, 1, 1, 1};
-Physical Volume("left") = {1};
-Physical Volume("all") = {1, 2};
-Mesh.MeshSizeMin = 1;
+SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1, 1}; Physical Volume("left") = {1};
+Physical Volume("all") = {1, 2}; Mesh.MeshSizeMin = 1;
 END
     gmsh -v 1 -3 touching.geo -o touching.msh
     nodes -u m -v -t touching.msh 2> said > touching.mts
@@ -367,13 +360,8 @@ END
 
 @test "VTU and VTK of meshio and of tovtk come in by the commands of the usage, with their regions" {
     cat > two.geo << 'END'
-SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 1, 1, 1};
-Box(2) = {1, 0, 0, 1, 1, 0.5};
-Coherence;
-Mesh.MeshSizeMax = 0.5;
-Physical Volume("left", 3) = {1};
-Physical Volume("right", 7) = {2};
+SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1, 0.5}; Coherence;
+Mesh.MeshSizeMax = 0.5; Physical Volume("left", 3) = {1}; Physical Volume("right", 7) = {2};
 Physical Surface("end", 5) = {1};
 END
     gmsh -v 1 -3 two.geo -o two.msh

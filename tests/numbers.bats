@@ -93,20 +93,10 @@ thin() {
 # A thick ring in plane strain bears at most mu ln 4/3 = 290 Pa from within. It ran for a million steps.
 @test "a body that bears no such load moves on: it ends soon and is reported" {
     cat > ring.geo << 'END'
-Point(1) = {0, 0, 0, 5};
-Point(2) = {30, 0, 0, 5};
-Point(3) = {40, 0, 0, 5};
-Point(4) = {0, 40, 0, 5};
-Point(5) = {0, 30, 0, 5};
-Line(1) = {2, 3};
-Circle(2) = {3, 1, 4};
-Line(3) = {4, 5};
-Circle(4) = {5, 1, 2};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-Physical Surface("body") = {1};
-Physical Curve("planes") = {1, 3};
-Physical Curve("inner") = {4};
+Point(1) = {0, 0, 0, 5}; Point(2) = {30, 0, 0, 5}; Point(3) = {40, 0, 0, 5}; Point(4) = {0, 40, 0, 5};
+Point(5) = {0, 30, 0, 5}; Line(1) = {2, 3}; Circle(2) = {3, 1, 4}; Line(3) = {4, 5}; Circle(4) = {5, 1, 2};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Physical Surface("body") = {1};
+Physical Curve("planes") = {1, 3}; Physical Curve("inner") = {4};
 END
     gmsh -2 -v 1 ring.geo -o ring.msh
     nodes -u mm ring.msh | shapefn > table.mts 2> note
@@ -138,19 +128,6 @@ END
     grep -q '^energy	f8' list
 }
 
-@test "step collapse: the node of the fastest mode; the state then" {
-    scene dynamic 0.3 'components = 0, 1' 'end_time = 20' | sed 's/^nu.*/&\nmodel = ogden\nalpha = 60/' > run.scene
-    stops "the critical step has fallen below 0.001 of the first one"
-    [ "$(frames)" -ge 5 ]
-}
-
-@test "not a number: stopped at that step" {
-    scene dynamic 0.3 'components = 0, 0' 'end_time = 1' | sed 's/^analysis.*/&\ngravity = 0, 1e300/' > run.scene
-    stops "nan"
-    scene quasi-static 0.3 'components = 0, 0' '' | sed 's/^analysis.*/&\ngravity = 0, 1e300/' > run.scene
-    stops "is inverted"
-}
-
 @test "without frames nothing is written; with -o what there is goes beside the file" {
     scene dynamic 0.49 'components = 0.1, 0.1' 'end_time = 0.3\ntime_step_margin = 0.999' > run.scene
     echo precious > u.dat
@@ -172,7 +149,7 @@ END
     # Long enough for any processor, its first frames soon.
     scene dynamic 0.3 'components = 0, 0.01' 'end_time = 2e4\nmax_steps = 1000000000' | sed 's/^frames.*/frames = 2000/' > run.scene
     mtled -q run.scene table.mts > u.dat 2> said &
-    sleep 0.7
+    worked $! 50
     kill -TERM $!
     status=0
     wait $! || status=$?

@@ -47,16 +47,6 @@ setup() {
     cmp table.mts table2.mts
 }
 
-@test "text and binary streams hold the same" {
-    ipoints square.mts > points.mts
-    ipoints -t square.mts > points.txt
-    support points.txt > a.mts
-    support points.mts > b.mts
-    shapefn -t a.mts > a.txt
-    shapefn b.mts | mts text > b.txt
-    diff <(grep -v '^# @' a.txt) <(grep -v '^# @' b.txt)
-}
-
 @test "the number of threads changes no byte" {
     cloud -d 3 -k jittered -n 8 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 > cube.mts
     for cloud in square cube; do

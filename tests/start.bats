@@ -117,7 +117,7 @@ END
 begin_from_coarse() {
     mtled -q -c run.ckpt -e 0 -s coarse.dat slow.scene table.mts > part.dat 2> said 3>&- &
     local run=$! tries
-    for ((tries = 0; tries < 500; tries++)); do
+    for ((tries = 0; tries < 3000; tries++)); do
         [ ! -e run.ckpt.old ] || break
         sleep 0.02
     done

@@ -70,7 +70,7 @@ kill_when() {
     local tries
     setsid bash "$sweep/sweep.sh" -j 2 cases.tsv block.scene table.mts out 2> killed.log 3>&- &
     local leader=$!
-    for ((tries = 0; tries < 1500; tries++)); do
+    for ((tries = 0; tries < 6000; tries++)); do
         [ "$(find out -name '*.dat' -not -name '.*' 2> /dev/null | wc -l)" -lt "$1" ] || break
         sleep 0.02
     done

@@ -56,10 +56,8 @@ uniform() {
     rows reactions u.dat | awk '{ f[NR] = $2 } END { s = f[2] / f[1] + 1; c = f[4] / f[2] - 1; print s, c
         exit !(f[4] < -20 && s * s < 1e-12 && c * c < 1e-12) }'
     gmsh_body 3 stack << 'END'
-SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 40, 40, 20}; Box(2) = {0, 0, 20, 40, 40, 20};
-MeshSize{ PointsOf{ Volume{1}; } } = 11; MeshSize{ PointsOf{ Volume{2}; } } = 8;
-Physical Volume("body") = {1, 2};
+SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 40, 40, 20}; Box(2) = {0, 0, 20, 40, 40, 20};
+MeshSize{ PointsOf{ Volume{1}; } } = 11; MeshSize{ PointsOf{ Volume{2}; } } = 8; Physical Volume("body") = {1, 2};
 Physical Surface("ymin") = {5}; Physical Surface("low") = {6}; Physical Surface("up") = {11}; Physical Surface("ymax") = {12};
 Physical Surface("xmin") = {1, 3, 7, 9};
 END
@@ -73,8 +71,7 @@ hertz() {
     gmsh_body 2 hertz << END
 Point(1) = {0, 0, 0, 8}; Point(2) = {50, 0, 0, 8}; Point(3) = {0, 50, 0, $1};
 Point(4) = {0, 100, 0, 8}; Point(5) = {50, 100, 0, 8}; Point(6) = {0, 50, 0, $2};
-Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1};
-Line(4) = {4, 5}; Circle(5) = {5, 4, 6}; Line(6) = {6, 4};
+Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1}; Line(4) = {4, 5}; Circle(5) = {5, 4, 6}; Line(6) = {6, 4};
 Curve Loop(1) = {1:3}; Plane Surface(1) = {1}; Curve Loop(2) = {-6, -5, -4}; Plane Surface(2) = {2};
 Physical Surface("body") = {1, 2};
 Physical Curve("ymin") = {1}; Physical Curve("low") = {2}; Physical Curve("ymax") = {4}; Physical Curve("up") = {5};
@@ -252,7 +249,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     mtled run.scene table.mts > whole.dat 2> note
     rm -f run.ckpt*
     mtled -c run.ckpt -o out.dat run.scene table.mts 2> said &
-    for ((i = 0; i < 600; i++)); do
+    for ((i = 0; i < 2400; i++)); do
         ! grep -q 'once more' said || break
         sleep 0.05
     done
@@ -352,33 +349,13 @@ END
 }
 
 # bats test_tags=thorough
-@test "cubes that slide off each other: the verdict comes soon, as a body that stays folded is no result" {
-    gmsh_body 3 cubes << 'END'
-SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 100, 100, 50}; Box(2) = {0, 0, 50, 100, 100, 50};
-MeshSize{ PointsOf{ Volume{1}; } } = 30; MeshSize{ PointsOf{ Volume{2}; } } = 22;
-Physical Volume("body") = {1, 2};
-Physical Surface("ymin") = {5}; Physical Surface("low") = {6}; Physical Surface("up") = {11}; Physical Surface("ymax") = {12};
-Physical Surface("xmin") = {1, 7}; Physical Surface("back") = {3, 9};
-END
-    { stack_scene 3 | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.04/'; printf '[displacement back]\nfacets = back\nnormal = 0\n'; } > part.scene
-    refused 1 'part.scene: step ' mtled part.scene cubes.mts
-    [[ $stderr == *"; the body folds "*": let all of it touch (facets = *, against = *)" ]]
-    steps=${stderr#*step }
-    # By chance 2 400 to 6 000 steps: the folded state has no equilibrium.
-    [ "${steps%%:*}" -lt 8000 ]
-}
-
-# bats test_tags=thorough
 @test "the lips of a ring meet corner on corner, and slip past each other" {
     # How soon a corner leaves another one is chance: of nine runs one or none takes more than 3 000 steps, or
     # ends as it does not come to rest.
     for size in 3.5 4 4.5; do
         gmsh_body 2 ring << END
-SetFactory("OpenCASCADE");
-Disk(1) = {0, 0, 0, 50}; Disk(2) = {0, 0, 0, 35}; Rectangle(3) = {20, -4, 0, 40, 8};
-BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2, 3}; Delete; };
-Physical Surface("body") = {4};
+SetFactory("OpenCASCADE"); Disk(1) = {0, 0, 0, 50}; Disk(2) = {0, 0, 0, 35}; Rectangle(3) = {20, -4, 0, 40, 8};
+BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2, 3}; Delete; }; Physical Surface("body") = {4};
 Mesh.MeshSizeMin = $size; Mesh.MeshSizeMax = $size;
 END
         nodes -u mm ring.msh 2> note | groups -u mm -f top=ball:0,50,12 -f bottom=ball:0,-50,12 | shapefn > ring.mts 2> note
@@ -430,12 +407,10 @@ END
 @test "a beam comes to rest on facets that the conditions hold" {
     # The coarse space of the preconditioner moved held facets along with what lies on them, and lacked the contact's stiffness.
     gmsh_body 3 beam << 'END'
-SetFactory("OpenCASCADE");
-Box(1) = {0, 0, 0, 100, 4, 4}; Box(2) = {20, 0, -5, 80, 4, 4};
+SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 100, 4, 4}; Box(2) = {20, 0, -5, 80, 4, 4};
 Physical Volume("body") = {1, 2};
 Physical Surface("end") = {1}; Physical Surface("top") = {6}; Physical Surface("under") = {5}; Physical Surface("plate") = {7:12};
-Physical Surface("upper") = {12};
-Mesh.MeshSizeMax = 3;
+Physical Surface("upper") = {12}; Mesh.MeshSizeMax = 3;
 END
     { block quasi-static | sed 's/dim = 2/dim = 3/'
         printf '[displacement end]\nfacets = end\ncomponents = 0, 0, 0\n[displacement plate]\nfacets = plate\ncomponents = 0, 0, 0\n'

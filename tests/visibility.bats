@@ -9,29 +9,12 @@ setup() {
 # blocks GAP: blocks.mts, two blocks of 20 x 10 mm with nodes every 2 mm, GAP mm apart.
 blocks() {
     cat > blocks.geo <<END
-Point(1) = {0, 0, 0, 2};
-Point(2) = {20, 0, 0, 2};
-Point(3) = {20, 10, 0, 2};
-Point(4) = {0, 10, 0, 2};
-Point(5) = {0, 10 + $1, 0, 2};
-Point(6) = {20, 10 + $1, 0, 2};
-Point(7) = {20, 20 + $1, 0, 2};
-Point(8) = {0, 20 + $1, 0, 2};
-Line(1) = {1, 2};
-Line(2) = {2, 3};
-Line(3) = {3, 4};
-Line(4) = {4, 1};
-Line(5) = {5, 6};
-Line(6) = {6, 7};
-Line(7) = {7, 8};
-Line(8) = {8, 5};
-Curve Loop(1) = {1, 2, 3, 4};
-Curve Loop(2) = {5, 6, 7, 8};
-Plane Surface(1) = {1};
-Plane Surface(2) = {2};
-Physical Surface("body", 1) = {1, 2};
-Physical Curve("bottom", 11) = {1};
-Physical Curve("top", 12) = {7};
+Point(1) = {0, 0, 0, 2}; Point(2) = {20, 0, 0, 2}; Point(3) = {20, 10, 0, 2}; Point(4) = {0, 10, 0, 2};
+Point(5) = {0, 10 + $1, 0, 2}; Point(6) = {20, 10 + $1, 0, 2}; Point(7) = {20, 20 + $1, 0, 2};
+Point(8) = {0, 20 + $1, 0, 2}; Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8}; Line(8) = {8, 5}; Curve Loop(1) = {1, 2, 3, 4};
+Curve Loop(2) = {5, 6, 7, 8}; Plane Surface(1) = {1}; Plane Surface(2) = {2}; Physical Surface("body", 1) = {1, 2};
+Physical Curve("bottom", 11) = {1}; Physical Curve("top", 12) = {7};
 END
     gmsh -2 -v 0 blocks.geo -o blocks.msh > /dev/null
     nodes -u mm blocks.msh > blocks.mts
@@ -88,56 +71,14 @@ rests() {
     mts list 1.mts | grep -q 'nbr\.around'
     mts list 1.mts | grep -q 'nbr\.image'
     mts text 1.mts | grep '^# support.radius' | grep -q 'reach=cells'
-    # Far from the tip neither arm sees the other.
-    mts print nodes.x 1.mts > x
-    mts print node.ptr 1.mts > ptr
-    mts print node.idx 1.mts > idx
-    awk 'FILENAME == "x" { x[FNR - 1] = $1; y[FNR - 1] = $2; next }
-        FILENAME == "ptr" { ptr[FNR - 1] = $1; next }
-        { idx[FNR - 1] = $1 }
-        END {
-            for (n in x) if (x[n] > 0.024) for (i = ptr[n]; i < ptr[n + 1]; i++) {
-                pairs++
-                if (x[idx[i]] > 0.024 && (y[n] < 0.01) != (y[idx[i]] < 0.01)) bad++
-            }
-            exit !(pairs > 500 && bad + 0 == 0)
-        }' x ptr idx
-}
-
-@test "fields are not interpolated across a slit" {
-    gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
-    nodes -u mm -t slit.msh > slit.dat
-    # A field that is 1 on the upper arm and 0 on the lower one, at points of the arms beside the slit.
-    { sed '/^# end/d' slit.dat; mts print nodes.x slit.dat | awk '
-        { u[NR] = $2 > 0.01 || ($2 == 0.01 && $1 > 0.016) ? 1 : 0 }
-        END { printf "# u f8 %d 1 enc=text unit=m\n", NR; for (i = 1; i <= NR; i++) print u[i]; print "\n" }'
-      awk '$2 == "end" { print "# end " $3 + 1 }' slit.dat; } > field.dat
-    printf '30 9.8\n30 10.2\n36 9.78\n36 10.22\n36 9.85\n36 10.15\n' > points.tsv # the last two in the slit
-    interp -f u -p points.tsv -u mm field.dat > at.dat
-    mts print u at.dat | xargs | awk '{ for (i = 1; i <= NF; i++) if (!(($i - (i % 2 == 0)) ^ 2 < 1e-20)) bad++; exit bad + 0 != 0 || NF != 6 }'
-}
-
-@test "bodies that touch by faces that are not one do not see each other" {
-    blocks 0.5
-    mts text blocks.mts | awk '/^# [^@]/ { at = $2 == "nodes.x" } at && NF == 2 && $1 != "#" && $2 > 0.0102 { $2 = $2 > 0.01051 ? $2 - 5e-4 : 0.01 } 1' > touch.dat
-    drag dynamic 'end_time = 0.02' > dynamic.scene
-    [ "$(mts print nodes.x touch.dat | awk '{ printf "%.9f %.9f\n", $1, $2 }' | sort | uniq -d | wc -l)" -eq 11 ] # coincident nodes
-    shapefn touch.dat 2> notes | mtled dynamic.scene > u.dat
-    rests u.dat 0.0099
 }
 
 @test "a body too small for the basis is named, however near the others are" {
     blocks 0.5
     sed -i '/^Physical Surface/d' blocks.geo
     cat >> blocks.geo <<END
-Point(21) = {20.4, 4, 0, 9};
-Point(22) = {22.4, 4, 0, 9};
-Point(23) = {20.4, 6, 0, 9};
-Line(21) = {21, 22};
-Line(22) = {22, 23};
-Line(23) = {23, 21};
-Curve Loop(21) = {21, 22, 23};
-Plane Surface(21) = {21};
+Point(21) = {20.4, 4, 0, 9}; Point(22) = {22.4, 4, 0, 9}; Point(23) = {20.4, 6, 0, 9}; Line(21) = {21, 22};
+Line(22) = {22, 23}; Line(23) = {23, 21}; Curve Loop(21) = {21, 22, 23}; Plane Surface(21) = {21};
 Physical Surface("body", 1) = {1, 2, 21};
 END
     gmsh -2 -v 0 blocks.geo -o blocks.msh > /dev/null

@@ -72,15 +72,8 @@ press() {
     done
 }
 
-@test "the voxels' order does not matter, nor the number of threads, nor whether a file or a pipe is read" {
+@test "neither the number of threads matters, nor whether a file or a pipe is read" {
     phantom blobs 5 1,1,2 > image.nii.gz
-    phantom blobs@flipped 5 1,1,2 > flipped.nii.gz
-    voxels -h 5mm image.nii.gz > body.mts 2> said
-    voxels -h 5mm flipped.nii.gz > turned.mts 2> said
-    [ "$(mts list body.mts)" = "$(mts list turned.mts)" ]
-    cmp <(mts print cells body.mts) <(mts print cells turned.mts)
-    paste <(mts print nodes.x body.mts) <(mts print nodes.x turned.mts) |
-        awk '{ for (k = 1; k < 4; k++) { d = $k - $(k + 3); if (!(d < 1e-9 && d > -1e-9)) exit 1 } }'
     for threads in 1 2 3; do
         OMP_NUM_THREADS=$threads voxels -h 5mm --fine 2.5mm:label_1 image.nii.gz 2> said | mts print nodes.x > "$threads"
     done
@@ -322,29 +315,6 @@ rim() {
     refused 2 "these labels do not touch" voxels -h 5mm --surface 'label_1|label_1' two.nii.gz
     refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
     refused 2 "--surface goes without -t" voxels -h 5mm -t --surface label_1 two.nii.gz
-
-    # A body within the surface moves freely up to the gap.
-    voxels -h 6mm sphere.nii.gz | groups -f held=low:z,20% > body.mts 2> said
-    cat > slide.scene << 'END'
-[scene]
-dim = 3
-analysis = quasi-static
-[material body]
-region = label_1
-E = 3000
-nu = 0.45
-rho = 1000
-[displacement held]
-facets = held
-components = 0, 0, 0.001
-[contact skull]
-facets = label_1|outside
-rigid = gap.tsv
-unit = m
-side = back
-END
-    shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
-    mts print u u.dat | awk '{ if (!($3 > 0.0005 && $3 < 0.0015)) exit 1 }'
 }
 
 @test "images that are none of labels, impossible sizes, and tables: one clear line" {
