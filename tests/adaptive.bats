@@ -58,20 +58,6 @@ points() { mts print points.x | wc -l; }
     ipoints -a 0.1 -k 2.4 < square.mts | cmp - 1.mts
 }
 
-@test "the later stages follow" {
-    ipoints -a 0.1 -k 2.4 square.mts | support -k 2.4 | shapefn > table.mts
-    mts check table.mts
-    mts list table.mts | grep shape.dphi
-}
-
-@test "in 3D" {
-    cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 > cube.mts
-    ipoints -a 0.2 -k 2 -v cube.mts 2> note > points.mts
-    grep -E '^ipoints: [0-9]+ points$' note
-    mts check points.mts
-    mts print points.weight points.mts | awk '{ s += $1 } END { exit !(s > 0.000999999999 && s < 0.00100000001) }'
-}
-
 @test "an unfit support is a verdict that names the point" {
     run -1 --separate-stderr ipoints -a 0.1 -b mls2 -k 0.2 <(cloud -d 2 -k regular -n 3 --box 0,1,0,1)
     [[ "$stderr" == *"no good support"* ]]

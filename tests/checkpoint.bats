@@ -26,7 +26,7 @@ frames = 4
 reactions = yes
 gaps = yes
 [solver]
-ramp_steps = 40000
+ramp_steps = 15000
 SCENE
     printf '0 0.1 0 -0.02\n0.1 0.1 0 -0.02\n' > top.tsv
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
@@ -53,7 +53,7 @@ SCENE
     [ $status -eq 143 ]
     [ "$(mts print state.slow.count run.ckpt)" -gt 0 ]
     mtled -q -c run.ckpt -o out.dat rod.scene table.mts
-    cmp whole.dat out.dat
+    cmp <(bare whole.dat) <(bare out.dat)
 }
 
 @test "a checkpoint is a stream that can be looked into" {

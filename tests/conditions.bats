@@ -134,8 +134,6 @@ closed_cube() {
     sed 's/-0.0048/-0.00500001/' near.scene > close.scene # enough digits to see the difference
     mtled close.scene cube.mts > u.dat 2> said
     grep -q 'prescribed twice: -0.00500001 m here, -0.005 m in' said
-    sed 's/-0.0048/-0.0040/' near.scene > far.scene
-    refused 2 "prescribed twice: -0.004 m here, -0.005 m in [displacement top]" mtled far.scene cube.mts
 }
 
 # Forces of mixed elements (quadratic displacement, linear pressure, by pipelines/mixed/solve.sh) on these tetrahedra, with nodes
@@ -164,7 +162,7 @@ END
 #                         3.1   2991   1.660                      21330    1.649
 # Both fall to 1.62 or 1.63. Where cells resolve the facet ours is within 3 % of theirs, and for as many nodes it is nearer to the
 # limit: 1594 of ours are where 6002 of theirs are not yet. One facet of a coarse mesh cannot be right by either, and is told.
-@test "a single facet that cells resolve: within 3 % of mixed elements on the same tetrahedra; one that they do not is told" {
+@test "a single facet that cells resolve: within 3 % of mixed elements on the same tetrahedra" {
     cat > facet.geo << 'END'
 SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.4, 0.4}; Point(101) = {0.5, 0.1, 0.4};
 Point(102) = {0.6, 0.1, 0.4}; Point(103) = {0.6, 0.2, 0.4}; Line(101) = {101, 102}; Line(102) = {102, 103};
@@ -185,10 +183,6 @@ END
     awk '$1 == "steps" { exit !($2 < 1000) }' said
     reaction 2 | awk '{ e = $1 / 1.7 - 1; print; exit !(e < 0.03 && e > -0.03) }'
     ! grep -q 'less than three facets across' said
-    gmsh -v 1 -3 -setnumber size 0.1 facet.geo -o facet.msh
-    nodes -u m facet.msh 2> note | shapefn > facet.mts 2> note
-    mtled facet.scene facet.mts 2> said > u.dat
-    grep -q 'patches of less than three facets across: the force may be tens of percent too large' said
 }
 
 # A strip of 4 m by 2 m, its bottom held, pushed at 1 m of its top by 1 mm: strip N M, nodes along and across, on a jittered lattice
@@ -291,36 +285,6 @@ END
     # Held as well, there is nothing to tell.
     { cat lobes.scene; printf '[displacement right]\nfacets = right\ncomponents = 0.001, 0\n'; } > held.scene
     mtled held.scene lobes.mts > u.dat 2> said
-    [ ! -s said ]
-}
-
-# bars PLACES-OF-BARS...: a loop of parts joined at corners, the last one pushed sideways
-bars() {
-    {
-        printf 'SetFactory("OpenCASCADE");\nMesh.MeshSizeMax = 8;\n'
-        printf 'Rectangle(1) = {0, 0, 0, 40, 10};\nRectangle(2) = {-10, 10, 0, 10, 40};\nRectangle(3) = {40, 10, 0, 20, 40};\n'
-        printf 'Rectangle(4) = {0, 50, 0, 40, 10};\n%s' "$1"
-        printf 'BooleanFragments{ Surface{:}; Delete; }{}\n'
-        printf 'Physical Surface("thick") = {3};\nother() = Surface{:};\nother() -= 3;\nPhysical Surface("body") = {other()};\n'
-        printf 'floor() = Curve In BoundingBox{-1, -1, -1, 41, 1, 1};\nPhysical Curve("floor") = {floor()};\n'
-        printf 'roof() = Curve In BoundingBox{-1, 59, -1, 41, 61, 1};\nPhysical Curve("roof") = {roof()};\n'
-    } > bars.geo
-    gmsh -v 1 -2 bars.geo -o bars.msh
-    nodes -u mm bars.msh 2> note | shapefn > bars.mts 2> note
-}
-
-@test "parts that nodes join in a loop are a mechanism, named before the first step; with a diagonal they are not" {
-    { block quasi-static | sed 's/^region = body/region = body, thick/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'
-        printf '[traction t]\nfacets = roof\ncomponents = 1, 0\n[solver]\nmax_steps = 1000\n'; } > bars.scene
-    bars ''
-    run -1 --separate-stderr mtled bars.scene bars.mts
-    [[ "${stderr_lines[0]}" == "mtled: bars.scene: a part (region thick, near (0.05, 0.03)) has nodes in common with the rest of its body, but no face: it may turn about (0.04, 0.01): hold it, or join it by faces; 3 such parts in all" ]]
-    bars 'Point(101) = {12, 22, 0}; Point(102) = {28, 38, 0};
-Line(101) = {3, 101}; Line(102) = {101, 13}; Line(103) = {13, 102}; Line(104) = {102, 3};
-Curve Loop(101) = {101, 102, 103, 104}; Plane Surface(101) = {101};
-'
-    mtled bars.scene bars.mts > u.dat 2> said
-    cat said
     [ ! -s said ]
 }
 

@@ -57,35 +57,6 @@ field() {
     about "$(value avg)" 0.01 1e-5
 }
 
-@test "fielderr: with a region the observed order is that of the whole body, as in the lines of regions" {
-    # Two regions; in the left one the error is five times as large, and falls by another order.
-    for spec in fine:17:0.01:0.05 coarse:9:0.04:0.1 coarser:5:0.16:0.2; do
-        IFS=: read -r name n right left <<< "$spec"
-        cloud -d 2 -k regular -n "$n" --box 0,1,0,1 -t -o cloud.dat
-        mts print nodes.x cloud.dat > x
-        {
-            awk -v n="$n" '
-                /^# cells.region/ { sub("names=body", "names=right,left"); on = 1; print; next }
-                /^# end/ { exit }
-                /^# / { on = 0 }
-                on && NF { c++; $0 = int((c - 1) / 2) % (n - 1) < (n - 1) / 2 ? 1 : 0 }
-                { print }' cloud.dat
-            echo "# u f8 $((n * n)) 2 enc=text unit=m"
-            awk -v right="$right" -v left="$left" '{ print 1 + $1 + ($1 <= 0.5 ? left : right), $2 }' x
-            printf '\n\n# end %d\n' $(($(grep -c '^# [a-z].* enc=' cloud.dat) + 1))
-        } > "$name.dat"
-        mts check "$name.dat"
-    done
-    run -0 --separate-stderr fielderr fine.dat coarse.dat coarser.dat
-    order=$(value order) left=$(value avg.left) right=$(value avg.right)
-    awk -v p="$order" 'BEGIN { exit !(p > 1.01 && p < 1.99) }'
-    for region in left right; do
-        run -0 --separate-stderr fielderr --region $region fine.dat coarse.dat coarser.dat
-        [ "$(value order)" = "$order" ]
-        [ "$(value avg)" = "${!region}" ]
-    done
-}
-
 @test "both errors: what the iteration leaves, carried by the result, beside that of the discretisation" {
     pressed_block > block.scene
     printf '[solver]\ntolerance = 1e-7\n' >> block.scene

@@ -170,12 +170,7 @@ END
     mts print reactions u.dat | awk '{ sum += $3 } $3 < 0 { n++ } END { exit !(n == 1 && sum ^ 2 < 1e-6) }'
 }
 
-@test "file, pipe and -o give the same bytes; unchanged groups keep their rows" {
+@test "groups that are not changed keep their rows" {
     cloud -d 3 -k regular -n 4,4,4 --box 0,1,0,1,0,1 > c.mts
-    groups -n a=all c.mts > file.mts
-    groups -n a=all < c.mts > redirected.mts
-    groups -n a=all -o named.mts c.mts
-    cmp file.mts redirected.mts
-    cmp file.mts named.mts
     groups -f a=low:x,10% c.mts 2> /dev/null | mts print facets | head -n 108 | cmp - <(mts print facets c.mts)
 }

@@ -1,4 +1,4 @@
-# Hard cases that take seconds, all of the validation set (lib/CONSTANTS.md), and the limits of all of them. `make hard` runs
+# Hard cases that take seconds, all of the validation set (lib/CONSTANTS.md), and what compares them with their limits. `make hard` runs
 # the rest.
 
 bats_require_minimum_version 1.5.0
@@ -26,17 +26,6 @@ passes() {
 @test "slit" { passes 24-slit; }
 @test "reactions on curved faces" { passes 27-curved; }
 @test "redundant conditions" { passes 28-redundant; }
-
-@test "limits: each has a number and a reason, and each is used; no row has one of its own" {
-    awk -F '\t' 'NR == 1 { exit !($0 == "name\tlimit\treason") }' "$limits"
-    awk -F '\t' 'NR > 1 && (NF != 3 || $2 !~ /^[0-9]+\.?[0-9]*(e-[0-9]+)?$/ || length($3) < 10 || seen[$1]++) { print; bad = 1 }
-        END { exit bad }' "$limits"
-    while read -r name _; do
-        grep -qwF -e "$name" "$hard"/*.sh || { echo "no row has the limit $name"; false; }
-    done < <(sed 1d "$limits")
-    # The last word of a row is a name, not a number.
-    run ! grep -nP '^\s*(\[.*\|\| )?(row|at_least|at_most) .*\s[0-9.]+(e-?[0-9]+)?$' "$hard"/*.sh
-}
 
 # rows TEXT: what these lines of a script print.
 rows_of() {

@@ -38,18 +38,6 @@ with_section() {
     done
 }
 
-@test "a linear field is exact at the stream's own points, for every rule" {
-    for rule in -c "-g 4" "--lattice 7,9"; do
-        ipoints $rule linear.mts | support | shapefn > table.mts
-        interp table.mts > at.mts
-        mts print nodes.x at.mts > x
-        mts print points.x table.mts | cmp - x
-        awk '{ printf "%.17g\n", 1 + 2 * $1 + 3 * $2 }' x > expected
-        mts print u at.mts > u
-        near 1e-12 u expected
-    done
-}
-
 @test "a linear field is exact at other points, in 2 and 3 dimensions, in every basis" {
     cloud -d 3 -k jittered -n 6 --box 1,2,0,1,0,1 --jitter 0.3 --field linear > linear3.mts 2> /dev/null
     cloud -d 3 -k halton -n 60 --box 1,2,0,1,0,1 --field linear > points3.mts

@@ -119,24 +119,6 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     done
 }
 
-@test "bench: a kernel fails" {
-    kernels=()
-    for file in "$top"/pipelines/bench/*.c; do
-        kernel=$(basename "$file" .c)
-        case $kernel in bench | problem) ;; *) kernels+=(bench-"$kernel") ;; esac
-    done
-    ln -s bin build/bench
-    old=()
-    for kernel in "${kernels[@]}"; do
-        stand_in good > build/bin/"$kernel"
-        old+=(-o "$fake/bench/$kernel")
-    done
-    chmod +x build/bin/*
-    with_stand_ins bench "${old[@]}"
-    [ "$(wc -l < build/out/bench/bench.tsv)" -eq $((${#kernels[@]} + 1)) ]
-    fails "${kernels[0]}" bench "${old[@]}" -- bench/bench.tsv
-}
-
 @test "a target that was there before the failure is gone, too, and made again when nothing fails" {
     rm -rf build/out
     goal=$fake/out/brain2d/default.dat

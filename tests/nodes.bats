@@ -118,20 +118,6 @@ volumes() {
     grep -q "group 'skull': facets of no cell, left out: 81" notes
 }
 
-@test "cubes of tetrahedra and of hexahedra: volume, conforming facets" {
-    for kind in tet hex; do
-        cube $kind
-        nodes -u m -t cube.msh > cube.mts
-        [ "$(volumes cube.mts)" = "1 1" ]
-        [ "$(rows nodes.x cube.mts | wc -l)" -eq 64 ]
-        [ "$(rows facets cube.mts | wc -l)" -eq 36 ]
-        grep -q '^# facets.set .* names=top,bottom$' cube.mts
-        grep -q '^# sets.ptr .* names=edge$' cube.mts
-        [ "$(rows sets.idx cube.mts | wc -l)" -eq 4 ]
-    done
-    [ "$(rows cells cube.mts | wc -l)" -eq 162 ]
-}
-
 @test "-l lists the groups" {
     square > square.msh
     run -0 --separate-stderr nodes -l square.msh

@@ -103,7 +103,7 @@ END
     cp coarse.mts other.mts && mv fine.mts table.mts
     pressed_block | sed 's/-0.005$/-0.004/' > less.scene
     mtled -q -o other.dat less.scene other.mts
-    { cat push.scene && printf '[solver]\nramp_steps = 40000\n'; } > slow.scene
+    { cat push.scene && printf '[solver]\nramp_steps = 15000\n'; } > slow.scene
     begin_from_coarse
     refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt -s other.dat slow.scene table.mts
     refused 2 "run.ckpt: checkpoint of another cloud or table" mtled -c run.ckpt slow.scene table.mts
