@@ -50,7 +50,6 @@ same_force() {
         fieldcmp --tol-avg 2e-5 contact.dat held.dat
     done
 }
-}
 
 @test "the same in 3D, in other threads as well" {
     keel 0.2

@@ -5,7 +5,6 @@ nifti.py smooth FILE [WAY]     the test image of smooth waves around a cube of 6
 nifti.py ball FILE             labels: a ball of 20 mm radius, 2, and within 14 mm 5, in that cube; the axes turned
 nifti.py step FILE LOW HIGH    a slice around a square of 100 mm: LOW where x < 50 mm, else HIGH
 nifti.py same A B TOLERANCE    fails unless the values agree to TOLERANCE and type, size and places are equal
-nifti.py reordered A B         fails unless A and B, stored in other orders, hold the same at the same places
 nifti.py moved SCAN RESULT     rms error of the moved test image, and that of the interpolation alone, inside the cube
 nifti.py fields TO BACK        largest distance from x of the place that TO and then BACK lead to, in voxels, inside the cube
 nifti.py volumes FILE          label and ml
@@ -31,7 +30,7 @@ def displacement(x):
 def reference(x):
     """The place that moves to x."""
     place = x.copy()
-    for _ in range(60):
+    for _ in range(25):  # each leaves less than a quarter of what is missing
         place = x - displacement(place)
     return place
 
@@ -116,12 +115,6 @@ def same(first, second, tolerance):
         sys.exit(f"differ by {np.nanmax(np.abs(x - y.astype(float)))}")
 
 
-def reordered(first, second):
-    a, b = nib.as_closest_canonical(nib.load(first)), nib.as_closest_canonical(nib.load(second))
-    if not np.allclose(a.affine, b.affine, atol=1e-5) or np.abs(a.get_fdata() - b.get_fdata()).max() > 1e-4:
-        sys.exit("not the same")
-
-
 def trilinear(values, v):
     low = np.clip(np.floor(v).astype(int), 0, np.array(values.shape[:3]) - 2)
     t = v - low
@@ -143,10 +136,10 @@ def to_voxels(image, x):
 def moved(source, result):
     a, b = nib.load(source), nib.load(result)
     x = places(b)
-    place = reference(x)
-    exact, within = scan(place), inside(x)
-    best = trilinear(a.get_fdata(), to_voxels(a, place))
-    print("%.6g %.6g" % tuple(np.sqrt(np.mean((v - exact)[within] ** 2)) for v in (b.get_fdata(), best)))
+    within = inside(x)
+    place = reference(x[within])
+    exact, best = scan(place), trilinear(a.get_fdata(), to_voxels(a, place))
+    print("%.6g %.6g" % tuple(np.sqrt(np.mean((v - exact) ** 2)) for v in (b.get_fdata()[within], best)))
 
 
 def fields(to, back):
@@ -155,11 +148,13 @@ def fields(to, back):
     assert a.get_data_dtype() == np.float32
     ras = np.array([-1e-3, -1e-3, 1e-3])
     x = places(a)
-    first = x + a.get_fdata()[:, :, :, 0] * ras
+    within = inside(x)
+    x = x[within]
+    first = x + a.get_fdata()[:, :, :, 0][within] * ras
     second = first + trilinear(b.get_fdata()[:, :, :, 0], to_voxels(b, first)) * ras
     error = np.linalg.norm((second - x) @ np.linalg.inv(a.affine)[:3, :3].T * 1e3, axis=-1)
     place = np.linalg.norm(first - reference(x), axis=-1) * 1e3
-    print("%.6g %.6g" % (error[inside(x)].max(), place[inside(x)].max()))
+    print("%.6g %.6g" % (error.max(), place.max()))
 
 
 def volumes(path):
@@ -198,17 +193,16 @@ def change(source, path, what):
         image = nib.Nifti1Image(values[38:39].astype(np.float32), a.affine)
     elif what == "coronal":
         image = nib.Nifti1Image(values[:, 38, :, None].astype(np.float32), a.affine[:, [0, 2, 1, 3]])
-    elif what in ("m", "um"):
-        scale = {"m": 1e-3, "um": 1e3}[what]
-        image = nib.Nifti1Image(values.astype(np.float32), np.diag([scale, scale, scale, 1]) @ a.affine)
-        image.header.set_xyzt_units({"m": "meter", "um": "micron"}[what])
+    elif what == "um":
+        image = nib.Nifti1Image(values.astype(np.float32), np.diag([1e3, 1e3, 1e3, 1]) @ a.affine)
+        image.header.set_xyzt_units("micron")
     elif what == "far":
         shift = np.eye(4)
         shift[:3, 3] = 500
         image = nib.Nifti1Image(values.astype(np.float32), shift @ a.affine)
     else:
         sys.exit(f"no change '{what}'")
-    if what not in ("m", "um"):
+    if what != "um":
         image.header.set_xyzt_units("mm")
     if what == "scaled":  # nibabel scales when it writes: the stored numbers are put in as they are
         image.header["scl_slope"], image.header["scl_inter"] = 0.25, 3
@@ -228,5 +222,5 @@ def value(path, i, j, k):
 
 
 if __name__ == "__main__":
-    {"smooth": smooth, "ball": ball, "step": step, "same": same, "reordered": reordered, "moved": moved, "fields": fields,
-     "volumes": volumes, "change": change, "value": value}[sys.argv[1]](*sys.argv[2:])
+    {"smooth": smooth, "ball": ball, "step": step, "same": same, "moved": moved, "fields": fields, "volumes": volumes,
+     "change": change, "value": value}[sys.argv[1]](*sys.argv[2:])
