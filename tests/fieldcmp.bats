@@ -39,8 +39,7 @@ square() {
         [ "$(wc -l <<< "$stderr")" -eq 1 ]
         [ -z "$output" ]
     done
-    run -2 --separate-stderr fieldcmp - - < a.txt
-    [[ "$stderr" == *"standard input cannot be read twice"* ]]
+    refused 2 "standard input cannot be read twice" fieldcmp - - < a.txt
 }
 
 @test "average, maximum, rmse, percentiles, place and regions" {
@@ -92,10 +91,8 @@ square() {
     for bad in nan inf -inf; do
         field bad.txt "0 0 0 0" "1 0 $bad 0" "1 1 0 0" "0 1 0 0"
         for tolerances in "" "--tol-avg 1e300" "--tol-max 1e300" "--tol-avg 1e300 --tol-max 1e300" "--region white"; do
-            run -1 --separate-stderr fieldcmp $tolerances bad.txt a.txt
-            [[ "$stderr" == "fieldcmp: bad.txt: u: row 1: not a finite number"* ]]
-            run -1 --separate-stderr fieldcmp $tolerances a.txt bad.txt
-            [[ "$stderr" == "fieldcmp: bad.txt: u: row 1: not a finite number"* ]]
+            refused 1 "bad.txt: u: row 1: not a finite number" fieldcmp $tolerances bad.txt a.txt
+            refused 1 "bad.txt: u: row 1: not a finite number" fieldcmp $tolerances a.txt bad.txt
             run -1 --separate-stderr fieldcmp $tolerances bad.txt bad.txt
         done
     done
@@ -112,14 +109,6 @@ square() {
     run -1 fieldcmp --tol-max 1e-10 a.mts bad.txt
 }
 
-@test "interpolation converges with the third order" {
-    cloud -d 2 -k regular -n 7 --box -1.01,1.02,-1.03,1 --field paper > a.mts
-    for n in 17 33; do
-        cloud -d 2 -k jittered -n $n --box -1.1,1.1,-1.1,1.1 --jitter 0.2 --field paper > b.mts
-        fieldcmp a.mts b.mts | awk '$1 == "rmse" { print $2 }'
-    done | awk '{ e[NR] = $1; print } END { exit !(e[1] / e[2] > 6 && e[2] < 1e-3 && e[2] > 0) }'
-}
-
 @test "nodes outside of B's cloud are an error, or left out" {
     cloud -d 2 -k regular -n 9 --box 0,2,0,1 --field linear > a.mts
     cloud -d 2 -k regular -n 9 --box 0,1,0,1 --field linear > b.mts
@@ -130,24 +119,20 @@ square() {
     [ "$(value outside)" = 36 ]
     [ "$(value n)" = 45 ]
     cloud -d 2 -k regular -n 9 --box 7,8,0,1 --field linear > far.mts
-    run -2 --separate-stderr fieldcmp --skip-outside far.mts b.mts
-    [[ "$stderr" == *"no node of A to compare"* ]]
+    refused 2 "no node of A to compare" fieldcmp --skip-outside far.mts b.mts
 }
 
 @test "fields of other shapes are refused" {
     square
     cloud -d 2 -k regular -n 3 --box 0,1,0,1 --field linear > scalar.mts
     cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1 --field linear > solid.mts
-    run -2 --separate-stderr fieldcmp a.txt scalar.mts
-    [[ "$stderr" == *"2 columns in 2D against 1 columns in 2D"* ]]
+    refused 2 "2 columns in 2D against 1 columns in 2D" fieldcmp a.txt scalar.mts
     run -2 --separate-stderr fieldcmp scalar.mts solid.mts
     [[ "$stderr" == *"in 2D against"*"in 3D"* ]]
     mts drop u a.txt > bare.mts
-    run -2 --separate-stderr fieldcmp bare.mts b.txt
-    [[ "$stderr" == "fieldcmp: bare.mts: no section u"* ]]
+    refused 2 "bare.mts: no section u" fieldcmp bare.mts b.txt
     sed 's/^# u f8 4 2/# u f8 3 2/' a.txt | awk '/^# u/ { at = 1 } at && $0 == "0 1" { next } { print }' > short.txt
-    run -2 --separate-stderr fieldcmp short.txt b.txt
-    [[ "$stderr" == "fieldcmp: short.txt: u: 3 rows"* ]]
+    refused 2 "short.txt: u: 3 rows" fieldcmp short.txt b.txt
     sed 's/^# u f8 4 2/# u f8 2 4/; s/^0 0 *$/&/' a.txt > wide.txt
     run -2 --separate-stderr fieldcmp wide.txt b.txt
     run -2 --separate-stderr fieldcmp --field nodes.x a.txt <(sed 's/^# nodes.x f8/# nodes.x f4/' b.txt)

@@ -32,9 +32,7 @@ with_section() {
     for arguments in "-f u -f u" "-p" "a b" "-u mm linear.mts" "-k 2 linear.mts" "-b mls1 linear.mts" \
         "-p x -k 2 -R 3 linear.mts" "-p x -k 0 linear.mts" "-p x -u foot linear.mts" "-p x -R 1foot linear.mts" \
         "-p missing.mts linear.mts" "-p missing.tsv -u mm linear.mts" "-p . linear.mts" "-p . -u m linear.mts" "missing.mts"; do
-        run -2 --separate-stderr interp $arguments
-        [[ "$stderr" == "interp: "* ]]
-        [ -z "$output" ]
+        refused 2 "" interp $arguments
     done
 }
 
@@ -93,8 +91,7 @@ with_section() {
         [ -z "$output" ]
     done
     mts drop u linear.mts > bare.mts
-    run -2 --separate-stderr interp -p points.mts bare.mts
-    [[ "$stderr" == *"no fields"* ]]
+    refused 2 "no fields" interp -p points.mts bare.mts
 }
 
 @test "points outside of the body are an error that names the first" {
@@ -108,16 +105,12 @@ with_section() {
     [ -z "$output" ]
     mts drop 'cells*' linear.mts > bare.mts
     printf '0.5 0.5\n1.12 0.5\n' | interp -p /dev/stdin -u m bare.mts | mts print u | tail -n 1 | awk '!($1 > 4.73 && $1 < 4.75) { exit 1 }'
-    run -2 --separate-stderr interp -p far.tsv -u m bare.mts
-    [[ "$stderr" == *"far.tsv: row 2 at (2, 2)"* ]]
-    run -2 --separate-stderr interp -p far.tsv linear.mts
-    [[ "$stderr" == *"needs -u"* ]]
-    run -2 --separate-stderr interp -p <(cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1) linear.mts
-    [[ "$stderr" == *"points in 3D, the field is in 2D"* ]]
+    refused 2 "far.tsv: row 2 at (2, 2)" interp -p far.tsv -u m bare.mts
+    refused 2 "needs -u" interp -p far.tsv linear.mts
+    refused 2 "points in 3D, the field is in 2D" interp -p <(cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1) linear.mts
     for row in "0.5" "0.5 0.5 0.5" "0.5 nan" "0,5 0,5" "x y"; do
         echo "$row" > bad.tsv
-        run -2 --separate-stderr interp -p bad.tsv -u m linear.mts
-        [[ "$stderr" == "interp: bad.tsv:1: "* ]]
+        refused 2 "bad.tsv:1: " interp -p bad.tsv -u m linear.mts
     done
 }
 
@@ -133,8 +126,7 @@ END
     mts print nodes.x legs.txt | awk '{ print 1 + 2 * $1 - $2 }' > linear
     with_section legs.txt u f8 1 cat linear > field.txt
     awk 'BEGIN { for (i = -4; i < 35; i++) for (j = -4; j < 25; j++) print i / 10, j / 10 }' > grid.tsv
-    run -2 --separate-stderr interp -p grid.tsv -u m field.txt
-    [[ "$stderr" == *"grid.tsv: row 0 at (-0.4, -0.4): farther"* ]]
+    refused 2 "grid.tsv: row 0 at (-0.4, -0.4): farther" interp -p grid.tsv -u m field.txt
     [ -z "$output" ]
     interp -p grid.tsv -u m --skip-outside -t field.txt > at.txt 2> said
     awk '{ inside = $1 >= 0 && $1 <= 3 && $2 >= 0 && $2 <= 2 && !($1 > 1.001 && $1 < 1.999 && $2 < 0.999) }
@@ -147,10 +139,8 @@ END
     mts check at.txt
     # None there is an error; the option is for points of the user's.
     echo '9 9' > far.tsv
-    run -2 --separate-stderr interp -p far.tsv -u m --skip-outside field.txt
-    [[ "$stderr" == *"far.tsv: no point lies in the body"* ]]
-    run -2 --separate-stderr interp --skip-outside field.txt
-    [[ "$stderr" == *"--skip-outside needs -p"* ]]
+    refused 2 "far.tsv: no point lies in the body" interp -p far.tsv -u m --skip-outside field.txt
+    refused 2 "--skip-outside needs -p" interp --skip-outside field.txt
 }
 
 @test "file and standard input, text and binary, and any number of threads give the same" {
@@ -170,8 +160,7 @@ END
     awk '/^# u / { at = 1; print; next } at && at++ == 70 { print "nan"; next } { print }' table.txt > nan.txt
     interp nan.txt | mts print u | grep -c nan
     awk '/^# support.radius/ { at = 1; print; next } at && at++ == 70 { print "-1"; next } { print }' table.txt > bad.txt
-    run -2 --separate-stderr interp bad.txt
-    [[ "$stderr" == *"support.radius: row 69: -1 is not finite and positive"* ]]
+    refused 2 "support.radius: row 69: -1 is not finite and positive" interp bad.txt
     awk '/^# support.radius/ { at = 1; $4--; print; next } at && at++ == 1 { next } { print }' table.txt > bad.txt
     run -2 --separate-stderr interp bad.txt
     [[ "$stderr" == *"support.radius: does not fit nodes.x: "*" rows instead of "* ]]

@@ -190,46 +190,42 @@ violates() {
     [[ "$output" == "edge.phi: list 0: sums to 1 "* ]]
 }
 
+# finds TEXT [FILE]: check says so.
+finds() {
+    run -1 mts check "${2:-damaged}"
+    [[ $output == *"$1"* ]] || { echo "$output"; return 1; }
+}
+
 @test "check compares the shapes of sections" {
     square | mts drop nbr.idx | mts binary > damaged
-    run -1 mts check damaged
-    [ "$output" = "no section nbr.idx: run support" ]
+    finds "no section nbr.idx: run support"
     square | sed '/^# u /,$d' > damaged
     printf '# u f8 3 2 enc=text\n0 0\n0 0\n0 0\n\n\n# end 17\n' >> damaged
-    run -1 mts check damaged
-    [ "$output" = "u: does not fit nodes.x: 3 rows instead of 4: run mtled again" ]
+    finds "u: does not fit nodes.x: 3 rows instead of 4: run mtled again"
     square | mts drop points.weight -t | sed '$d' > damaged
     printf '# points.weight f8 1 2\n0.5 0.25\n\n\n# end 17\n' >> damaged
-    run -1 mts check damaged
-    [ "$output" = "points.weight: 2 columns instead of 1" ]
+    finds "points.weight: 2 columns instead of 1"
     violates 'nbr.ptr: type i4 instead of i8' nbr.ptr 's/ i8 / i4 /'
     square > whole
     shortened nbr.ptr whole > damaged
-    run -1 mts check damaged
-    [ "${lines[0]}" = "nbr.ptr: does not fit points.x: 2 rows instead of 3: run support again" ]
+    finds "nbr.ptr: does not fit points.x: 2 rows instead of 3: run support again"
     square | sed '/^# u /,$d' > damaged
     printf '# faces i4 2 2\n0 1\n0 2\n\n\n# faces.cell i4 2 2\n0 -1\n0 1\n\n\n' >> damaged
     printf '# facepoints.x f8 3 2\n0 0\n0 0\n0 0\n\n\n# end 19\n' >> damaged
-    run -1 mts check damaged
-    [[ $output == *"facepoints.x: 3 rows, but the faces ask for 2"* ]]
+    finds "facepoints.x: 3 rows, but the faces ask for 2"
     sed '/^# faces.cell/,/^$/ { s/^0 -1$/0 1 /; /^0 1$/ s/1/-1/; }' damaged > swapped
-    run -1 mts check swapped
-    [[ $output == *"faces.cell: row 1: on the boundary, after faces between cells"* ]]
+    finds "faces.cell: row 1: on the boundary, after faces between cells" swapped
     shapefn <(cloud -d 2 -k regular -n 3 --box 0,1,0,1) 2> note | mts text > whole
     mts check whole
     shortened boundary.ptr whole > damaged
-    run -1 mts check damaged
-    [[ $output == *"boundary.ptr: 16 rows, but the faces ask for 17"* ]]
+    finds "boundary.ptr: 16 rows, but the faces ask for 17"
     shortened edge.ptr whole > damaged
-    run -1 mts check damaged
-    [[ $output == *"edge.ptr: 24 rows, but the faces ask for 25"* ]]
+    finds "edge.ptr: 24 rows, but the faces ask for 25"
     shapefn <(cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1) 2> note | mts text > whole
     awk '$2 == "faces.edge" { print; getline; print 0, 1, 0; next } { print }' whole > damaged
-    run -1 mts check damaged
-    [[ $output == *"faces.edge: row "*": not the edges of this face"* ]]
+    finds ": not the edges of this face"
     printf '# mts 1\n# nodes.x f8 1 1\n0\n\n\n# end 1\n' > damaged
-    run -1 mts check damaged
-    [ "${lines[0]}" = "nodes.x: 1 columns instead of 2 or 3" ]
+    finds "nodes.x: 1 columns instead of 2 or 3"
 }
 
 @test "command lines are strict" {

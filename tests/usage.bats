@@ -9,7 +9,7 @@ setup() {
     [ ${#tools[@]} -ge 10 ]
 }
 
-@test "-h tells name, usage, options and examples on standard output, no line wider than 102" {
+@test "-h tells name, usage, options and examples on standard output, no line wider than 102; --version the name; an unknown option is refused" {
     for tool in "${tools[@]}"; do
         run -0 --separate-stderr "$tool" -h
         [ -z "$stderr" ]
@@ -19,22 +19,9 @@ setup() {
         grep -qx 'Examples:' <<< "$output"
         awk 'length($0) > 102 || /[ \t]$/ || /\t/ { print FILENAME ": " $0; exit 1 }' <<< "$output"
         "$tool" --help | cmp - <(printf '%s\n' "$output")
-    done
-}
-
-@test "--version is one line with the name" {
-    for tool in "${tools[@]}"; do
         run -0 --separate-stderr "$tool" --version
         [[ $output =~ ^$tool\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
-    done
-}
-
-@test "an unknown option is refused in one line, with status 2 and nothing on standard output" {
-    for tool in "${tools[@]}"; do
-        run -2 --separate-stderr "$tool" --no-such-option
-        [ -z "$output" ]
-        [ "$(wc -l <<< "$stderr")" -eq 1 ]
-        [[ $stderr == "$tool: "*no-such-option* ]]
+        refused 2 no-such-option "$tool" --no-such-option
     done
 }
 

@@ -86,16 +86,13 @@ END
     # Nothing is between the nodes of a square: the same lists.
     ipoints square.mts | support -t | grep -v '^# [@s]' > a.txt
     ipoints square.mts | support -t --reach distance | grep -v '^# [@s]' | cmp - a.txt
-    run -2 --separate-stderr support --reach sight square.mts
-    [[ "$stderr" == "support: --reach: "* ]]
+    refused 2 "--reach: " support --reach sight square.mts
     # Without cells: by distance, and cells cannot be asked for.
     mts text square.mts | awk '/^# [^@]/ { skip = $2 == "cells" || $2 ~ /^(facets|cells)/ } !skip' | sed '/^# end/d' > cloud.dat
     printf '# points.x f8 1 2 enc=text unit=m\n0.05 0.05\n\n\n# end 2\n' >> cloud.dat
     support -v -t cloud.dat 2> notes | grep '^# support.radius' | grep -q 'reach=distance'
     grep -q 'neighbours by distance alone' notes
-    run -2 --separate-stderr support --reach cells cloud.dat
-    [[ "$stderr" == *"the input has no cells"* ]]
-    [ -z "$output" ]
+    refused 2 "the input has no cells" support --reach cells cloud.dat
 }
 
 @test "sections of what is around corners that do not fit are refused" {
@@ -104,12 +101,10 @@ END
     rows=$(awk '$2 == "facepoint.around" { print $4 }' lists.dat)
     [ "$rows" -gt 2 ]
     awk '$2 == "facepoint.around" { print; getline; print 1000000; next } { print }' lists.dat > bad.dat
-    run -2 --separate-stderr shapefn bad.dat
-    [[ "$stderr" == "shapefn: facepoint.around: row "* ]]
+    refused 2 "facepoint.around: row " shapefn bad.dat
     run -1 --separate-stderr mts check bad.dat
     awk '$2 == "facepoint.image" { print; getline; print "nan 0"; next } { print }' lists.dat > bad.dat
-    run -2 --separate-stderr shapefn bad.dat
-    [[ "$stderr" == "shapefn: facepoint.image: row 0"* ]]
+    refused 2 "facepoint.image: row 0" shapefn bad.dat
 }
 
 @test "tables of displacements act neither across a gap nor across a slit" {

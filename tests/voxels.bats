@@ -335,33 +335,23 @@ rim() {
     head -c 2000 sphere.nii.gz > cut.nii.gz
     refused 2 "cut.nii.gz: " voxels -h 6mm cut.nii.gz
 
-    table() { printf "$1" > table; }
-    table '2 other\n'
-    refused 2 "table: no row for label 1" voxels -h 6mm -l table sphere.nii.gz
-    table '1 body\n2 other\n'
-    refused 2 "'other' is empty: no voxel has a label of that name" voxels -h 6mm -l table sphere.nii.gz
-    table '1 -\n'
-    refused 2 "the table keeps no label" voxels -h 6mm -l table sphere.nii.gz
-    table '1 body\n1-3 other\n'
-    refused 2 "table:2: label 1 stands in another row already" voxels -h 6mm -l table sphere.nii.gz
-    table '1\n'
-    refused 2 "table:1: a row is LABELS NAME" voxels -h 6mm -l table sphere.nii.gz
-    table '1 body of water\n'
-    refused 2 "table:1: a row is LABELS NAME" voxels -h 6mm -l table sphere.nii.gz
-    table '1 outside\n'
-    refused 2 "table:1: 'outside' is what no label names" voxels -h 6mm -l table sphere.nii.gz
-    table '1 a|b\n'
-    refused 2 "table:1: 'a|b': no commas" voxels -h 6mm -l table sphere.nii.gz
-    table '3-1 body\n'
-    refused 2 "table:1: label: 1 is not within" voxels -h 6mm -l table sphere.nii.gz
-    table 'x body\n'
-    refused 2 "table:1: label: 'x'" voxels -h 6mm -l table sphere.nii.gz
-    table '1 body\n2 body -\n'
-    refused 2 "table:2: 'body' is kept in one row and left out in another" voxels -h 6mm -l table sphere.nii.gz
-    table '* body\n* other\n'
-    refused 2 "table:2: a second row for all other labels" voxels -h 6mm -l table sphere.nii.gz
-    table '# nothing\n'
-    refused 2 "table: names no label" voxels -h 6mm -l table sphere.nii.gz
-    table '1 body'
-    refused 2 "table:1: " voxels -h 6mm -l table sphere.nii.gz
+    while IFS='=' read -r rows message; do
+        printf "$rows" > table
+        refused 2 "$message" voxels -h 6mm -l table sphere.nii.gz
+    done << 'END'
+2 other\n=table: no row for label 1
+1 body\n2 other\n='other' is empty: no voxel has a label of that name
+1 -\n=the table keeps no label
+1 body\n1-3 other\n=table:2: label 1 stands in another row already
+1\n=table:1: a row is LABELS NAME
+1 body of water\n=table:1: a row is LABELS NAME
+1 outside\n=table:1: 'outside' is what no label names
+1 a|b\n=table:1: 'a|b': no commas
+3-1 body\n=table:1: label: 1 is not within
+x body\n=table:1: label: 'x'
+1 body\n2 body -\n=table:2: 'body' is kept in one row and left out in another
+* body\n* other\n=table:2: a second row for all other labels
+# nothing\n=table: names no label
+1 body=table:1:
+END
 }
