@@ -180,16 +180,27 @@ volumes() {
     run ! grep thick said
 }
 
-@test "no physical groups: the region is body, and how to come by names is reported" {
+@test "no physical groups: the entities of the geometry are groups, a single one of cells is the region body" {
     cube tet
     sed -i 's/Physical [^;]*;//g' cube.geo
     gmsh -v 1 -3 cube.geo -o bare.msh
-    nodes -u m -t bare.msh 2> said > bare.mts
+    nodes -u m -t bare.msh > bare.mts
     grep -q "^# cells.region .* names=body$" bare.mts
-    grep -q "nodes: no part of the boundary has a name: the program groups makes names" said
-    nodes -l bare.msh 2>&1 | grep -q "the program groups makes names"
+    [ "$(grep '^# facets.set ' bare.mts | grep -o group_ | wc -l)" -eq 6 ]
     [ "$(nodes -u m -r body bare.msh 2> /dev/null | mts list | grep -c cells)" -eq 2 ]
     refused 2 "no cells in a region 'skin': there are body" nodes -u m -r skin bare.msh
+    # References of MEDIT, 0 among them.
+    printf 'MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n0 0 -1 1\n' > two.mesh
+    printf 'Tetrahedra\n2\n1 2 3 4 7\n1 3 2 5 0\nEnd\n' >> two.mesh
+    for format in msh22 msh41; do
+        gmsh -v 1 two.mesh -save -format $format -o two.msh
+        nodes -u m -t two.msh > two.mts 2> said
+        grep -q "^# cells.region .* names=group_0,group_7$" two.mts
+        grep -q "nodes: no part of the boundary has a name: the program groups makes names" said
+    done
+    nodes -l two.msh > list 2> said
+    grep -q "the program groups makes names" said
+    grep -qx "$(printf 'group_7\t3\t7\t1')" list
 }
 
 @test "MSH 1 is MSH 2 without names; second-order cells are cut or split; partitions vanish" {

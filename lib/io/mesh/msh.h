@@ -8,10 +8,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A physical group. */
+/* A physical group. Where there is none of the dimension of the cells, or of their faces, the entities of
+ * that dimension are groups in its place; not a single entity of all cells. */
 struct msh_group {
     int dim;    /* 0 points, 1 curves, 2 surfaces, 3 volumes */
-    int tag;    /* as in the file; not negative */
+    int tag;    /* as in the file */
     char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
                    dimension */
     int64_t element_count; /* 0 for a group with a name but no elements */

@@ -74,17 +74,18 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
     }
 }
 
-/* The tags of an element of MSH 1 and 2: the first is its physical group, of the dimension of its type. */
-static int64_t read_group(struct msh_reader *r, const struct block *block)
+/* The tags of an element of MSH 1 and 2: the first is its physical group, negative if that reverses it; the
+ * second its entity. Both are of the dimension of its type. */
+static void read_tags(struct msh_reader *r, int64_t e, const struct block *block)
 {
-    int64_t group = 0;
     for (int64_t k = 0; k < block->tags; k++) {
         int64_t tag = msh_int(r, "tag", k == 1 ? 0 : -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        if (k == 0) { /* negative if the element's orientation is reversed */
-            group = tag < 0 ? -tag : tag;
+        if (k == 0 && tag != 0) {
+            r->element_key[e] = msh_key(block->type.dim, tag < 0 ? -tag : tag);
+        } else if (k == 1) {
+            r->whole_key[e] = msh_key(block->type.dim, tag);
         }
     }
-    return group != 0 ? msh_key(block->type.dim, group) : 0;
 }
 
 static void read_element_nodes(struct msh_reader *r, int64_t e, const struct block *block)
@@ -115,7 +116,11 @@ static void read_element(struct msh_reader *r, int64_t e, struct block *block)
         read_type(r, block);
         block->tags = r->version == 10 ? 2 : msh_int(r, "number of tags", 0, MOST_TAGS);
     }
-    r->element_key[e] = r->version < 40 ? read_group(r, block) : block->key;
+    if (r->version < 40) {
+        read_tags(r, e, block);
+    } else {
+        r->element_key[e] = r->whole_key[e] = block->key;
+    }
     if (r->version == 10) {
         (void)msh_int(r, "number of nodes", block->type.node_count, block->type.node_count);
     }
@@ -146,6 +151,7 @@ void msh_read_elements(struct msh_reader *r)
     MSH_NEW(r, &msh->element_type, count);
     MSH_NEW(r, &msh->node_ptr, count + 1);
     MSH_NEW(r, &r->element_key, count);
+    MSH_NEW(r, &r->whole_key, count);
     for (int64_t b = 0; r->status == STATUS_OK && b < blocks && (blocked || found < count); b++) {
         struct block block = {0};
         r->record = found + 1;

@@ -124,9 +124,11 @@ static void read_entity(struct msh_reader *r, int dim, bool partitioned, struct 
 {
     bool is_part = true;
     *entity = (struct msh_entity){.key = msh_key(dim, msh_int(r, "tag", -MSH_LARGEST_TAG, MSH_LARGEST_TAG))};
+    entity->whole = entity->key;
     if (partitioned) {
         is_part = msh_int(r, "dimension of the whole", -1, 3) == dim;
-        (void)msh_int(r, "tag of the whole", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        int64_t whole = msh_int(r, "tag of the whole", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+        entity->whole = is_part ? msh_key(dim, whole) : 0;
         read_partitions_of(r, dim, is_part);
     }
     for (int k = 0; k < (dim == 0 && r->version == 41 ? 3 : 6); k++) {

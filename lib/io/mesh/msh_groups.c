@@ -1,5 +1,5 @@
-/* The physical groups of a mesh file, and those of each element, from the names, entities and elements that
- * were read. */
+/* The groups of a mesh file, and those of each element, from the names, entities and elements that were read.
+ * They are the physical groups; where cells, or faces of cells, have none, the entities of the geometry. */
 #include "base/lists.h"
 #include "io/mesh/msh_private.h"
 
@@ -44,14 +44,19 @@ static struct msh_group *find_group(const struct msh *msh, int64_t key)
     return bsearch(&key, msh->groups, (size_t)msh->group_count, sizeof *msh->groups, compare_group);
 }
 
-/* Collect the groups that the file names, and those of entities (MSH 4) or elements (MSH 1 and 2). */
-static void collect_groups(struct msh_reader *r)
+static int dim_of(const struct msh_reader *r, int64_t e)
+{
+    return msh_type(r->msh->element_type[e]).dim;
+}
+
+/* Collect the groups that the file names, those of entities (MSH 4), and those of elements where
+ * by_element[dimension] says that these name their groups. */
+static void collect_groups(struct msh_reader *r, const bool by_element[])
 {
     struct msh *msh = r->msh;
     int64_t count = 0;
     SCRATCH int64_t *keys = NULL;
-    int64_t elements = r->version < 40 ? msh->element_count : 0;
-    MSH_NEW(r, &keys, r->name_count + r->physical_count + elements);
+    MSH_NEW(r, &keys, r->name_count + r->physical_count + msh->element_count);
     if (r->status != STATUS_OK) {
         return;
     }
@@ -61,8 +66,9 @@ static void collect_groups(struct msh_reader *r)
     for (int64_t i = 0; i < r->physical_count; i++) {
         keys[count++] = r->physicals[i];
     }
-    for (int64_t e = 0; e < elements; e++) {
-        if (r->element_key[e] != 0 && (count == 0 || keys[count - 1] != r->element_key[e])) {
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        if (by_element[dim_of(r, e)] && r->element_key[e] != 0 &&
+            (count == 0 || keys[count - 1] != r->element_key[e])) {
             keys[count++] = r->element_key[e];
         }
     }
@@ -137,33 +143,106 @@ static void name_groups(struct msh_reader *r)
     free(order);
 }
 
-/* In MSH 1 and 2 each group is an entity. */
-static void make_entities(struct msh_reader *r)
-{
-    int64_t count = r->msh->group_count;
-    MSH_GROW(r, &r->entities, count, &r->entity_room);
-    MSH_GROW(r, &r->physicals, count, &r->physical_room);
-    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
-        r->physicals[i] = group_key(&r->msh->groups[i]);
-        r->entities[r->entity_count++] = (struct msh_entity){r->physicals[i], i, 1};
-    }
-}
-
-/* Sort the entities, and turn their groups into ascending indices into msh->groups. */
+/* Sort the entities; each stands once. */
 static void sort_entities(struct msh_reader *r)
 {
     if (r->status != STATUS_OK || r->entity_count == 0) {
         return;
     }
     qsort(r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_int64);
-    for (int64_t i = 0; i < r->entity_count; i++) {
-        struct msh_entity *entity = &r->entities[i];
-        int64_t *list = &r->physicals[entity->first];
-        if (i > 0 && entity->key == entity[-1].key) {
+    for (int64_t i = 1; i < r->entity_count; i++) {
+        int64_t key = r->entities[i].key;
+        if (key == r->entities[i - 1].key) {
             r->status = fail(r->error, STATUS_INPUT, "$Entities: %s %d stands twice",
-                             msh_entity_kind(key_dim(entity->key)), key_tag(entity->key));
+                             msh_entity_kind(key_dim(key)), key_tag(key));
             return;
         }
+    }
+}
+
+/* The entity with a key; NULL if there is none. */
+static const struct msh_entity *find_entity(const struct msh_reader *r, int64_t key)
+{
+    return r->entity_count == 0
+               ? NULL
+               : bsearch(&key, r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_int64);
+}
+
+/* In MSH 4: the whole of which the entity of each element is a part. The file may list no entities. */
+static void find_wholes(struct msh_reader *r)
+{
+    const struct msh_entity *entity = NULL;
+    bool listed = r->version >= 40 && r->entity_count > 0;
+    for (int64_t e = 0; listed && r->status == STATUS_OK && e < r->msh->element_count; e++) {
+        int64_t key = r->element_key[e];
+        entity = entity != NULL && entity->key == key ? entity : find_entity(r, key);
+        if (entity == NULL) {
+            r->status =
+                fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",
+                     (long long)r->msh->element_tag[e], msh_entity_kind(key_dim(key)), key_tag(key));
+        } else {
+            r->whole_key[e] = entity->whole;
+        }
+    }
+}
+
+/* Where no physical group has the dimension of the cells, or that of their faces, the entities become groups.
+ * A single entity of cells remains without group, as it tells nothing. */
+static void group_by_entity(struct msh_reader *r, bool by_element[])
+{
+    bool grouped[4] = {false}, several = false;
+    int64_t first = 0;
+    int dim = -1;
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
+        grouped[key_dim(r->names[i].key)] = true;
+    }
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->physical_count; i++) {
+        grouped[key_dim(r->physicals[i])] = true;
+    }
+    for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
+        int of_element = dim_of(r, e);
+        grouped[of_element] = grouped[of_element] || (r->version < 40 && r->element_key[e] != 0);
+        first = of_element > dim ? r->whole_key[e] : first;
+        several = of_element > dim ? false : several || (of_element == dim && r->whole_key[e] != first);
+        dim = of_element > dim ? of_element : dim;
+    }
+    for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
+        int of_element = dim_of(r, e);
+        if (!grouped[of_element] && (of_element == dim ? several : of_element == dim - 1)) {
+            by_element[of_element] = true;
+            r->element_key[e] = r->whole_key[e];
+        }
+    }
+}
+
+/* Where elements name their groups, each group is an entity. */
+static void make_entities(struct msh_reader *r, const bool by_element[])
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < r->entity_count; i++) {
+        if (!by_element[key_dim(r->entities[i].key)]) {
+            r->entities[kept++] = r->entities[i];
+        }
+    }
+    r->entity_count = kept;
+    MSH_GROW(r, &r->entities, kept + r->msh->group_count, &r->entity_room);
+    MSH_GROW(r, &r->physicals, r->physical_count + r->msh->group_count, &r->physical_room);
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->msh->group_count; i++) {
+        int64_t key = group_key(&r->msh->groups[i]);
+        if (by_element[r->msh->groups[i].dim]) {
+            r->entities[r->entity_count++] = (struct msh_entity){key, key, r->physical_count, 1};
+            r->physicals[r->physical_count++] = key;
+        }
+    }
+    sort_entities(r);
+}
+
+/* Turn the groups of entities into ascending indices into msh->groups. */
+static void index_groups(struct msh_reader *r)
+{
+    for (int64_t i = 0; r->status == STATUS_OK && i < r->entity_count; i++) {
+        struct msh_entity *entity = &r->entities[i];
+        int64_t *list = &r->physicals[entity->first];
         entity->count = sort_distinct(entity->count, list);
         for (int64_t k = 0; k < entity->count; k++) {
             list[k] = find_group(r->msh, list[k]) - r->msh->groups;
@@ -171,54 +250,40 @@ static void sort_entities(struct msh_reader *r)
     }
 }
 
-/* The entity of an element; one without groups if the file lists none, and for elements without group. */
-static const struct msh_entity *entity_of(struct msh_reader *r, int64_t e, const struct msh_entity *last)
-{
-    static const struct msh_entity none = {0, 0, 0};
-    const int64_t *key = &r->element_key[e];
-    if (*key == last->key) {
-        return last;
-    }
-    const struct msh_entity *found =
-        r->entity_count == 0 ? NULL
-                             : bsearch(key, r->entities, (size_t)r->entity_count, sizeof none, compare_int64);
-    if (found == NULL && r->version >= 40 && r->entity_count > 0) {
-        r->status =
-            fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",
-                 (long long)r->msh->element_tag[e], msh_entity_kind(key_dim(*key)), key_tag(*key));
-    }
-    return found != NULL ? found : &none;
-}
-
 static void join_members(struct msh_reader *r)
 {
+    static const struct msh_entity none = {0};
     struct msh *msh = r->msh;
-    const struct msh_entity none = {0, 0, 0}, *entity = &none;
     MSH_NEW(r, &msh->member_ptr, msh->element_count + 1);
-    for (int64_t e = 0; r->status == STATUS_OK && e < msh->element_count; e++) {
-        entity = entity_of(r, e, entity);
-        msh->member_ptr[e + 1] = msh->member_ptr[e] + entity->count;
-    }
-    if (r->status == STATUS_OK) {
-        MSH_NEW(r, &msh->member_idx, msh->member_ptr[msh->element_count]);
-    }
-    for (int64_t e = 0; r->status == STATUS_OK && e < msh->element_count; e++) {
-        entity = entity_of(r, e, entity);
-        for (int64_t k = 0; k < entity->count; k++) {
-            int32_t group = (int32_t)r->physicals[entity->first + k];
-            msh->member_idx[msh->member_ptr[e] + k] = group;
-            msh->groups[group].element_count++;
+    for (int pass = 0; pass < 2 && r->status == STATUS_OK; pass++) {
+        const struct msh_entity *entity = &none;
+        for (int64_t e = 0; e < msh->element_count; e++) {
+            if (r->element_key[e] != entity->key) {
+                entity = find_entity(r, r->element_key[e]);
+                entity = entity != NULL ? entity : &none;
+            }
+            msh->member_ptr[e + 1] = msh->member_ptr[e] + entity->count;
+            for (int64_t k = 0; pass == 1 && k < entity->count; k++) {
+                int32_t group = (int32_t)r->physicals[entity->first + k];
+                msh->member_idx[msh->member_ptr[e] + k] = group;
+                msh->groups[group].element_count++;
+            }
+        }
+        if (pass == 0) {
+            MSH_NEW(r, &msh->member_idx, msh->member_ptr[msh->element_count]);
         }
     }
 }
 
 void msh_join_groups(struct msh_reader *r)
 {
-    collect_groups(r);
-    name_groups(r);
-    if (r->version < 40) {
-        make_entities(r);
-    }
+    bool old = r->version < 40, by_element[4] = {old, old, old, old};
     sort_entities(r);
+    find_wholes(r);
+    group_by_entity(r, by_element);
+    collect_groups(r, by_element);
+    name_groups(r);
+    make_entities(r, by_element);
+    index_groups(r);
     join_members(r);
 }

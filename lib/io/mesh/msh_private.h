@@ -35,9 +35,10 @@ struct msh_name {
     int length;
 };
 
-/* A list of physical groups to which elements refer: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
+/* A list of groups to which elements refer: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
 struct msh_entity {
     int64_t key;
+    int64_t whole;        /* in a partitioned mesh the key of the entity that this is a part of, 0: of none */
     int64_t first, count; /* its groups: of reader->physicals */
 };
 
@@ -67,6 +68,7 @@ struct msh_reader {
     bool has[MSH_SECTIONS]; /* the section was read to its end */
     int64_t node_idx_room;
     int64_t *element_key; /* msh->element_count: key of the entity, in MSH 1 and 2 of the group; 0: none */
+    int64_t *whole_key;   /* msh->element_count: key of the entity, which partitions do not cut; 0: none */
     int64_t name_count;
     struct msh_name *names;
     int64_t entity_count, entity_room;

@@ -236,7 +236,8 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     read_sections(&reader);
     msh_join_groups(&reader);
     msh_index_free(&reader.nodes);
-    FREE_ALL(reader.element_key, reader.names, reader.entities, reader.physicals, reader.partitions);
+    FREE_ALL(reader.element_key, reader.whole_key, reader.names, reader.entities, reader.physicals,
+             reader.partitions);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
