@@ -103,7 +103,10 @@ volumes() {
         set -- $format
         sed 's/Mesh.MshFileVersion *= *4.1;//' "$geo" > brain2d.geo
         gmsh -v 1 -2 brain2d.geo -format "$1" -setnumber Mesh.Binary "$2" -o "$1-$2.msh"
-        nodes -u mm -t "$1-$2.msh" > "$1-$2.mts"
+        gmsh -v 1 -2 brain2d.geo -format "$1" -setnumber Mesh.Binary "$2" -setnumber Mesh.SaveParametric 1 -o parametric.msh
+        nodes -u mm -t < parametric.msh > parametric.mts
+        nodes -u mm -t < "$1-$2.msh" > "$1-$2.mts"
+        cmp parametric.mts "$1-$2.mts"
         [ "$(rows nodes.x "$1-$2.mts" | wc -l)" -eq 702 ]
         [ "$(rows cells "$1-$2.mts" | wc -l)" -eq 1247 ]
         [ "$(rows facets "$1-$2.mts" | wc -l)" -eq 157 ]
@@ -144,7 +147,11 @@ volumes() {
     [[ "$output" == *"names=the_body"* ]]
     nodes -l blank.msh | grep -q '^the_body'
     square | sed 's/"diagonal"/"a b"/; s/"bottom"/"a,b"/' > same.msh
-    refused 2 "groups 2 and 3 of dimension 1 are both named 'a_b'" nodes -u mm same.msh
+    run -0 --separate-stderr nodes -u mm -t same.msh
+    [[ "$stderr" == *"group 'a,b' is named 'a_b_2' here"*"group 'a b' is named 'a_b_3' here"* ]]
+    square | sed 's/"diagonal"/"bottom"/' > twice.msh
+    nodes -l twice.msh | grep -qx "$(printf 'bottom_3\t1\t3\t1')"
+    nodes -u mm -t twice.msh 2> said | grep -q '^# facets.set .* names=bottom_2$'
     square | sed '/^\$PhysicalNames/,/^\$EndPhysicalNames/d' > unnamed.msh
     nodes -u mm -t unnamed.msh | grep -q '^# cells.region .* names=group_4$'
 }
@@ -311,6 +318,20 @@ END
     sed '/^#/d' body.obj > plain.obj # and an OBJ without meshio's comment
     refused 2 'an OFF surface: make it STL (python3 -c ' nodes -u m body.off
     refused 2 'an OBJ surface: make it STL (python3 -c ' nodes -u m plain.obj
+    /usr/bin/python3 -c 'import meshio as m, numpy as n; a = m.read("filled.msh"); t = a.cells_dict["tetra"]
+m.Mesh(a.points, [("tetra", t)], cell_data={"tetgen:ref": [n.arange(len(t)) // (len(t) - 1)]}).write("body.node")' > said 2>&1
+    for file in body.node body.ele; do
+        refused 2 "a mesh of TetGen, by its .node and .ele: python3 -c 'import meshio as m; m.write(" nodes -u m $file
+    done
+    by_usage 1 body.node tetgen:ref
+    nodes -u m -t body.msh > body.mts 2> said
+    grep -q '^# cells.region .* names=group_1,group_2$' body.mts
+    [ "$(volumes body.mts)" = "1 1" ]
+    printf '# Triangle\n3 2 0 1\n1 0 0 1\n2 3 0 1\n3 0 2 1\n' > plane.node
+    printf '1 3 0\n1 1 2 3\n' > plane.ele
+    run -2 --separate-stderr nodes -u m plane.node
+    (. <(sed 's|.*and .ele: |/usr/bin/|; s/ makes a mesh of it.*//; s/FILE/plane/' <<< "$stderr"))
+    nodes -u m -t body.msh 2> said | volumes /dev/stdin | grep -qx '3 1'
     for surface in body.off body.obj; do
         /usr/bin/python3 -c "import meshio as m; m.write('body.stl', m.read('$surface'))" > said 2>&1
         gmsh -v 1 -3 fill.geo -o filled.msh

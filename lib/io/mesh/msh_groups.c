@@ -111,11 +111,50 @@ static void give_name(struct msh_reader *r, const struct msh_name *name)
     }
 }
 
-/* Name the groups as in the file, or "group_TAG"; two groups with one name and dimension are a failure. */
+static void append_tag(struct msh_reader *r, struct msh_group *group)
+{
+    char *numbered;
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    if (asprintf(&numbered, "%s_%d", group->name, group->tag) < 0) {
+        r->status = fail_memory(r->error, "the name of a group");
+        return;
+    }
+    if (group->written == NULL) {
+        group->written = group->name;
+    } else {
+        free(group->name);
+    }
+    group->name = numbered;
+}
+
+/* Append the tag to names that groups of one dimension share; returns whether there were any. A name so made
+ * may be another group's, but not that of one with a tag appended: when repeated, this ends. */
+static bool number_names(struct msh_reader *r, struct msh_group **order)
+{
+    int64_t count = r->msh->group_count;
+    bool shared = false;
+    qsort(order, (size_t)count, sizeof *order, compare_names);
+    for (int64_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && order[end]->dim == order[i]->dim; end++) {
+            if (strcmp(order[end]->name, order[i]->name) != 0) {
+                break;
+            }
+        }
+        for (int64_t k = i; k < end && end > i + 1; k++) {
+            append_tag(r, order[k]);
+            shared = true;
+        }
+    }
+    return shared;
+}
+
+/* Name the groups as in the file, or "group_TAG"; tags tell those of one name apart. */
 static void name_groups(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
-    const struct msh_group **order = NULL;
+    SCRATCH struct msh_group **order = NULL;
     for (int64_t i = 0; r->status == STATUS_OK && i < r->name_count; i++) {
         give_name(r, &r->names[i]);
     }
@@ -128,19 +167,8 @@ static void name_groups(struct msh_reader *r)
             r->status = fail_memory(r->error, "the name of a group");
         }
     }
-    if (r->status == STATUS_OK) {
-        qsort(order, (size_t)msh->group_count, sizeof *order, compare_names);
+    while (r->status == STATUS_OK && number_names(r, order)) {
     }
-    for (int32_t i = 1; r->status == STATUS_OK && i < msh->group_count; i++) {
-        const struct msh_group *a = order[i - 1];
-        const struct msh_group *b = order[i];
-        if (a->dim == b->dim && strcmp(a->name, b->name) == 0) {
-            r->status =
-                fail(r->error, STATUS_INPUT, "physical groups %d and %d of dimension %d are both named '%s'",
-                     a->tag, b->tag, a->dim, a->name);
-        }
-    }
-    free(order);
 }
 
 /* Sort the entities; each stands once. */

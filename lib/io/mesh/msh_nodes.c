@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- finding nodes and elements by their tags ---- */
 
@@ -45,6 +46,16 @@ void msh_index_free(struct msh_index *index)
 
 /* ---- $Nodes ---- */
 
+enum { EACH_NODE = -1 }; /* the node tells the number of its parameters */
+
+/* $ParametricNodes of MSH 2 give each node its entity, and the parameters on curves and surfaces. */
+static int64_t parameters_of_node(struct msh_reader *r)
+{
+    int64_t dim = msh_int(r, "dimension of the entity", -1, 3);
+    (void)msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
+    return dim == 1 || dim == 2 ? dim : 0;
+}
+
 static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
 {
     r->record = node + 1;
@@ -55,6 +66,7 @@ static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
         }
         r->msh->x[3 * node + k] = x;
     }
+    parameters = parameters == EACH_NODE ? parameters_of_node(r) : parameters;
     for (int64_t k = 0; k < parameters; k++) {
         (void)msh_real(r, "parameter");
     }
@@ -63,7 +75,7 @@ static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
 /* A block of nodes: all nodes of a file of MSH 1 or 2, those of one entity in MSH 4. */
 struct block {
     int64_t first, count;
-    int64_t parameters;  /* number of parametric coordinates of each node, which are not used */
+    int64_t parameters;  /* number of parametric coordinates of each node, which are not used, or EACH_NODE */
     int64_t least, most; /* bounds of the tags */
 };
 
@@ -100,7 +112,9 @@ void msh_read_nodes(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
     bool blocked = r->version >= 40;
-    struct block block = {.least = 1, .most = MSH_LARGEST_TAG};
+    struct block block = {.least = 1,
+                          .most = MSH_LARGEST_TAG,
+                          .parameters = strcmp(r->section, "$ParametricNodes") == 0 ? EACH_NODE : 0};
     r->kind = "node";
     int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : 1;
     int64_t count =

@@ -1,5 +1,5 @@
-/* Reading mesh files: shared by msh_read.c, msh_number.c, msh_nodes.c, msh_elements.c, msh_entities.c and
- * msh_groups.c; private to lib/io.
+/* Reading mesh files: shared by msh_read.c, msh_foreign.c, msh_number.c, msh_nodes.c, msh_elements.c,
+ * msh_entities.c and msh_groups.c; private to lib/io.
  *
  *   bytes --> sections --> $PhysicalNames, $Entities  --> groups    \
  *                          $Nodes                     --> nodes      } struct msh
@@ -153,3 +153,8 @@ void msh_index_free(struct msh_index *index);
 
 /* Place of `tag`, or -1. */
 int64_t msh_index_find(const struct msh_index *index, int64_t tag);
+
+/* ---- msh_foreign.c ---- */
+
+/* A hint how to convert a file of another program, from its first bytes: ": a VTK file: ...", or "". */
+const char *msh_foreign_hint(const char *bytes, size_t size);

@@ -2,15 +2,12 @@
 #include "io/files/descriptor.h"
 #include "io/mesh/msh_private.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Number of bytes that identify a mesh. */
 #define MAGIC_SIZE 12
-/* Number of bytes in which the first element of an XML file, behind its comments, is searched for. */
-#define XML_HEAD 4096
 
 /* ---- what the file is ---- */
 
@@ -29,69 +26,6 @@ static bool is_mesh(const char *bytes, size_t size)
 {
     return is_mesh1(bytes, size) ||
            (size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]));
-}
-
-/* A hint how to convert a file of another program, from its first bytes: ": a VTK file: ...", or "". */
-static const char *foreign_hint(const char *bytes, size_t size)
-{
-#define BY_MESHIO                                                                                            \
-    "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"FILE\"), file_format=\"gmsh22\")' "      \
-    "makes a mesh of it (python3-meshio)"
-#define WITH_REGIONS "; nodes -h tells how to keep an array of regions"
-#define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
-#define AS_STL(name)                                                                                         \
-    "make it STL (python3 -c 'import meshio as m; m.write(\"body.stl\", m.read(\"" name "\"))'); "           \
-    "nodes -h tells how to fill that"
-    static const char stl_hint[] = ": an STL surface: nodes -h tells how to fill it";
-    static const char geo_hint[] =
-        ": a geometry of gmsh: gmsh -3 FILE.geo -o body.msh (in the plane -2) makes a mesh of it";
-    static const struct {
-        const char *begin, *hint;
-    } formats[] = {
-        {"# vtk DataFile", ": a VTK file: " BY_MESHIO WITH_REGIONS},
-        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO WITH_REGIONS},
-        {"<VTKFile", ": a VTU file: " BY_MESHIO WITH_REGIONS},
-        {"solid", stl_hint},
-        {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
-        {"-1\n", ": a UNV mesh: " BY_GMSH("FILE.unv")},
-        {"-1\r", ": a UNV mesh: " BY_GMSH("FILE.unv")},
-        {"$ ", ": a Nastran deck: " BY_GMSH("FILE.bdf")},
-        {"BEGIN BULK", ": a Nastran deck: " BY_GMSH("FILE.bdf")},
-        {"NDIME", ": an SU2 mesh: " BY_MESHIO},
-        {"OFF\n", ": an OFF surface: " AS_STL("FILE.off")},
-        {"v ", ": an OBJ surface: " AS_STL("FILE.obj")},
-        {"*", ": an Abaqus deck: " BY_MESHIO},
-        {"ply",
-         ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
-        {"ISO-10303-21", ": a STEP geometry: gmsh -3 FILE.step -o body.msh makes a mesh of it"},
-        {"SetFactory", geo_hint},
-        {"Point", geo_hint},
-        {"//", geo_hint},
-        {"/*", geo_hint},
-        {"CDF", ": an Exodus file: " BY_MESHIO},
-        {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO},
-    };
-    size_t blanks = 0;
-    if (memmem(bytes, size < XML_HEAD ? size : XML_HEAD, "<febio_spec", 11) != NULL) {
-        return ": a model of FEBio: nodes -h tells how to make a mesh of it";
-    }
-    while (blanks < size && isspace((unsigned char)bytes[blanks])) {
-        blanks++;
-    }
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        size_t length = strlen(formats[i].begin);
-        if (size - blanks >= length && memcmp(bytes + blanks, formats[i].begin, length) == 0) {
-            return formats[i].hint;
-        }
-    }
-    if (size >= 84) { /* binary STL: 80 bytes of anything, a count, and 50 bytes for each triangle */
-        uint32_t count;
-        memcpy(&count, bytes + 80, sizeof count);
-        if (count > 0 && size - 84 == 50 * (size_t)count) {
-            return stl_hint;
-        }
-    }
-    return "";
 }
 
 /* ---- sections ---- */
@@ -179,24 +113,28 @@ static void skip_section(struct msh_reader *r)
 static void read_content(struct msh_reader *r)
 {
     static const struct {
-        const char *name, *in_mesh1;
+        const char *name;
+        enum msh_section section;
         void (*read)(struct msh_reader *reader);
-    } needed[MSH_SECTIONS] = {
-        [MSH_FORMAT] = {"$MeshFormat", "", read_format},
-        [MSH_NAMES] = {"$PhysicalNames", "", msh_read_names},
-        [MSH_ENTITIES] = {"$Entities", "", msh_read_entities},
-        [MSH_PARTITIONS] = {"$PartitionedEntities", "", msh_read_partitions},
-        [MSH_NODES] = {"$Nodes", "$NOD", msh_read_nodes},
-        [MSH_ELEMENTS] = {"$Elements", "$ELM", msh_read_elements},
+    } needed[] = {
+        {"$MeshFormat", MSH_FORMAT, read_format},
+        {"$PhysicalNames", MSH_NAMES, msh_read_names},
+        {"$Entities", MSH_ENTITIES, msh_read_entities},
+        {"$PartitionedEntities", MSH_PARTITIONS, msh_read_partitions},
+        {"$Nodes", MSH_NODES, msh_read_nodes},
+        {"$ParametricNodes", MSH_NODES, msh_read_nodes}, /* MSH 2 */
+        {"$NOD", MSH_NODES, msh_read_nodes},             /* MSH 1 */
+        {"$Elements", MSH_ELEMENTS, msh_read_elements},
+        {"$ELM", MSH_ELEMENTS, msh_read_elements},
     };
-    for (int i = 0; i < MSH_SECTIONS; i++) {
-        if (strcmp(r->section, r->version == 10 ? needed[i].in_mesh1 : needed[i].name) == 0) {
-            if (r->has[i]) {
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
+        if (strcmp(r->section, needed[i].name) == 0) {
+            if (r->has[needed[i].section]) {
                 msh_fail(r, "stands twice in the file");
             }
             msh_skip_line(r);
             needed[i].read(r);
-            r->has[i] = true;
+            r->has[needed[i].section] = true;
             return;
         }
     }
@@ -230,7 +168,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     if (!is_mesh(bytes, size)) {
         return fail(error, STATUS_INPUT, "%s%s",
                     size == 0 ? "empty" : "not a gmsh mesh: the first line is not $MeshFormat",
-                    foreign_hint(bytes, size));
+                    msh_foreign_hint(bytes, size));
     }
     reader.version = is_mesh1(bytes, size) ? 10 : 0;
     read_sections(&reader);
