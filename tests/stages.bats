@@ -196,6 +196,16 @@ END
     hostile 2 shapefn bad.txt "points.x: row 2"
 }
 
+@test "gradients beyond their bound with all radii: the least steep support is taken, with a note" {
+    # A needle on a corner sees its three nodes alone.
+    printf '# mts 1\n# nodes.x f8 6 2 enc=text unit=m\n0 0\n1 0\n1 1\n0 1\n2 1.01\n2 1.02\n\n\n' > needle.mts
+    printf '# cells i4 3 3 enc=text\n0 1 2\n0 2 3\n2 4 5\n\n\n# end 2\n' >> needle.mts
+    run -0 --separate-stderr bash -c 'ipoints needle.mts | support > lists.mts && shapefn lists.mts > table.mts && mts check table.mts'
+    [[ "$stderr" == "support: points on faces: 9 of "*" have gradients beyond the bound with all radii; "*": worst at ("*", 1.0"*" for 6"* ]]
+    run -1 --separate-stderr support -m 7 needle.mts
+    [[ "$stderr" == *"(4 nodes within"*": too few" ]]
+}
+
 @test "supports: constant radius in any unit, caps, widening reported" {
     ipoints square.mts > points.mts
     support -R 30mm points.mts | mts print support.radius | sort -u > mm

@@ -23,7 +23,8 @@ static const char usage[] =
     "\n"
     "Where a list holds too few nodes, or badly placed ones, for the basis, all radii are widened for\n"
     "that point until the moment matrix is well conditioned and the gradients of the shape functions\n"
-    "are bounded; if eightfold is not enough, the tool stops (status 1) and names the point. Without\n"
+    "are bounded. If no radius up to eightfold bounds the gradients, the one of the least is taken, with\n"
+    "a note; if none serves the moment matrix, the tool stops (status 1) and names the point. Without\n"
     "earlier sections the defaults of ipoints are run first.\n"
     "\n"
     "Options:\n"
@@ -121,6 +122,7 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "reach") && report.visibility != support.visibility) {
         tool_fail(&tool, STATUS_INPUT, "--reach cells: the input has no cells: --reach distance");
     }
+    support_note_steep(&tool, &support, &report);
     if (tool_given(&tool, "verbose")) {
         note_report(&tool, &report);
     }

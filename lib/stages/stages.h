@@ -36,6 +36,8 @@ struct list_report {
     int64_t points, pairs, fewest, most, widened;
     int64_t around; /* pairs that see each other around corners */
     double widest;
+    struct steep_points steep; /* and the place of the worst one */
+    char steepest[96];
 };
 
 /* and of all lists. */

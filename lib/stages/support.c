@@ -63,7 +63,12 @@ static enum status put_lists(struct stream *stream, const struct support_options
                                                          .most = lists.most,
                                                          .widened = lists.widened,
                                                          .around = lists.around_count,
-                                                         .widest = lists.widest};
+                                                         .widest = lists.widest,
+                                                         .steep = lists.steep};
+    if (lists.steep.count > 0) {
+        point_text((int)points->cols, (const double *)points->data + lists.steep.point * points->cols,
+                   report->list[report->lists - 1].steepest);
+    }
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "ptr", TYPE_I8, count + 1, 1, "", &lists.ptr, error));
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "idx", TYPE_I4, pairs, 1, "", &lists.idx, error));
     RETURN_IF_ERROR(stream_put_member(stream, prefix, "widen", TYPE_F8, count, 1, "", &lists.widen, error));

@@ -18,6 +18,21 @@ void radius_parse(const struct tool *tool, struct support_options *support)
     support->radius = tool_length(tool, "radius", support->radius);
 }
 
+void support_note_steep(const struct tool *tool, const struct support_options *options,
+                        const struct support_report *report)
+{
+    for (int l = 0; l < report->lists; l++) {
+        const struct list_report *list = &report->list[l];
+        if (list->steep.count > 0) {
+            tool_note(tool,
+                      "%s: %lld of %lld have gradients beyond the bound with all radii; the least steep are "
+                      "taken: worst at %s m, |grad phi| times spacing %.3g for %g",
+                      list->what, (long long)list->steep.count, (long long)list->points, list->steepest,
+                      list->steep.steepness, options->gradient_bound);
+        }
+    }
+}
+
 /* Run a stage with its defaults, add its provenance, and append its name to ran[size]. */
 static void fill_one(const struct tool *tool, struct stream *stream, const char *stage, char *ran,
                      size_t size)
@@ -32,6 +47,7 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
         struct support_options options = support_defaults(recorded.support.mls.dim);
         struct support_report report;
         TOOL_TRY(tool, stage_support(stream, &options, &report, &error));
+        support_note_steep(tool, &options, &report);
     } else {
         TOOL_TRY(tool, stage_shapefn(stream, &recorded.support.mls, &error));
     }

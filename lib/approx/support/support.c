@@ -48,7 +48,7 @@ static enum status check_finite(const struct search *search, int64_t count, stru
 
 /* The message for a point without a good support; the radius in it reveals a stray node. */
 static enum status fail_support(const struct search *search, int64_t row, const int32_t *index, int64_t count,
-                                struct error *error)
+                                enum mls_verdict verdict, struct error *error)
 {
     char place[96], stray[96] = "";
     const struct support_body *body = &search->body[search_body(search, row)];
@@ -63,10 +63,21 @@ static enum status fail_support(const struct search *search, int64_t row, const 
                  body->node != NULL ? body->node[widest] : widest);
     }
     return fail(error, STATUS_VERDICT,
-                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): "
-                "coplanar, stray or too few nodes there",
+                "%s: row %lld at %s: no good support even at %g times the radius (%lld nodes within%s%s): %s",
                 search->what, (long long)row, place, SUPPORT_WIDEN_LIMIT, (long long)count,
-                body->visibility != NULL ? " reach through the cells" : "", stray);
+                body->visibility != NULL ? " reach through the cells" : "", stray,
+                verdict == MLS_TOO_FEW
+                    ? "too few"
+                    : "they lie in a plane or on a line (for mls2: on a quadric), or nearly so");
+}
+
+static void add_steep(struct steep_points *steep, const struct steep_points *more)
+{
+    if (more->steepness > steep->steepness) {
+        steep->point = more->point;
+        steep->steepness = more->steepness;
+    }
+    steep->count += more->count;
 }
 
 /* Append the neighbours of the points [first, last) to the worker's list; lists->ptr receives their
@@ -75,15 +86,20 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
                                struct support_lists *lists, struct worker *worker, struct error *error)
 {
     worker->list.count = worker->around_count = 0;
+    worker->steep = (struct steep_points){0};
     for (int64_t p = first; p < last; p++) {
-        bool serves;
+        struct found found;
         int64_t before = worker->list.count;
-        RETURN_IF_ERROR(support_find(search, p, worker, &lists->widen[p], &serves, error));
+        RETURN_IF_ERROR(support_find(search, p, worker, &found, error));
         int32_t *index = worker->list.index + before;
         const int32_t *node = search->body[search_body(search, p)].node;
         int64_t count = worker->list.count - before;
-        if (!serves) {
-            return fail_support(search, p, index, count, error);
+        if (found.verdict != MLS_GOOD) {
+            return fail_support(search, p, index, count, found.verdict, error);
+        }
+        lists->widen[p] = found.widen;
+        if (found.steepness > 0.0) {
+            add_steep(&worker->steep, &(struct steep_points){1, p, found.steepness});
         }
         for (int64_t i = 0; i < count && node != NULL; i++) {
             index[i] = node[index[i]];
@@ -120,6 +136,7 @@ static enum status append_chunk(int dim, struct support_lists *lists, int64_t fi
     const struct index_list *own = &worker->list;
     RETURN_IF_ERROR(index_list_reserve(all, own->count, error));
     RETURN_IF_ERROR(append_around(dim, worker, all->count, lists, error));
+    add_steep(&lists->steep, &worker->steep);
     if (own->count > 0) {
         memcpy(all->index + all->count, own->index, (size_t)own->count * sizeof *own->index);
         all->count += own->count;

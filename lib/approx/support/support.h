@@ -24,6 +24,13 @@ struct support_options {
 /* Radii of 1.8 times the local spacing, in 3D 2 times; with widening, and the default MLS. */
 struct support_options support_defaults(int dim);
 
+/* Points whose gradients exceed their bound. */
+struct steep_points {
+    int64_t count;
+    int64_t point;    /* the worst one, of equals the first, */
+    double steepness; /* and its largest |grad phi| times the spacing */
+};
+
 /* Neighbour lists of `count` points (CSR). */
 struct support_lists {
     int64_t count;
@@ -32,6 +39,7 @@ struct support_lists {
     double *widen;        /* count: factor on the radii, >= 1 */
     int64_t widened;      /* how many points needed widening */
     double widest;        /* the largest factor */
+    struct steep_points steep;
     int64_t fewest, most; /* neighbours of a point; 0 without points */
     int64_t around_count; /* neighbours seen around corners (see struct around) */
     int64_t *around_pair;
@@ -50,9 +58,10 @@ MUST_CHECK enum status support_radii(const struct support_options *options, int6
 /* The neighbour lists of points x[count * dim]; `what` names these in messages. With `visibility`, neighbours
  * must be visible through the cells, or connected around corners within their radius (visibility.h), and
  * `places` are the cells that contain the points; with visibility NULL all nodes within their radius are
- * neighbours. Threaded; the result does not depend on the number of threads. STATUS_VERDICT, naming the
- * point, if widening up to eightfold does not help; without options->widen the shape functions report
- * inadmissible supports. STATUS_INPUT for coordinates that are not finite. */
+ * neighbours. Threaded; the result does not depend on the number of threads. Widening ends at eightfold:
+ * gradients may exceed their bound then, as little as any of these radii lets them (lists->steep).
+ * STATUS_VERDICT, naming the point, if no moment matrix is well-conditioned; without options->widen the shape
+ * functions report that. STATUS_INPUT for coordinates that are not finite. */
 MUST_CHECK enum status support_build(const struct support_options *options, const struct point_grid *grid,
                                      const struct visibility *visibility,
                                      const struct visibility_places *places, int64_t count, const double *x,

@@ -74,34 +74,33 @@ static double spacing_within(const struct support_options *options, const struct
     return farthest * pow(unit_ball / (double)count, 1.0 / grid->dim);
 }
 
-/* Whether a support is admissible: enough nodes, a well-conditioned moment matrix, bounded gradients. */
+/* Judge a support: the verdict on its number of nodes and moment matrix, and the largest gradient times the
+ * spacing. */
 static enum status judge(const struct support_options *options, const struct point_grid *grid,
-                         const double *x, double widen, const int32_t *index, const double *image,
-                         int64_t count, struct worker *worker, bool *serves, struct error *error)
+                         const double *x, const int32_t *index, const double *image, int64_t count,
+                         struct worker *worker, struct found *found, struct error *error)
 {
-    enum mls_verdict verdict;
     struct mls_support support = {.x = x,
                                   .nodes = grid->x,
                                   .radius = grid->radius,
-                                  .widen = widen,
+                                  .widen = found->widen,
                                   .neighbours = index,
                                   .count = count,
                                   .image = image};
     double largest2 = 0.0;
-    *serves = false;
+    int dim = grid->dim;
+    found->verdict = MLS_TOO_FEW;
     if (count < options->least) {
         return STATUS_OK;
     }
-    double spacing = spacing_within(options, grid, x, index, image, count, widen);
-    int dim = grid->dim;
     RETURN_IF_ERROR(GROW_ARRAY(&worker->gradient, count * dim, &worker->gradient_room, error));
     RETURN_IF_ERROR(
-        mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &verdict, error));
-    for (int64_t i = 0; i < count && verdict == MLS_GOOD; i++) {
+        mls_evaluate(&options->mls, &support, &worker->work, NULL, worker->gradient, &found->verdict, error));
+    for (int64_t i = 0; i < count && found->verdict == MLS_GOOD; i++) {
         double square = vector_dot(dim, worker->gradient + i * dim, worker->gradient + i * dim);
         largest2 = square > largest2 ? square : largest2;
     }
-    *serves = verdict == MLS_GOOD && sqrt(largest2) * spacing <= options->gradient_bound;
+    found->steepness = sqrt(largest2) * spacing_within(options, grid, x, index, image, count, found->widen);
     return STATUS_OK;
 }
 
@@ -130,39 +129,65 @@ static enum status note_around(const struct point_grid *grid, const double *x, c
     return STATUS_OK;
 }
 
-enum status support_find(const struct search *search, int64_t p, struct worker *worker, double *widen,
-                         bool *serves, struct error *error)
+/* Replace the neighbours from `first` on of the worker's list by those within the radii times found->widen.
+ * *image: where they appear around corners, or NULL. */
+static enum status gather(const struct search *search, int64_t p, int64_t first, struct worker *worker,
+                          const struct found *found, double **image, struct error *error)
+{
+    int32_t body = search_body(search, p);
+    const struct support_body *of = &search->body[body];
+    struct visibility_work *work = &worker->visibility[body];
+    const double *x = search->x + p * search->dim;
+    worker->list.count = first;
+    RETURN_IF_ERROR(point_grid_query(of->grid, x, found->widen, &worker->list, error));
+    int64_t count = worker->list.count - first;
+    int32_t *index = worker->list.index + first;
+    *image = NULL;
+    if (of->visibility != NULL) {
+        RETURN_IF_ERROR(visibility_filter(of->visibility, &search->shadows[body], found->widen, index, &count,
+                                          work, error));
+        *image = work->around > 0 ? work->image : NULL;
+    }
+    RETURN_IF_ERROR(keep_nearest(of->grid, x, search->options->most, index, *image, &count, worker, error));
+    worker->list.count = first + count;
+    return STATUS_OK;
+}
+
+enum status support_find(const struct search *search, int64_t p, struct worker *worker, struct found *found,
+                         struct error *error)
 {
     const struct support_options *options = search->options;
     int32_t body = search_body(search, p);
     const struct point_grid *grid = search->body[body].grid;
     const struct visibility *visibility = search->body[body].visibility;
-    struct visibility_work *work = &worker->visibility[body];
     const double *x = search->x + p * grid->dim;
+    struct found best = {.steepness = INFINITY};
     int64_t first = worker->list.count;
+    double *image;
     if (visibility != NULL) {
-        RETURN_IF_ERROR(visibility_begin(visibility, &search->places, p, x, work, error));
+        RETURN_IF_ERROR(
+            visibility_begin(visibility, &search->places, p, x, &worker->visibility[body], error));
     }
-    for (*widen = 1.0; *widen <= SUPPORT_WIDEN_LIMIT; *widen *= widen_step) {
-        worker->list.count = first;
-        RETURN_IF_ERROR(point_grid_query(grid, x, *widen, &worker->list, error));
-        int64_t count = worker->list.count - first;
-        int32_t *index = worker->list.index + first;
-        double *image = NULL;
-        if (visibility != NULL) {
-            RETURN_IF_ERROR(
-                visibility_filter(visibility, &search->shadows[body], *widen, index, &count, work, error));
-            image = work->around > 0 ? work->image : NULL;
-        }
-        RETURN_IF_ERROR(keep_nearest(grid, x, options->most, index, image, &count, worker, error));
-        worker->list.count = first + count;
-        *serves = true;
-        if (options->widen) {
-            RETURN_IF_ERROR(judge(options, grid, x, *widen, index, image, count, worker, serves, error));
-        }
-        if (*serves) {
+    *found = (struct found){.widen = 1.0};
+    if (!options->widen) {
+        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
+        return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
+    }
+    for (; found->widen <= SUPPORT_WIDEN_LIMIT; found->widen *= widen_step) {
+        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
+        RETURN_IF_ERROR(judge(options, grid, x, worker->list.index + first, image, worker->list.count - first,
+                              worker, found, error));
+        bool good = found->verdict == MLS_GOOD;
+        best = good && found->steepness < best.steepness ? *found : best;
+        if (good && found->steepness <= options->gradient_bound) {
+            found->steepness = 0.0;
             return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
         }
+    }
+    if (best.widen > 0.0) {
+        *found = best;
+        RETURN_IF_ERROR(gather(search, p, first, worker, found, &image, error));
+        return image != NULL ? note_around(grid, x, image, first, worker, error) : STATUS_OK;
     }
     return STATUS_OK;
 }

@@ -28,12 +28,21 @@ struct worker {
     struct mls_work work;
     double *order, *gradient;
     int64_t order_room, gradient_room;
+    struct steep_points steep;
+};
+
+/* The support of a point. */
+struct found {
+    double widen;
+    double steepness;         /* largest |grad phi| times the spacing where that exceeds the bound; else 0 */
+    enum mls_verdict verdict; /* if not MLS_GOOD, why there is none */
 };
 
 /* Append the neighbours of point p to the worker's list. The radii are widened until the support is
- * admissible, at most by SUPPORT_WIDEN_LIMIT; *serves: whether it is. */
+ * admissible, at most by SUPPORT_WIDEN_LIMIT. If gradients exceed their bound with all radii, those that
+ * exceed it least are taken. */
 MUST_CHECK enum status support_find(const struct search *search, int64_t p, struct worker *worker,
-                                    double *widen, bool *serves, struct error *error);
+                                    struct found *found, struct error *error);
 
 /* The number of the body in which neighbours of point p are searched. */
 static inline int32_t search_body(const struct search *search, int64_t p)
