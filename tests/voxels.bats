@@ -315,6 +315,29 @@ rim() {
     refused 2 "--surface goes without -t" voxels -h 5mm -t --surface label_1 two.nii.gz
 }
 
+@test "labels rounded by a scaling or to single precision are whole; others are refused with their digits" {
+    /usr/bin/python3 - << 'END'
+import nibabel as nib, numpy as np
+value = np.zeros((20, 20, 20))
+value[2:18, 2:18, 2:18], value[6:12, 6:12, 6:12] = 1, 4
+def save(name, value, dtype):
+    image = nib.Nifti1Image(value, np.eye(4))
+    image.header.set_xyzt_units("mm")
+    image.set_data_dtype(dtype)
+    nib.save(image, name)
+save("whole.nii", value, np.float64)
+for name in "uint8", "int16":
+    save(name + ".nii", value.astype(np.float32), np.dtype(name))  # scaled: 1.004, 1.00002
+save("single.nii", np.nextafter(value.astype(np.float32), np.float32(9)), np.float32)
+save("other.nii", value + 1.5e-5, np.float32)
+END
+    voxels -h 3mm whole.nii > whole.mts
+    for kind in uint8 int16 single; do
+        cmp <(mts print nodes.x whole.mts) <(voxels -h 3mm $kind.nii | mts print nodes.x)
+    done
+    refused 2 "voxel 0 0 0 is 1.49999996e-05: labels are whole" voxels -h 3mm other.nii
+}
+
 @test "images that are none of labels, impossible sizes, and tables: one clear line" {
     phantom sphere@scan > scan.nii.gz
     refused 2 "labels are whole numbers from 0: is it a scan" voxels -h 6mm scan.nii.gz

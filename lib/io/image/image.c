@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,6 +89,14 @@ enum status image_new(struct image *image, const size_t size[3], size_t componen
     }
     return count > INT64_MAX ? fail_memory(error, "values of the image")
                              : NEW_ARRAY(&image->values, (int64_t)count, error);
+}
+
+double image_whole(const struct image *image, double value)
+{
+    double step = fabs(image->slope), whole = rint(value);
+    double half = nifti_type(image->datatype)->most > 0 && step <= 0.5 ? step / 2 : 0;
+    double rounding = 2 * (double)FLT_EPSILON * (1 + fabs(value) + fabs(image->inter));
+    return fabs(value - whole) <= half + rounding ? whole : NAN;
 }
 
 void image_free(struct image *image)

@@ -81,6 +81,10 @@ MUST_CHECK enum status image_write(const struct image *image, int descriptor, bo
 /* Release the values; the image becomes empty. */
 void image_free(struct image *image);
 
+/* The whole number that a value of the image stands for: the nearest one, if what separates them is less than
+ * a value can state: half a step of the scaling (of at most half a label), and single precision. Else NaN. */
+double image_whole(const struct image *image, double value);
+
 /* The number of voxels. */
 size_t image_voxels(const struct image *image);
 

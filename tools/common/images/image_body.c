@@ -190,13 +190,13 @@ static bool count_labels(const struct image *image, int which, struct label *lab
 {
     int l = 0; /* usually that of the previous voxel */
     for (size_t v = 0; v < image_voxels(image); v++) {
-        double value = image->values[v];
+        double value = image_whole(image, image->values[v]);
         if (l >= *count || labels[l].value != value) {
             for (l = 0; l < *count && labels[l].value != value; l++) {
             }
         }
         if (l == *count) {
-            if (!(value == rint(value)) || *count == LABELS_MOST) {
+            if (isnan(value) || *count == LABELS_MOST) {
                 return false;
             }
             labels[(*count)++] = (struct label){.value = value};

@@ -46,18 +46,25 @@ static int32_t place_of(const struct values *values, int64_t value, int32_t gues
                : (int32_t)first_from(values->value, 0, values->count, value);
 }
 
+/* Exit at a voxel whose value is no label. */
+static void fail_value(const struct tool *tool, const struct image *image, int64_t voxel)
+{
+    int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
+    tool_fail(
+        tool, STATUS_INPUT,
+        "voxel %lld %lld %lld is %.9g: labels are whole numbers from 0: is it a scan or a probability map?",
+        (long long)(voxel % nx), (long long)(voxel / nx % ny), (long long)(voxel / nx / ny),
+        image->values[voxel]);
+}
+
 static void collect_values(const struct tool *tool, const struct image *image, struct values *values)
 {
     int64_t count = (int64_t)image_voxels(image);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
-        double value = image->values[i];
-        if (!(value >= 0 && value <= INT32_MAX && floor(value) == value)) {
-            int64_t nx = (int64_t)image->size[0], ny = (int64_t)image->size[1];
-            tool_fail(tool, STATUS_INPUT,
-                      "voxel %lld %lld %lld is %g: labels are whole numbers from 0: is it a scan or a "
-                      "probability map?",
-                      (long long)(i % nx), (long long)(i / nx % ny), (long long)(i / nx / ny), value);
+        double value = image_whole(image, image->values[i]);
+        if (!(value >= 0 && value <= INT32_MAX)) {
+            fail_value(tool, image, i);
         }
         int64_t label = (int64_t)value;
         at = place_of(values, label, at);
@@ -149,7 +156,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     label_values(tool, values, image, table);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
-        at = place_of(values, (int64_t)source->values[i], at);
+        at = place_of(values, (int64_t)image_whole(source, source->values[i]), at);
         image->voxel[i] = values->label[at];
     }
     image->labels.label = image->voxel;

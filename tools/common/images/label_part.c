@@ -32,7 +32,8 @@ static bool is_within(const struct place *place, const struct labels *labels, co
         return square <= place->ball.radius * place->ball.radius;
     }
     image_map(&place->to_voxel[0][0], world, index);
-    return image_sample(&place->mask, IMAGE_NEAREST, index, value) && value[0] != 0;
+    return image_sample(&place->mask, IMAGE_NEAREST, index, value) &&
+           image_whole(&place->mask, value[0]) != 0;
 }
 
 /* Parse "X,Y,Z,RADIUS", in 2D "X,Y,RADIUS". */
