@@ -49,6 +49,16 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
     holds 0 98.1
 }
 
+@test "groups of one section that overlap: a pressure, a traction, a contact acts once on each facet" {
+    stream=capped.mts
+    nodes -u mm body.msh 2> note | groups -f cap=ymax 2> note > capped.mts
+    printf -- '-1 0.095\n2 0.095\n' > roof.tsv
+    for load in '[pressure a]\nvalue = 300' '[traction a]\ncomponents = 0, -300' '[contact a]\nrigid = roof.tsv\nunit = m\nside = right'; do
+        solved "$load\nfacets = ymax" && cp u.dat other.dat
+        solved "$load\nfacets = ymax, cap" && near max 0
+    done
+}
+
 @test "a pressure on a body between walls: the linear field of the closed form, in 2D and 3D" {
     for dim in 2 3; do
         walls="xmin xmax ymin" top=ymax count=8 box=0,0.1,0,0.1

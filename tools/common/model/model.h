@@ -50,8 +50,8 @@ static inline enum status model_own(struct model *model, void *array, struct err
 /* Whether the names are an asterisk: the whole boundary. */
 bool model_is_whole(const struct name_list *names);
 
-/* The facets of the named groups, or of the whole boundary, and the nodes of the named sets, ascending; the
- * model owns them. An error lists the groups that exist. */
+/* The facets of the named groups, or of the whole boundary, and the nodes of the named sets, ascending: each
+ * once, though groups overlap. The model owns them. An error lists the groups that exist. */
 MUST_CHECK enum status model_facets(struct model *model, const struct scene_label *label,
                                     const struct name_list *names, struct facet_set *set,
                                     struct error *error);
@@ -59,7 +59,7 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
                                    const struct name_list *names, const int32_t **nodes, int64_t *count,
                                    struct error *error);
 
-/* The facets of the body that may touch each other by a section, each once. */
+/* The facets of the body that may touch each other by a section. */
 MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
                                      struct contact_condition *contact, struct error *error);
 

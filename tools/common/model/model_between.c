@@ -3,8 +3,6 @@
 
 #include "base/vector.h"
 
-#include <string.h>
-
 /* Mean width of a list's facets, m. */
 static double mean_width(const struct model *model, const struct facet_set *set)
 {
@@ -19,44 +17,24 @@ static double mean_width(const struct model *model, const struct facet_set *set)
     return sum / (double)set->count;
 }
 
-/* Append the facets of a list to `kept`, each once, and set the bit of the list in listed[] for their faces
- * of the boundary. Returns their number. */
-static int64_t keep_facets(int dim, const struct facet_set *set, const int64_t *face, uint8_t bit,
-                           uint8_t *listed, int32_t *kept)
-{
-    int64_t count = 0;
-    for (int64_t f = 0; f < set->count; f++) {
-        if (face[f] >= 0 && (listed[face[f]] & bit) != 0) {
-            continue;
-        }
-        if (face[f] >= 0) {
-            listed[face[f]] |= bit;
-        }
-        memcpy(kept + count++ * dim, set->facet + f * dim, (size_t)dim * sizeof *kept);
-    }
-    return count;
-}
-
 enum status model_between(struct model *model, const struct scene_contact *section,
                           struct contact_condition *contact, struct error *error)
 {
     const struct faces *boundary = &model->assembly.boundary;
-    struct facet_set sets[2] = {{0}}, lists[2];
-    int dim = model->assembly.cells.dim;
+    struct facet_set lists[2] = {{0}};
     int64_t common = 0;
-    int32_t *kept;
-    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &sets[0], error));
-    RETURN_IF_ERROR(model_facets(model, &section->label, &section->against, &sets[1], error));
-    NEW_SCRATCH(uint8_t, listed, boundary->count, error);
-    NEW_SCRATCH(int64_t, face, sets[0].count > sets[1].count ? sets[0].count : sets[1].count, error);
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &lists[0], error));
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->against, &lists[1], error));
+    NEW_SCRATCH(bool, listed, boundary->count, error);
+    NEW_SCRATCH(int64_t, face, lists[0].count > lists[1].count ? lists[0].count : lists[1].count, error);
     for (int list = 0; list < 2; list++) {
-        RETURN_IF_ERROR(MODEL_ARRAY(model, &kept, sets[list].count * dim, error));
-        RETURN_IF_ERROR(faces_find(boundary, sets[list].count, sets[list].facet, face, error));
-        lists[list] =
-            (struct facet_set){keep_facets(dim, &sets[list], face, (uint8_t)(1 << list), listed, kept), kept};
-    }
-    for (int64_t f = 0; f < boundary->count; f++) {
-        common += listed[f] == 3;
+        RETURN_IF_ERROR(faces_find(boundary, lists[list].count, lists[list].facet, face, error));
+        for (int64_t f = 0; f < lists[list].count; f++) {
+            if (face[f] >= 0) {
+                common += list == 1 && listed[face[f]];
+                listed[face[f]] = true;
+            }
+        }
     }
     if (common > 0 && (common != lists[0].count || common != lists[1].count)) {
         return fail(

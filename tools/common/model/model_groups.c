@@ -42,11 +42,17 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
     NEW_SCRATCH(bool, wanted, facets.names.count, error);
     RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
     RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
+    NEW_SCRATCH(int64_t, face, facets.count, error);
+    RETURN_IF_ERROR(faces_find(boundary, facets.count, facets.facet, face, error));
+    NEW_SCRATCH(bool, taken, boundary->count, error);
     for (int64_t f = 0; f < facets.count; f++) {
-        if (wanted[facets.group[f]]) {
-            memcpy(chosen + set->count * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
-            set->count++;
+        if (!wanted[facets.group[f]] || (face[f] >= 0 && taken[face[f]])) {
+            continue;
         }
+        if (face[f] >= 0) {
+            taken[face[f]] = true;
+        }
+        memcpy(chosen + set->count++ * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
     }
     set->facet = chosen;
     if (set->count == 0) {
