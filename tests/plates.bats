@@ -66,6 +66,15 @@ reaction() { rows reactions u.dat | awk -v row="$1" -v column="$2" 'NR == row { 
     rows gaps u.dat | awk '{ d = $3 - 0.02; if (d > 1e-3 || d < -1e-3) bad = 1; n++ } END { exit bad || n != 9 }'
 }
 
+@test "pressures in gaps: the nominal one is force per area at rest, the true one is that of the Cauchy stress" {
+    { block quasi-static && printf '[displacement sides]\nfacets = xmin, ymin\nnormal = 0\n' &&
+        lid 'translation = 0, -0.03' 'curve = smooth' && output 'stress = yes\n'; } > pressed.scene
+    mtled pressed.scene block.mts > u.dat
+    true=$(rows stress u.dat | awk 'NR == 1 { print -$2 }')
+    rows gaps u.dat | awk -v nominal="$(reaction 2 2)" -v true="$true" '{ p = $4 * 0.1 / nominal + 1; q = $5 / true - 1; n++ }
+        !(p * p < 1e-6 && q * q < 1e-6) { print; bad = 1 } END { exit bad || n != 9 || !(-nominal > 1.05 * 0.1 * true) }'
+}
+
 @test "a motion that cannot be: one line, with the key and the remedy" {
     try() {
         { held quasi-static && lid "${@:2}" && output; } > bad.scene

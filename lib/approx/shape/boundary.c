@@ -3,6 +3,7 @@
 #include "approx/cells/quadrature.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -297,6 +298,20 @@ enum status boundary_points_build(const struct face_table *table, const struct f
         put_values(averages, p, table->lists->idx + from, table->phi + from, length);
     }
     return STATUS_OK;
+}
+
+double boundary_stretch(const struct boundary_averages *averages, const struct face_table *table,
+                        const struct facet_set *set, int64_t a, const double *x)
+{
+    int dim = table->dim;
+    double stretch = 0.0, now[3], at_rest[3];
+    for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1]; s++) {
+        const int32_t *facet = set->facet + averages->sample_point[s] / table->per_face * dim;
+        face_area_vector(dim, x, facet, now);
+        face_area_vector(dim, table->x, facet, at_rest);
+        stretch += averages->sample_share[s] * vector_length(dim, now) / vector_length(dim, at_rest);
+    }
+    return stretch;
 }
 
 void boundary_averages_free(struct boundary_averages *averages)

@@ -90,6 +90,11 @@ MUST_CHECK enum status boundary_list_build(int dim, const double *x, const int32
 MUST_CHECK enum status boundary_points_build(const struct face_table *table, const struct facet_set *set,
                                              struct boundary_averages *averages, struct error *error);
 
+/* By how much the facets around boundary node a are stretched: their area with nodes at x[table->node_count *
+ * dim], m, by that at rest; weighted as the average. boundary_averages_build made `averages` of `set`. */
+double boundary_stretch(const struct boundary_averages *averages, const struct face_table *table,
+                        const struct facet_set *set, int64_t a, const double *x);
+
 /* Edges of the boundary (2D: nodes) at which the stress is singular. Junctions of the prescribed and the free
  * boundary: smooth, where it turns by less than 45 degrees; sharp, where it turns by more. Re-entrant edges,
  * such as the tip of a slit: it turns inwards by more. */

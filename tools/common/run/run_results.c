@@ -167,28 +167,38 @@ void run_append_row(const struct run *run, const char *name, double time, double
     run_put(run, name, rows + 1, count + 1, attributes, table);
 }
 
-/* Put gap, pressure and place of every contact node of every contact. */
+/* Put place, gap, and nominal and true pressure of every contact node of every contact. */
 static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;
-    int dim = run->scene->dim, cols = dim + 2;
-    int64_t rows = 0, at = 0;
+    const struct assembly *assembly = &run->model->assembly;
+    int dim = run->scene->dim, cols = dim + 3;
+    int64_t rows = 0, size = system->node_count * dim;
+    SCRATCH double *x = run_new_values(run, size);
+    assembly_nodal_field(assembly, run->u, x);
+    for (int64_t i = 0; i < size; i++) {
+        x[i] += system->X[i];
+    }
     for (int64_t c = 0; c < system->contact_count; c++) {
         rows += contact_nodes(&system->contacts[c])->count;
     }
-    double *values = run_new_values(run, rows * cols);
+    double *values = run_new_values(run, rows * cols), *row = values;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
-        for (int64_t a = 0; a < nodes->count; a++, at++) {
+        const struct facet_set *facets = &assembly->contacts[contact->section].facets;
+        for (int64_t a = 0; a < nodes->count; a++, row += cols) {
             struct contact_node node = contact_node(contact, a);
-            memcpy(values + at * cols, nodes->position + a * dim, (size_t)dim * sizeof *values);
-            values[at * cols + dim] = node.gap;
-            values[at * cols + dim + 1] = node.pressure;
+            memcpy(row, nodes->position + a * dim, (size_t)dim * sizeof *values);
+            row[dim] = node.gap;
+            row[dim + 1] = node.pressure;
+            row[dim + 2] = node.pressure / boundary_stretch(nodes, &assembly->face_table, facets, a, x);
         }
     }
     put(run, moment, "gaps", rows, cols,
-        dim == 2 ? "unit=m,m,m,Pa cols=x,y,gap,pressure" : "unit=m,m,m,m,Pa cols=x,y,z,gap,pressure", values);
+        dim == 2 ? "unit=m,m,m,Pa,Pa cols=x,y,gap,pressure,true_pressure"
+                 : "unit=m,m,m,m,Pa,Pa cols=x,y,z,gap,pressure,true_pressure",
+        values);
 }
 
 /* Put the energies of the equilibrium. The work of loads during a relaxation has no meaning. */
