@@ -53,7 +53,7 @@ static void augment(struct relaxation *r)
     if (pressures) {
         r->steady_augmentations = r->held_steps > pause ? r->steady_augmentations + 1 : 0;
         r->pressures_lack =
-            body_augment(&r->system->body, r->steady_augmentations > 1, r->largest_move / r->body_size);
+            body_augment(&r->system->body, r->steady_augmentations > 1, r->move / r->body_size);
     }
     if (contacts) {
         system_augment_contacts(r->system, r->held_steps > pause);
@@ -212,8 +212,7 @@ static bool ends(struct relaxation *r, enum relaxation_outcome *outcome, struct 
         r->converged_checks = 0;
     }
     relaxation_note_best(r);
-    double own_way =
-        r->largest_move - most_sizes * r->body_size; /* beyond what is prescribed, if that is far */
+    double own_way = r->move - most_sizes * r->body_size; /* beyond what is prescribed, if that is far */
     if (own_way > 0.0 && own_way > system_longest_way(r->system)) {
         *outcome = RELAXATION_AWAY;
         return true;
@@ -335,7 +334,7 @@ enum status relaxation_run(struct solid_system *system, const struct relaxation_
     report->outcome = iterate(&r, error);
     RETURN_IF_ERROR(r.failure);
     report->largest_frequency = r.frequency;
-    report->largest_move = r.largest_move;
+    report->move = r.move;
     if (report->outcome == RELAXATION_INVERTED) {
         relaxation_go_back(&r, &r.older);
     }

@@ -49,9 +49,10 @@ struct relaxation_report {
     int64_t ramp_steps;    /* planned number of steps of loading, */
     int64_t loading_steps; /* and the actual one, backtracks included */
     int64_t force_evaluations;
-    double error;             /* estimated remaining error, relative to the largest displacement of the run:
-                               * the larger of those on the whole and at the worst node */
-    double largest_move;      /* the largest displacement of a node of the run, m */
+    double error; /* estimated remaining error, relative to the present displacement: the larger of
+                   * those on the whole and at the worst node */
+    double move;  /* the largest displacement of a node, m, at least the tolerance times the
+                   * largest of the run: the scale of error and penetration_allowed */
     double largest_frequency; /* in the fictitious mass's units */
     double lowest_frequency;
     double penetration, penetration_allowed; /* of contacts, m: see contact_miss */

@@ -31,9 +31,9 @@ static const int64_t least_steady_checks = 5;
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0; /* between checks of the mass */
 
-/* Limits of the penetration at an equilibrium: of its depth, by the largest motion; and of the work of the
- * contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. Then the
- * largest number of augmentations at a load. */
+/* Limits of the penetration at an equilibrium: of its depth, by the largest displacement; and of the work of
+ * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. Then
+ * the largest number of augmentations at a load. */
 static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
 static const int64_t most_augmentations = 100;
 
@@ -265,7 +265,7 @@ bool relaxation_calm(struct relaxation *r, const double *acceleration)
 
 static double penetration_allowed(const struct relaxation *r)
 {
-    return penetration_share * r->largest_move;
+    return penetration_share * r->move;
 }
 
 /* Whether the penetration exceeds its limits. A penetration within the tolerance of the displacements cannot
@@ -275,7 +275,7 @@ static bool give_way(const struct relaxation *r)
     double miss = system_contact_miss(r->system), tolerance = r->options->tolerance;
     double missing_share = fmax(least_missing, missing_tolerances * tolerance);
     return miss > penetration_allowed(r) ||
-           (miss > tolerance * r->largest_move &&
+           (miss > tolerance * r->move &&
             system_missing_work(r->system) > missing_share * body_energy(&r->system->body, r->residual_at));
 }
 

@@ -34,6 +34,13 @@ static double ratio(double part, double whole)
     return whole > 0.0 ? part / whole : part > 0.0 ? INFINITY : 0.0;
 }
 
+/* The scale of errors for a field that is that large now; updates the largest so far. */
+static double scale(const struct relaxation *r, double now, double *largest)
+{
+    *largest = fmax(*largest, now);
+    return fmax(now, r->options->tolerance * *largest);
+}
+
 /* The lowest frequency that recent estimates have shown, squared. */
 static double least_of_window(const struct relaxation *r)
 {
@@ -70,16 +77,15 @@ void relaxation_estimate(struct relaxation *r)
     }
     r->checks++;
     double least_eigenvalue = least_of_window(r);
-    r->largest_displacement =
-        fmax(r->largest_displacement, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)));
-    r->largest_move = fmax(r->largest_move, largest_of_nodes(r, r->before));
-    /* Of the largest so far: a scene may end at rest. */
+    r->displacement = scale(r, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)),
+                            &r->largest_displacement);
+    r->move = scale(r, largest_of_nodes(r, r->before), &r->largest_move);
     double on_the_whole =
         ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least_eigenvalue,
-              r->largest_displacement);
-    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least_eigenvalue, r->largest_move);
+              r->displacement);
+    double at_worst = ratio(largest_of_nodes(r, r->acceleration) / least_eigenvalue, r->move);
     /* Moves below the round-off of positions are none. */
-    bool at_rest = r->largest_move <= DBL_EPSILON * r->body_size;
+    bool at_rest = r->move <= DBL_EPSILON * r->body_size;
     r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);
     r->report->lowest_frequency = sqrt(least_eigenvalue);
 }
@@ -144,7 +150,7 @@ bool relaxation_stays(const struct relaxation *r, double periods, int64_t steps)
 double relaxation_round_off(const struct relaxation *r)
 {
     double low = r->report->lowest_frequency;
-    return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->largest_move);
+    return 32.0 * DBL_EPSILON * r->spacing / (low * low * r->move);
 }
 
 void relaxation_note_best(struct relaxation *r)

@@ -63,6 +63,8 @@ struct relaxation {
     double moved;    /* of a node between the last two checks, m */
     double largest_displacement; /* so far, in the norm of the mass */
     double largest_move;         /* so far, of a node, m */
+    double displacement, move;   /* scales of errors: those of the present field, but no less than the
+                                  * tolerance times the largest so far: a scene may end at rest */
     bool spectrum_known;         /* lanczos_bound belongs to the present mass and load */
     double step_safety;          /* on the time step: 1 until an inversion */
     int64_t backtracks;

@@ -73,6 +73,8 @@ enum status relaxation_visit(void *run, const struct state *state, struct error 
         {"largest_move", STATE_NUMBERS, &r->largest_move, 1},
         {"moved", STATE_NUMBERS, &r->moved, 1},
         {"checks", STATE_COUNTS, &r->checks, 1},
+        {"displacement", STATE_NUMBERS, &r->displacement, 1},
+        {"move", STATE_NUMBERS, &r->move, 1},
         {"largest_displacement", STATE_NUMBERS, &r->largest_displacement, 1},
         {"ramp_steps", STATE_COUNTS, &report->ramp_steps, 1},
         {"load", STATE_NUMBERS, &r->load, 1},

@@ -140,13 +140,11 @@ void run_quasi_static(struct run *run);
  * than the body. */
 void run_contacts_begin(const struct run *run);
 
-/* For the final state: notes a penetration `miss` of contacts that is larger than `allowed`, m. In a
- * quasi-static scene exits with a verdict if it is larger than a tenth of the motion. */
-void run_contacts_give_way(struct run *run, double miss, double allowed, double motion);
-
-/* For the final state of a quasi-static scene, which was evaluated last: notes the share of the forces that
- * is missing because of the remaining penetration. */
-void run_contacts_missing(struct run *run);
+/* For run->u, with the largest displacement `motion`, m: exits with a verdict, in a quasi-static scene, if
+ * the remaining penetration of contacts takes too large a share of the forces. To first order that is half of
+ * the work of the contact forces along it, by the stored energy: this is proportional to the square of the
+ * motion, forces to the motion itself. In the final state notes a penetration larger than `allowed`, m. */
+void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final);
 
 /* For the final state: exits with a verdict where a rigid surface has penetrated the body by more than
  * `slack`, m, and `share` of a facet's width, and no contact node is active. Notes contacts whose active set

@@ -15,7 +15,8 @@
  * less than three nodes across. */
 static const double most_thin = 0.5;
 
-/* Forces are reported if more than this share is missing because of the remaining penetration. */
+/* A result of which more than this share of the forces is missing, because of the remaining penetration, is
+ * refused. */
 static const double most_missing = 0.01;
 
 /* Positions of the nodes. */
@@ -138,9 +139,6 @@ static bool wants_forces(const struct scene_output *output)
     return output->reactions || output->moments || output->gaps;
 }
 
-/* A result whose penetration is more than this share of the motion is refused. */
-static const double most_share = 0.1;
-
 /* The displacement that moves a facet of a contact, or NULL. */
 static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
 {
@@ -157,64 +155,55 @@ static const struct condition *moved_by(const struct assembly *input, const stru
     return NULL;
 }
 
-void run_contacts_give_way(struct run *run, double miss, double allowed, double motion)
+/* What would have to change for contact `worst` to penetrate less; room for it. */
+static const char *penetration_remedy(const struct run *run, const struct contact *worst, char text[256])
 {
-    const struct solid_system *system = &run->model->system;
     const struct assembly *input = &run->model->assembly;
-    const struct contact *worst = system->contacts;
-    const char *remedy = "a finer cloud there may help";
-    char text[256];
-    if (!(miss > allowed)) {
-        return;
+    const struct contact_condition *contact = &input->contacts[worst->section];
+    const struct condition *mover = worst->surface.facet_count > 0 ? moved_by(input, &contact->facets) : NULL;
+    if (mover != NULL) {
+        snprintf(text, 256, "[displacement %s] moves facets of [contact %s]: leave them out of one",
+                 mover->name, run->scene->contacts[worst->section].label.name);
+        return text;
     }
+    if (worst->surface.facet_count > 0 && contact->stiffness > 0.0) {
+        snprintf(text, 256, "[contact %s] sets its stiffness: %s",
+                 run->scene->contacts[worst->section].label.name,
+                 input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
+        return text;
+    }
+    return input->in_time
+               ? "a larger stiffness, with shorter steps, or a finer cloud there helps"
+               : "a finer cloud there may help; where contacts enclose a body that is hardly compressible, "
+                 "prescribe `normal` on sides that stay in contact";
+}
+
+void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final)
+{
+    struct solid_system *system = &run->model->system;
+    const struct contact *worst = system->contacts;
+    double missing = 0.0, miss;
+    char text[256], forces[64] = "";
+    system_measure_contacts(system, run->u, false);
     for (int64_t c = 1; c < system->contact_count; c++) {
         worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
     }
-    if (worst->surface.facet_count > 0) {
-        const struct contact_condition *contact = &input->contacts[worst->section];
-        const struct condition *mover = moved_by(input, &contact->facets);
-        if (mover != NULL) {
-            snprintf(text, sizeof text,
-                     "[displacement %s] moves facets of [contact %s]: leave them out of one", mover->name,
-                     run->scene->contacts[worst->section].label.name);
-            remedy = text;
-        } else if (contact->stiffness > 0.0) {
-            snprintf(text, sizeof text, "[contact %s] sets its stiffness: %s",
-                     run->scene->contacts[worst->section].label.name,
-                     input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
-            remedy = text;
-        } else if (input->in_time) {
-            remedy = "a larger stiffness, with shorter steps, or a finer cloud there helps";
-        }
+    miss = system_contact_miss(system);
+    if (!run->model->assembly.in_time && miss > run->scene->solver.tolerance * motion) {
+        missing = system_missing_work(system) / (2.0 * energy_internal(system, run->u));
     }
-    if (!input->in_time && miss > most_share * motion) {
+    if (missing > most_missing) {
         run->last_good = -1.0; /* all frames have been given */
-        run_fail(run, STATUS_VERDICT, "%s: contacts give way by %.2g m, where the body moves %.2g m: %s",
-                 run->scene->path, miss, motion, remedy);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: contacts penetrate by %.2g m, so that forces are too small by about %.2g %%: %s",
+                 run->scene->path, miss, 100.0 * fmin(missing, 1.0), penetration_remedy(run, worst, text));
     }
-    tool_note(run->tool, "%s: contacts give way by %.2g m, not %.2g m: %s", run->scene->path, miss, allowed,
-              remedy);
-}
-
-/* To first order the energy of the contacts is the work of their forces along the penetration. The stored
- * energy is less by this amount. It is proportional to the square of the prescribed motion, the forces to the
- * motion itself; so half of that relative amount is missing in the forces. */
-void run_contacts_missing(struct run *run)
-{
-    struct solid_system *system = &run->model->system;
-    const struct scene_output *output = &run->scene->output;
-    system_measure_contacts(system, run->u, false);
-    double stored = energy_internal(system, run->u);
-    double missing = stored > 0.0 ? energy_contact(system) / (2.0 * stored) : 0.0;
-    /* A share of more than half is round-off of a body at rest. */
-    if (missing > most_missing && missing < 0.5 &&
-        (wants_forces(output) || output->stress || output->pressure)) {
-        tool_note(
-            run->tool,
-            "%s: forces and pressures may be %.2g %% too small, as contacts still give way a little: where "
-            "these close in a body that is hardly compressible, prescribe `normal` on sides that stay in "
-            "contact",
-            run->scene->path, 100.0 * missing);
+    if (missing > 0.0) {
+        snprintf(forces, sizeof forces, ", so that forces may be %.2g %% too small", 100.0 * missing);
+    }
+    if (final && miss > allowed) {
+        tool_note(run->tool, "%s: contacts penetrate by %.2g m, not %.2g m%s: %s", run->scene->path, miss,
+                  allowed, forces, penetration_remedy(run, worst, text));
     }
 }
 

@@ -32,7 +32,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     switch (report->outcome) {
     case DYNAMICS_DONE:
         run_folds_judge(run);
-        run_contacts_give_way(run, system_contact_miss(system), most_given * largest_move, largest_move);
+        run_contacts_penetrate(run, largest_move, most_given * largest_move, true);
         run_contacts_judge(run, 0.0, most_inside);
         return;
     case DYNAMICS_INVERTED:

@@ -25,10 +25,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
                           ? "contacts, whose points go from facet to facet, admit no"
                           : "round-off admits no");
         }
-        run_contacts_give_way(run, report->penetration, report->penetration_allowed, report->largest_move);
-        if (run->model->system.contact_count > 0) {
-            run_contacts_missing(run);
-        }
+        run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
         run_contacts_judge(run, report->penetration_allowed, 0.0);
         run_displacements_judge(run);
@@ -66,7 +63,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
     if (report->outcome == RELAXATION_AWAY) {
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 scene->path, (long long)report->steps, load, report->largest_move, beyond_limit);
+                 scene->path, (long long)report->steps, load, report->move, beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
@@ -79,7 +76,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
  * contacts. */
 static double error_left(const struct relaxation_report *report)
 {
-    return report->error * report->largest_move + report->penetration;
+    return report->error * report->move + report->penetration;
 }
 
 static void put_error(const struct run *run, const struct relaxation_report *report)

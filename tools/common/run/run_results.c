@@ -2,6 +2,7 @@
 #include "io/stream/sections.h"
 #include "run/run.h"
 
+#include "approx/field/field_compare.h"
 #include "solid/system/energy.h"
 
 #include <stdio.h>
@@ -238,6 +239,7 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
     struct run *run = context;
     run_put_frame(run, number, time, u);
     run_stability_check(run, time);
+    run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
     put_state(run, &(struct moment){number, time});
 }
 
