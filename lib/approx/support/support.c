@@ -94,7 +94,9 @@ static enum status build_chunk(const struct search *search, int64_t first, int64
         int32_t *index = worker->list.index + before;
         const int32_t *node = search->body[search_body(search, p)].node;
         int64_t count = worker->list.count - before;
-        if (found.verdict != MLS_GOOD) {
+        if (search->unserved != NULL) {
+            search->unserved[p] = found.verdict != MLS_GOOD || found.steepness > 0.0;
+        } else if (found.verdict != MLS_GOOD) {
             return fail_support(search, p, index, count, found.verdict, error);
         }
         lists->widen[p] = found.widen;
@@ -194,13 +196,14 @@ enum status support_build(const struct support_options *options, const struct po
                           struct error *error)
 {
     const struct support_body body = {.grid = grid, .visibility = visibility};
-    return support_build_among(options, 1, &body, NULL, places, count, x, what, lists, error);
+    return support_build_among(options, 1, &body, NULL, places, count, x, what, NULL, lists, error);
 }
 
 enum status support_build_among(const struct support_options *options, int64_t body_count,
                                 const struct support_body *body, const int32_t *body_of,
                                 const struct visibility_places *places, int64_t count, const double *x,
-                                const char *what, struct support_lists *lists, struct error *error)
+                                const char *what, bool *unserved, struct support_lists *lists,
+                                struct error *error)
 {
     enum status status;
     struct index_list all = {0};
@@ -211,7 +214,8 @@ enum status support_build_among(const struct support_options *options, int64_t b
                             .body = body,
                             .body_of = body_of,
                             .x = x,
-                            .what = what};
+                            .what = what,
+                            .unserved = unserved};
     TRY(NEW_ARRAY(&lists->ptr, count + 1, error));
     TRY(NEW_ARRAY(&lists->widen, count, error));
     if (places != NULL) {

@@ -74,12 +74,13 @@ struct support_body {
     const int32_t *node; /* the numbers of its nodes in the lists, ascending; NULL: their own */
 };
 /* The same for several bodies: the neighbours of point p are nodes of the body number body_of[p], or of the
- * first one where body_of is NULL. The places are nodes and cells of that body. */
+ * first one where body_of is NULL. The places are nodes and cells of that body. unserved[count]: set for
+ * points without a good support; NULL: such a point is an error. */
 MUST_CHECK enum status support_build_among(const struct support_options *options, int64_t body_count,
                                            const struct support_body *body, const int32_t *body_of,
                                            const struct visibility_places *places, int64_t count,
-                                           const double *x, const char *what, struct support_lists *lists,
-                                           struct error *error);
+                                           const double *x, const char *what, bool *unserved,
+                                           struct support_lists *lists, struct error *error);
 void support_free(struct support_lists *lists);
 
 /* Print "(x, y[, z])" of a point into text[96], for messages. */

@@ -16,6 +16,7 @@ struct search {
     struct visibility_shadows *shadows; /* body_count: shadows that may contain points of each body */
     const double *x;
     const char *what;
+    bool *unserved; /* points without a good support; NULL: such a point is an error */
 };
 
 /* One thread's growing lists and scratch. */

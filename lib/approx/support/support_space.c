@@ -70,6 +70,27 @@ static enum status cut(struct support_space *space, struct error *error)
     return STATUS_OK;
 }
 
+/* Prepare a side for the search of neighbours. */
+static enum status index_side(const struct support_space *space, struct support_side *side,
+                              struct error *error)
+{
+    struct cells own = space->cells;
+    if (side->node != NULL) {
+        own = (struct cells){own.dim, side->node_count, side->x, side->cell_count, side->local};
+    }
+    RETURN_IF_ERROR(point_grid_build(&side->grid, own.dim, own.node_count, own.x,
+                                     side->node != NULL ? side->radius : space->radius, error));
+    RETURN_IF_ERROR(point_grid_list_touching(&side->grid, error));
+    return space->by_cells ? visibility_build(&own, &side->grid, &side->visibility, error) : STATUS_OK;
+}
+
+static void free_side(struct support_side *side)
+{
+    visibility_free(&side->visibility);
+    point_grid_free(&side->grid);
+    FREE_ALL(side->node, side->local, side->x, side->radius);
+}
+
 enum status support_space_build(const struct support_options *options, const struct cells *cells,
                                 const double *radius, struct support_space *space, struct error *error)
 {
@@ -87,19 +108,8 @@ enum status support_space_build(const struct support_options *options, const str
         space->side[0].node_count = cells->node_count;
     }
     for (int64_t s = 0; s < sides_in(space); s++) {
-        struct support_side *side = &space->side[s];
-        struct cells own = *cells;
-        if (side->node != NULL) {
-            own = (struct cells){cells->dim, side->node_count, side->x, side->cell_count, side->local};
-        }
-        if (own.node_count == 0) {
-            continue;
-        }
-        RETURN_IF_ERROR(point_grid_build(&side->grid, cells->dim, own.node_count, own.x,
-                                         side->node != NULL ? side->radius : radius, error));
-        RETURN_IF_ERROR(point_grid_list_touching(&side->grid, error));
-        if (space->by_cells) {
-            RETURN_IF_ERROR(visibility_build(&own, &side->grid, &side->visibility, error));
+        if (space->side[s].node_count > 0) {
+            RETURN_IF_ERROR(index_side(space, &space->side[s], error));
         }
     }
     return STATUS_OK;
@@ -108,10 +118,7 @@ enum status support_space_build(const struct support_options *options, const str
 void support_space_free(struct support_space *space)
 {
     for (int64_t s = 0; space->side != NULL && s < sides_in(space); s++) {
-        struct support_side *side = &space->side[s];
-        visibility_free(&side->visibility);
-        point_grid_free(&side->grid);
-        FREE_ALL(side->node, side->local, side->x, side->radius);
+        free_side(&space->side[s]);
     }
     FREE_ALL(space->side, space->place);
     *space = (struct support_space){0};
@@ -235,15 +242,39 @@ static enum status places_on_sides(const struct support_space *space, const stru
     return STATUS_OK;
 }
 
-static enum status lists_of_sides(const struct support_options *options, const struct support_space *space,
-                                  const struct visibility_places *places, int64_t count, const double *x,
-                                  const char *what, struct support_lists *lists, struct error *error)
+/* The lists of points on their sides. */
+struct sided {
+    const struct support_space *space;
+    const struct visibility_places *places;
+    int64_t count;
+    int32_t *side; /* count */
+    int64_t body_count;
+    struct support_body *body; /* the sides, and the whole */
+};
+
+static enum status build_sided(const struct support_options *options, const struct sided *sided,
+                               const double *x, const char *what, bool *unserved, struct support_lists *lists,
+                               struct error *error)
 {
     struct visibility_places within;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *item = NULL;
+    RETURN_IF_ERROR(
+        places_on_sides(sided->space, sided->places, sided->count, sided->side, &ptr, &item, &within, error));
+    return support_build_among(options, sided->body_count, sided->body, sided->side, &within, sided->count, x,
+                               what, unserved, lists, error);
+}
+
+static enum status lists_of_sides(const struct support_options *options, const struct support_space *space,
+                                  const struct visibility_places *places, int64_t count, const double *x,
+                                  const char *what, struct support_lists *lists, struct error *error)
+{
+    FREED_BY(free_side) struct support_side whole = {.node_count = space->cells.node_count};
+    bool all_served = true;
+    NEW_SCRATCH(bool, unserved, count, error);
     NEW_SCRATCH(int32_t, side, count, error);
-    NEW_SCRATCH(struct support_body, body, sides_in(space), error);
+    NEW_SCRATCH(struct support_body, body, space->side_count + 1, error);
+    struct sided sided = {space, places, count, side, sides_in(space), body};
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
@@ -251,12 +282,24 @@ static enum status lists_of_sides(const struct support_options *options, const s
     }
     RETURN_IF_ERROR(locate_sides(space, count, x, side, error));
     sides_of_others(space, places, count, side);
-    RETURN_IF_ERROR(places_on_sides(space, places, count, side, &ptr, &item, &within, error));
-    for (int64_t s = 0; s < sides_in(space); s++) {
+    for (int64_t s = 0; s < sided.body_count; s++) {
         const struct support_side *of = &space->side[s];
         body[s] = (struct support_body){&of->grid, &of->visibility, of->node};
     }
-    return support_build_among(options, sides_in(space), body, side, &within, count, x, what, lists, error);
+    RETURN_IF_ERROR(build_sided(options, &sided, x, what, unserved, lists, error));
+    for (int64_t p = 0; p < count; p++) {
+        side[p] = unserved[p] ? (int32_t)space->side_count : side[p];
+        all_served = all_served && !unserved[p];
+    }
+    if (all_served) {
+        return STATUS_OK;
+    }
+    support_free(lists);
+    if (sided.body_count == space->side_count) {
+        RETURN_IF_ERROR(index_side(space, &whole, error));
+        body[sided.body_count++] = (struct support_body){&whole.grid, &whole.visibility, NULL};
+    }
+    return build_sided(options, &sided, x, what, NULL, lists, error);
 }
 
 enum status support_space_lists(const struct support_options *options, const struct support_space *space,

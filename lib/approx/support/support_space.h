@@ -2,7 +2,8 @@
  * (support_options.side), each side is a body of its own, with the nodes of the interface: a neighbour of a
  * point is a node of the cells on the point's side. So shape functions have a kink at an interface, like a
  * displacement where the stiffness jumps. Points of faces and nodes on an interface take the lowest of the
- * sides that meet there, so that the field has a single value there. */
+ * sides that meet there, so that the field has a single value there. Supports of points that have no good one
+ * on their side, e.g. a sliver, reach across. */
 #pragma once
 
 #include "approx/support/support.h"
