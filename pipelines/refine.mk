@@ -2,7 +2,7 @@
 #
 #   make refine SCENE=examples/block/block.scene GEO=examples/block/block.geo UNIT=mm TOL=0.01mm NODES=20000
 #   make refine SCENE=mine.scene GEO=labels.nii.gz SPACING=8mm VOXELS='-l labels.tsv' TOL=0.1mm
-#   make refine SCENE=mine.scene GEO=mine.geo UNIT=mm GROUPS="-u mm -f 'held=low:z,5'" SUPPORT='-i tumour' ROUNDS=4 TOL=0.1mm
+#   make refine SCENE=mine.scene GEO=mine.geo UNIT=mm GROUPS="-u mm -f 'held=low:z,5'" SUPPORT='-k 2' ROUNDS=4 TOL=0.1mm
 #
 # UNIT is that of the geometry, which is no image; NODES and ROUNDS are how many there may be; GROUPS, SUPPORT and, of an image, VOXELS
 # are arguments of these stages, and SPACING is that of the first lattice.

@@ -43,8 +43,8 @@ setup() {
             }
             END { print sqrt(squares / pairs) / (-sum / n) }'
     }
-    mtled -q "$block/block.scene" table.mts > across.dat 2> note
-    nodes -u mm block.msh | ipoints | support -i lump | shapefn | mtled -q "$block/block.scene" > stops.dat
+    nodes -u mm block.msh | ipoints | support -i none | shapefn | mtled -q "$block/block.scene" > across.dat 2> note
+    mtled -q "$block/block.scene" table.mts > stops.dat
     across=$(roughness across.dat)
     stops=$(roughness stops.dat)
     echo "$across $stops"

@@ -173,6 +173,7 @@ static void prepare(struct run *run)
     run_put_supports(run);
     run_checkpoint_begin(run);
     TOOL_TRY(run->tool, model_build(run->stream, run->parts->edge_reader, run->scene, model, &error));
+    run_put_supports(run); /* the sides may have been numbered anew */
     if (model->note.text[0] != '\0') {
         tool_note(run->tool, "%s", model->note.text);
     }

@@ -15,11 +15,11 @@ static const char usage[] =
     "other, even where they touch; a node that cells share sees, and is seen by, all of them. Clouds\n"
     "without cells have neighbours by distance alone.\n"
     "\n"
-    "Nor do they act across interfaces, which -i names by their regions: where the stiffness jumps the\n"
-    "gradient of the displacement does, which shape functions that see both sides smooth away, and\n"
-    "with it the stress. The nodes of an interface belong to both sides, so that the displacement is\n"
-    "continuous. What lies on it has the shape functions of the region that is named first: name the\n"
-    "stiffest first. Interfaces between materials of one stiffness need no name.\n"
+    "Nor do they act across the boundaries between regions, or with -i across those of some: where the\n"
+    "stiffness jumps the gradient of the displacement does, which shape functions that see both sides\n"
+    "smooth away, and with it stress and force. The nodes of an interface belong to both sides, so that\n"
+    "the displacement is continuous. What lies on it has the shape functions of the region that comes\n"
+    "first; where the stiffness jumps by more than 2, mtled makes them those of the stiffer one.\n"
     "\n"
     "Where a list holds too few nodes, or badly placed ones, for the basis, all radii are widened for\n"
     "that point until the moment matrix is well conditioned and the gradients of the shape functions\n"
@@ -37,7 +37,8 @@ static const char usage[] =
     "      --bound BOUND      largest |grad phi| times spacing admitted (default 6)\n"
     "      --reach RULE       cells (default where there are cells), or distance: also across gaps\n"
     "  -i, --interface REGION[,REGION...]\n"
-    "                         supports stop at the boundaries of these regions\n"
+    "                         supports stop at the boundaries of these regions (default: of all), or\n"
+    "                         with none at no interface\n"
     "  -b, --basis BASIS      mls1, mls2 or mmls2 (default): what the lists are for; shapefn follows\n"
     "                         it\n"
     "  -w, --weight WEIGHT    quartic (default) or regularised; shapefn follows it\n"
@@ -55,6 +56,14 @@ static const char usage[] =
 #include "stage_options.h"
 #include "stages/stages.h"
 
+#include <string.h>
+
+/* Whether -i says that supports stop nowhere. */
+static bool none_named(const struct tool *tool)
+{
+    return tool_given(tool, "interface") && strcmp(tool_value(tool, "interface"), "none") == 0;
+}
+
 static struct support_options parse(const struct tool *tool, int dim)
 {
     struct support_options support = support_defaults(dim);
@@ -67,7 +76,7 @@ static struct support_options parse(const struct tool *tool, int dim)
     support.gradient_bound = tool_number(tool, "bound", 1.0, 1e6, support.gradient_bound);
     support.visibility = (enum visibility_rule)tool_choice(tool, "reach", visibility_names,
                                                            VISIBILITY_RULE_COUNT, (int)support.visibility);
-    if (tool_given(tool, "interface") && support.visibility == VISIBILITY_DISTANCE) {
+    if (tool_given(tool, "interface") && !none_named(tool) && support.visibility == VISIBILITY_DISTANCE) {
         tool_fail(tool, STATUS_INPUT, "--reach distance acts across the interfaces of -i");
     }
     support.widen = !tool_given(tool, "no-widen");
@@ -114,7 +123,7 @@ int main(int argc, char *argv[])
     struct support_options support = parse(&tool, dim);
     stage_fill(&tool, &stream, "ipoints");
     SCRATCH int32_t *side = NULL;
-    if (tool_given(&tool, "interface")) {
+    if (support.visibility == VISIBILITY_CELLS && !none_named(&tool)) {
         TOOL_TRY(&tool, stage_interfaces(&stream, tool_value(&tool, "interface"), &side, &error));
         support.side = side;
     }

@@ -121,17 +121,35 @@ static enum status put_points(struct stream *stream, int dim, const char *rule,
     return stream_put(stream, "points.cell", TYPE_I4, count, 1, "", array_take(&points->cell), true, error);
 }
 
+static enum status put_face_points(struct stream *stream, const struct cells *cells,
+                                   const struct faces *faces, struct error *error)
+{
+    int64_t points = face_point_count(faces);
+    NEW_SCRATCH(double, x, points * cells->dim, error);
+    char attributes[64];
+    face_points(faces, cells->x, x);
+    return stream_put(stream, "facepoints.x", TYPE_F8, points, cells->dim,
+                      vector_attributes(cells->dim, "m", attributes), array_take(&x), true, error);
+}
+
+enum status stage_face_points(struct stream *stream, struct error *error)
+{
+    struct cells cells;
+    struct faces faces;
+    RETURN_IF_ERROR(stream_cells(stream, true, &cells, error));
+    RETURN_IF_ERROR(stream_faces(stream, &cells, &faces, error));
+    return put_face_points(stream, &cells, &faces, error);
+}
+
 /* Put the faces and their quadrature points. */
 static enum status put_faces(struct stream *stream, const struct cells *cells, bool boundary_only,
                              struct error *error)
 {
     int dim = cells->dim;
     FREED_BY(faces_free) struct faces faces = {0};
-    char attributes[64];
     RETURN_IF_ERROR(faces_build(cells, boundary_only, &faces, error));
-    int64_t count = faces.count, points = face_point_count(&faces);
-    NEW_SCRATCH(double, x, points * dim, error);
-    face_points(&faces, cells->x, x);
+    const struct faces view = faces;
+    int64_t count = faces.count;
     RETURN_IF_ERROR(
         stream_put(stream, "faces", TYPE_I4, count, dim, "", array_take(&faces.node), true, error));
     RETURN_IF_ERROR(
@@ -140,8 +158,7 @@ static enum status put_faces(struct stream *stream, const struct cells *cells, b
         RETURN_IF_ERROR(stream_put(stream, "faces.edge", TYPE_I4, count, FACE_EDGES(dim), "",
                                    array_take(&faces.edge), true, error));
     }
-    return stream_put(stream, "facepoints.x", TYPE_F8, points, dim, vector_attributes(dim, "m", attributes),
-                      array_take(&x), true, error);
+    return put_face_points(stream, cells, &view, error);
 }
 
 enum status stage_ipoints(struct stream *stream, const struct ipoints_options *options, int64_t *unresolved,

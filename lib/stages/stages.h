@@ -48,7 +48,8 @@ struct support_report {
 };
 
 /* (*side)[cells], to be freed: the position of each cell's region in the comma-separated list of names; the
- * number of names for regions not in it. STATUS_INPUT for an unknown or repeated region, or no cells. */
+ * number of names for regions not in it. STATUS_INPUT for an unknown or repeated region, or no cells. With
+ * names NULL the region of each cell; *side is NULL if there are no two regions. */
 MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                                         struct error *error);
 
@@ -61,6 +62,16 @@ MUST_CHECK enum status stage_own_part(const struct stream *stream, struct suppor
  * facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,
                                      struct support_report *report, struct error *error);
+
+/* Steps of these stages: facepoints.x from the faces; support.side and the lists for the radii
+ * in the stream. */
+MUST_CHECK enum status stage_face_points(struct stream *stream, struct error *error);
+MUST_CHECK enum status stage_lists(struct stream *stream, const struct support_options *options,
+                                   struct support_report *report, struct error *error);
+
+/* Make the lists and the sections of shapefn again, with the recorded settings and these sides of the
+ * cells. */
+MUST_CHECK enum status stage_renew(struct stream *stream, const int32_t *side, struct error *error);
 
 /* Add the sections of shapefn: edge.*, or shape.phi and shape.dphi; boundary.*, node.phi (lib/README.md). */
 MUST_CHECK enum status stage_shapefn(struct stream *stream, const struct mls *mls, struct error *error);

@@ -124,6 +124,20 @@ static enum status places_of_face_points(const struct stream *stream, const stru
 enum status stage_support(struct stream *stream, const struct support_options *options,
                           struct support_report *report, struct error *error)
 {
+    struct support_options actual = *options;
+    struct cells cells;
+    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
+    RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
+    if (cells.count == 0) {
+        actual.visibility = VISIBILITY_DISTANCE;
+    }
+    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
+    return stage_lists(stream, &actual, report, error);
+}
+
+enum status stage_lists(struct stream *stream, const struct support_options *options,
+                        struct support_report *report, struct error *error)
+{
     FREED_BY(support_space_free) struct support_space space = {0};
     const struct section *points, *facepoints;
     struct support_options actual = *options;
@@ -131,15 +145,9 @@ enum status stage_support(struct stream *stream, const struct support_options *o
     struct listed listed;
     SCRATCH int64_t *face_ptr = NULL;
     SCRATCH int32_t *face_cell = NULL;
-    *report = (struct support_report){0};
-    sections_remove(stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
+    *report = (struct support_report){.visibility = actual.visibility};
     RETURN_IF_ERROR(stream_cells(stream, false, &cells, error));
     RETURN_IF_ERROR(stream_view(stream, "points.x", &points, error));
-    if (cells.count == 0) {
-        actual.visibility = VISIBILITY_DISTANCE;
-    }
-    report->visibility = actual.visibility;
-    RETURN_IF_ERROR(put_radii(stream, &actual, cells.node_count, cells.x, error));
     if (actual.side != NULL) {
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));

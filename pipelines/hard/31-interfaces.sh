@@ -1,5 +1,5 @@
 #!/bin/bash
-# Row 31: interfaces between materials of unequal stiffness, at which supports stop (support -i). Layers in series and side by side
+# Row 31: interfaces between materials of unequal stiffness, at which supports stop. Layers in series and side by side
 # deform piecewise homogeneously: exact in every cell. A ball of three layers under pressure: Lame's solution.
 . "$(dirname "$0")/common.sh"
 geometries=$(dirname "$0")/../../examples/hard
@@ -52,7 +52,7 @@ layers() {
 gmsh -2 -v 1 "$geometries/layers.geo" -o "$work/layers2.msh" > /dev/null
 gmsh -3 -v 1 -setnumber depth 40 -setnumber h 12 "$geometries/layers.geo" -o "$work/layers3.msh" > /dev/null
 for dim in 2 3; do
-    nodes -u mm "$work/layers$dim.msh" | ipoints | support -i middle,right | shapefn > "$work/layers$dim.mts"
+    nodes -u mm "$work/layers$dim.msh" | ipoints | support | shapefn > "$work/layers$dim.mts"
 done
 layers 2 series xmin,ymin,ymax xmax -0.01
 layers 3 series xmin,ymin,ymax,zmin,zmax xmax -0.01
@@ -62,7 +62,7 @@ layers 3 laminate xmin,ymin,zmin,zmax ymax -0.006
 # ---- a ball ----
 
 gmsh -3 -v 1 -setnumber h 0.0071 "$geometries/ball.geo" -o "$work/ball.msh" > /dev/null
-nodes -u m "$work/ball.msh" | ipoints | support -i core,outer | shapefn > "$work/ball.mts"
+nodes -u m "$work/ball.msh" | ipoints | support | shapefn > "$work/ball.mts"
 at_most 31 "ball of three layers: nodes" "$(count ball)" ball-nodes
 for nu in 0.3 0.49; do
     {

@@ -46,6 +46,9 @@ static void fill_one(const struct tool *tool, struct stream *stream, const char 
     } else if (strcmp(stage, "support") == 0) {
         struct support_options options = support_defaults(recorded.support.mls.dim);
         struct support_report report;
+        SCRATCH int32_t *side = NULL;
+        TOOL_TRY(tool, stage_interfaces(stream, NULL, &side, &error));
+        options.side = side;
         TOOL_TRY(tool, stage_support(stream, &options, &report, &error));
         support_note_steep(tool, &options, &report);
     } else {

@@ -39,6 +39,7 @@ enum status model_build(struct stream *stream, const int32_t *edge_reader, const
                         struct model *model, struct error *error)
 {
     struct assembly *input = &model->assembly;
+    bool renewed;
     *model = (struct model){.stream = stream, .scene = scene};
     RETURN_IF_ERROR(stream_cells(stream, true, &input->cells, error));
     if (scene->dim != input->cells.dim) {
@@ -47,11 +48,14 @@ enum status model_build(struct stream *stream, const int32_t *edge_reader, const
     }
     RETURN_IF_ERROR(stage_tables(stream, input, error));
     RETURN_IF_ERROR(model_materials(model, error));
-    RETURN_IF_ERROR(model_interfaces(model, error));
+    RETURN_IF_ERROR(model_interfaces(model, stream, &renewed, error));
+    if (renewed) {
+        RETURN_IF_ERROR(stage_tables(stream, input, error));
+    }
     RETURN_IF_ERROR(check_moments(model, error));
     RETURN_IF_ERROR(model_conditions(model, error));
     input->ranks = process_ranks();
-    input->edge_reader = edge_reader;
+    input->edge_reader = renewed ? NULL : edge_reader;
     input->copied = drop_copied;
     input->context = stream;
     RETURN_IF_ERROR(assembly_build(input, &model->system, &model->note, error));

@@ -30,9 +30,10 @@ void model_free(struct model *model);
  * contacts, with their curves, facets, nodes and tables. */
 MUST_CHECK enum status model_materials(struct model *model, struct error *error);
 MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
-/* Set model->interfaces if stress is requested and supports reach across an interface between materials of
- * different stiffness, or if faces and nodes on an interface belong to the softer side. */
-MUST_CHECK enum status model_interfaces(struct model *model, struct error *error);
+/* Set model->interfaces if supports reach across a jump of the stiffness. If the softer side owns an
+ * interface at which supports stop, number the sides by stiffness and make the tables of the stream anew. */
+MUST_CHECK enum status model_interfaces(struct model *model, struct stream *stream, bool *renewed,
+                                        struct error *error);
 /* Read measured points, and set the field there; assembly compares and adds them. */
 MUST_CHECK enum status model_points(struct model *model, const struct scene_displacement *section,
                                     struct condition *condition, struct error *error);

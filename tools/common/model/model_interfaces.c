@@ -1,98 +1,140 @@
-/* Interfaces between materials, and whether supports stop there. */
+/* Interfaces between materials: which side owns them, and whether supports stop there. */
 #include "model/model.h"
 
-#include <stdio.h>
+#include "approx/support/support.h"
+#include "base/vector.h"
 
-/* Above this jump forces may be wrong, too: on layers of three cells by 10 % at 20 : 1, by 16 % at 100 :
- * 1. */
-static const double large_jump = 20.0;
+#include <math.h>
+#include <stdlib.h>
 
-/* Most regions that a remedy lists. */
-enum { MOST_NAMED = 8 };
+/* Jumps of the shear modulus by more than this count: layers in series are 2 % too stiff where supports reach
+ * across a jump of 3. */
+static const double least_jump = 2.0;
 
-/* The interface with the largest jump: its regions, the stiffer one first, and the ratio of the moduli. */
-struct worst {
-    double ratio;
-    int32_t region[2];
+/* The shear moduli at the integration points of a cell. */
+struct moduli {
+    double low, high;
 };
 
-static double modulus_of(const struct material_list *materials, int32_t cell)
+static void read_moduli(const struct assembly *input, struct moduli *of)
 {
-    return materials->items[materials->of_cell[cell]].shear_modulus;
+    const struct material_list *materials = &input->materials;
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        of[c] = (struct moduli){INFINITY, 0.0};
+    }
+    for (int64_t q = 0; q < input->point_count; q++) {
+        double modulus = materials->items[materials->of_point[q]].shear_modulus;
+        struct moduli *cell = &of[input->point_cell[q]];
+        *cell = (struct moduli){fmin(cell->low, modulus), fmax(cell->high, modulus)};
+    }
 }
 
-/* *crossed: the interface with the largest jump of the modulus among those across which supports reach;
- * *softer: among those where supports stop, but faces and nodes on the interface belong to the softer
- * side. */
-static void find_worst(const struct assembly *input, const int32_t *region, struct worst *crossed,
-                       struct worst *softer)
+/* What there is at the faces between cells. */
+struct found {
+    bool softer;  /* a jump where supports stop, and the softer side owns the interface */
+    double ratio; /* the largest jump across which supports reach */
+    int64_t face; /* there */
+};
+
+static struct found search(const struct assembly *input, const struct faces *faces, const struct moduli *of)
+{
+    struct found found = {.ratio = least_jump};
+    const int32_t *side = input->cell_side;
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        double ratio = b < 0 ? 1.0 : fmax(of[a].high, of[b].high) / fmin(of[a].low, of[b].low);
+        if (ratio > least_jump && side != NULL && side[a] != side[b]) {
+            found.softer = found.softer || (side[a] < side[b]) == (of[a].high < of[b].high);
+        } else if (ratio > found.ratio) {
+            found.ratio = ratio;
+            found.face = f;
+        }
+    }
+    return found;
+}
+
+/* A side, and the mean shear modulus of its cells. */
+struct ranked {
+    double modulus;
+    int32_t side;
+};
+
+static int compare_ranked(const void *a, const void *b)
+{
+    const struct ranked *first = a, *second = b;
+    return first->modulus != second->modulus ? (first->modulus < second->modulus ? 1 : -1)
+                                             : (first->side > second->side) - (first->side < second->side);
+}
+
+/* Number the sides by falling stiffness, and make the shape functions anew: the lower side owns an interface.
+ */
+static enum status stiffest_first(struct stream *stream, const struct assembly *input,
+                                  const struct moduli *of, struct error *error)
 {
     const int32_t *side = input->cell_side;
-    for (int64_t f = input->faces.boundary_count; f < input->faces.count; f++) {
-        int32_t stiff = input->faces.cell[2 * f], soft = input->faces.cell[2 * f + 1];
-        double ratio = modulus_of(&input->materials, stiff) / modulus_of(&input->materials, soft);
-        if (ratio < 1.0) {
-            int32_t swap = stiff;
-            stiff = soft;
-            soft = swap;
-            ratio = 1.0 / ratio;
-        }
-        struct worst *worst = side == NULL || side[stiff] == side[soft] ? crossed : softer;
-        if (ratio > worst->ratio && (worst == crossed || side[soft] < side[stiff])) {
-            *worst = (struct worst){ratio, {region[stiff], region[soft]}};
-        }
+    int64_t cells = input->cells.count, sides = 0;
+    NEW_SCRATCH(int32_t, renewed, cells, error);
+    for (int64_t c = 0; c < cells; c++) {
+        sides = side[c] >= sides ? side[c] + 1 : sides;
     }
+    NEW_SCRATCH(int64_t, count, sides, error);
+    NEW_SCRATCH(int32_t, rank, sides, error);
+    NEW_SCRATCH(struct ranked, ranked, sides, error);
+    for (int64_t c = 0; c < cells; c++) {
+        count[side[c]]++;
+        ranked[side[c]].modulus += of[c].high;
+    }
+    for (int64_t s = 0; s < sides; s++) {
+        ranked[s] = (struct ranked){count[s] > 0 ? ranked[s].modulus / (double)count[s] : 0.0, (int32_t)s};
+    }
+    qsort(ranked, (size_t)sides, sizeof *ranked, compare_ranked);
+    for (int64_t s = 0; s < sides; s++) {
+        rank[ranked[s].side] = (int32_t)s;
+    }
+    for (int64_t c = 0; c < cells; c++) {
+        renewed[c] = rank[side[c]];
+    }
+    return stage_renew(stream, renewed, error);
 }
 
-/* text[256] = the argument of support -i: the regions by decreasing modulus, without the last. */
-static void remedy(const struct names *names, const double *modulus, char text[256])
+/* Say where supports reach across a jump. */
+static enum status note_jump(struct model *model, const struct faces *faces, const struct found *found,
+                             struct error *error)
 {
-    int64_t count = names->count;
-    bool done[MOST_NAMED + 1] = {false};
-    text[0] = '\0';
-    if (count > MOST_NAMED + 1) {
-        snprintf(text, 256, "the regions, the stiffest first");
-    }
-    for (int64_t k = 0; count <= MOST_NAMED + 1 && k + 1 < count; k++) {
-        int32_t stiffest = -1;
-        for (int32_t r = 0; r < count; r++) {
-            stiffest = !done[r] && (stiffest < 0 || modulus[r] > modulus[stiffest]) ? r : stiffest;
-        }
-        done[stiffest] = true;
-        text_append(text, 256, "%s%s", k > 0 ? "," : "", names->name[stiffest]);
-    }
+    const struct cells *cells = &model->assembly.cells;
+    const int32_t *cell = faces->cell + 2 * found->face, *node = faces->node + found->face * cells->dim;
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    double middle[3];
+    char place[96];
+    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+    vector_middle(cells->dim, cells->x, cells->dim, node, middle);
+    point_text(cells->dim, middle, place);
+    int32_t first = regions.of_cell[cell[0]], second = regions.of_cell[cell[1]];
+    (void)fail(
+        &model->interfaces, STATUS_OK,
+        "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: stress "
+        "and forces are wrong there: %s",
+        found->ratio, regions.names.name[first], first == second ? "" : " and ",
+        first == second ? "" : regions.names.name[second], place,
+        first == second ? "make a region of each side (groups -r, voxels), and supports stop there"
+                        : "let supports stop there (support without -i and --reach)");
+    return STATUS_OK;
 }
 
-enum status model_interfaces(struct model *model, struct error *error)
+enum status model_interfaces(struct model *model, struct stream *stream, bool *renewed, struct error *error)
 {
     const struct assembly *input = &model->assembly;
-    const struct scene_output *output = &model->scene->output;
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    char order[256];
-    struct worst crossed = {.ratio = 1.0}, softer = {.ratio = 1.0};
-    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
-    NEW_SCRATCH(double, modulus, regions.names.count, error);
-    for (int32_t c = 0; c < input->cells.count; c++) {
-        modulus[regions.of_cell[c]] = modulus_of(&input->materials, c);
+    FREED_BY(faces_free) struct faces built = {0};
+    NEW_SCRATCH(struct moduli, of, input->cells.count, error);
+    if (!input->smoothed) {
+        RETURN_IF_ERROR(faces_build(&input->cells, false, &built, error));
     }
-    find_worst(input, regions.of_cell, &crossed, &softer);
-    remedy(&regions.names, modulus, order);
-    const struct worst *worst = softer.ratio > 1.0 ? &softer : &crossed;
-    const char *first = regions.names.name[worst->region[0]], *second = regions.names.name[worst->region[1]];
-    if (softer.ratio > 1.0) {
-        (void)fail(
-            &model->interfaces, STATUS_OK,
-            "the interface of %s and %s has the shape functions of %s, the softer: the stress in %s is "
-            "less exact: support -i %s",
-            first, second, second, first, order);
-    } else if (crossed.ratio > 1.0 &&
-               (output->stress || output->strain || output->pressure ||
-                (crossed.ratio > large_jump && (output->reactions || output->moments || output->gaps)))) {
-        (void)fail(&model->interfaces, STATUS_OK,
-                   "supports reach across the boundary of %s and %s, where the shear modulus jumps %.3g : 1: "
-                   "the stress there is smoothed%s: support -i %s",
-                   first, second, crossed.ratio,
-                   crossed.ratio > large_jump ? ", and forces may be off by tens of percent" : "", order);
+    const struct faces *faces = input->smoothed ? &input->faces : &built;
+    read_moduli(input, of);
+    struct found found = search(input, faces, of);
+    if (found.ratio > least_jump) {
+        RETURN_IF_ERROR(note_jump(model, faces, &found, error));
     }
-    return STATUS_OK;
+    *renewed = found.softer;
+    return found.softer ? stiffest_first(stream, input, of, error) : STATUS_OK;
 }

@@ -67,9 +67,8 @@ static void judge(struct run *run, const struct relaxation_report *report)
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
-             "allow more (max_steps), or hold the body against rigid motion%s",
-             scene->path, (long long)report->steps, load, report->error,
-             run->model->interfaces.text[0] != '\0' ? ", or stop supports at interfaces (support -i)" : "");
+             "allow more (max_steps), or hold the body against rigid motion",
+             scene->path, (long long)report->steps, load, report->error);
 }
 
 /* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
