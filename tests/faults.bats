@@ -283,7 +283,7 @@ END
     cloud -d 2 -k regular -n 3 --box 0,0.1,0,0.1 | shapefn 2> said | mtled block.scene > coarse.mts
     while IFS= read -r command; do
         status=0
-        message=$(bash -c "$command > /dev/full" 2>&1 | grep -v -e 'left out' -e 'with defaults' -e 'one cell thick' -e 'keep their old value') || true
+        message=$(bash -c "$command > /dev/full" 2>&1 | grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value') || true
         bash -c "$command > /dev/full" 2> /dev/null || status=$?
         survived=$([[ $status -eq 3 && $message == "${command%% *}: standard output: "*"No space left on device" ]] && echo yes || echo no)
         record "$command" "$status" "$message" "$survived"
@@ -297,7 +297,7 @@ END
     while IFS= read -r command; do
         # By then the reader is gone.
         run --separate-stderr bash -c "{ sleep 0.1; exec $command; } | true; exit \${PIPESTATUS[0]}"
-        message=$(grep -v -e 'left out' -e 'with defaults' -e 'one cell thick' -e 'keep their old value' <<< "$stderr" || true)
+        message=$(grep -v -e 'left out' -e 'with defaults' -e 'thin for their cells' -e 'keep their old value' <<< "$stderr" || true)
         survived=$([[ $status -eq 141 && -z $message ]] && echo yes || echo no)
         record "$command" "$status" "$message" "$survived"
         [ "$survived" = yes ] || { echo "$command: $status: $message"; false; }

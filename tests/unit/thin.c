@@ -54,25 +54,34 @@ static struct thin_report thin(const struct shape *shape, double bound)
     return report;
 }
 
-/* The long sides of a plate are thin, its narrow ones are not. */
+/* e of cells of these variances by the thickness squared: along the part, in the worst direction, and across.
+ */
+static void expect(const struct thin_report *report, double along, double across)
+{
+    NEAR_TO(report->excess[0], 6.0 * (along - across), 1e-12);
+    NEAR_TO(report->excess[1], 6.0 * (2.0 * along - across), 1e-12);
+}
+
+/* The long sides of a plate are thin, its narrow ones are not; more cells across do not help. */
 TEST(plates)
 {
     static struct shape shape;
     make_grid(&shape, 2, (int[]){8, 1}, (double[]){1.0, 0.5});
-    struct thin_report report = thin(&shape, 1.5);
-    assert_true(fabs(report.least - 0.5) < 1e-12);
+    struct thin_report report = thin(&shape, 0.1);
+    assert_true(fabs(report.share - 16.0 / 17.0) < 1e-12 && report.thickness == 0.5);
+    expect(&report, 4.0 / 18.0, 1.0 / 18.0); /* right triangles: squared legs over 18 */
+    make_grid(&shape, 2, (int[]){8, 4}, (double[]){1.0, 0.125});
+    report = thin(&shape, 0.1);
     assert_true(fabs(report.share - 16.0 / 17.0) < 1e-12);
-    make_grid(&shape, 2, (int[]){8, 2}, (double[]){1.0, 1.0});
-    report = thin(&shape, 1.5);
-    assert_true(report.share == 0.0 && report.least == 1.5);
-    assert_true(fabs(thin(&shape, 2.5).least - 2.0) < 1e-12);
+    expect(&report, 4.0 / 18.0, 1.0 / 18.0 / 16.0);
+    make_grid(&shape, 2, (int[]){8, 4}, (double[]){0.25, 0.25});
+    assert_true(thin(&shape, 0.1).share == 0.0);
     make_grid(&shape, 3, (int[]){5, 4, 1}, (double[]){1.0, 1.0, 0.25});
-    report = thin(&shape, 1.5);
-    double width = (2.0 + sqrt(2.0)) / 3.0;
-    assert_true(fabs(report.least - 0.25 / width) < 1e-12);
+    report = thin(&shape, 0.1);
     assert_true(fabs(report.share - 40.0 / (40.0 + 2.0 * 5.0 * 0.25 + 2.0 * 4.0 * 0.25)) < 1e-12);
+    assert_true(report.excess[0] > 6.0 * 15.0 / 24.0 && report.thickness == 0.25);
     make_grid(&shape, 3, (int[]){3, 3, 3}, (double[]){1.0, 1.0, 1.0});
-    assert_true(thin(&shape, 1.5).share == 0.0);
+    assert_true(thin(&shape, 0.1).share == 0.0);
 }
 
 /* A wedge is thin towards its edge only. */
@@ -83,9 +92,9 @@ TEST(wedge)
     for (int64_t k = 0; k < shape.nodes; k++) {
         shape.x[2 * k + 1] *= 0.25 * (shape.x[2 * k] + 0.2); /* thick by half of that */
     }
-    struct thin_report report = thin(&shape, 1.5);
-    assert_true(report.place[0] == 0.5 && fabs(report.least - 0.35) < 0.05);
-    assert_true(report.share > 0.2 && report.share < 0.5);
+    struct thin_report report = thin(&shape, 0.1);
+    assert_true(report.place[0] == 0.5 && fabs(report.thickness - 0.35) < 0.05);
+    assert_true(report.share > 0.3 && report.share < 0.7);
 }
 
 RUN_TESTS(NULL, NULL)

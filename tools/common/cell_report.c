@@ -51,11 +51,9 @@ const char *cell_report_box(const struct box *box, char text[128])
     return text;
 }
 
-/* A body is thin where its thickness is less than `bound` cells; this is reported if it holds for at least
- * `noted_share` of the boundary. A clamped plate of 60 x 20 x 4 mm with nu .49 is too stiff by 50 % with
- * cells as long as it is thick, by 10 % with cells of half that size, by 4 % with a third (compared with
- * mixed elements on the finest cells). */
-static const double bound = 1.5, noted_share = 0.1;
+/* This is reported if the bending stiffness is wrong by `bound` along at least `noted_share` of the boundary.
+ */
+static const double bound = 0.1, noted_share = 0.1;
 
 void tool_note_thin(const struct tool *tool, const struct cells *cells)
 {
@@ -64,10 +62,11 @@ void tool_note_thin(const struct tool *tool, const struct cells *cells)
     TOOL_TRY(tool, cells_find_thin(cells, bound, &thin, &error));
     if (thin.share > noted_share) {
         point_text(cells->dim, thin.place, place);
-        tool_note(tool,
-                  "%.0f %% of the boundary is on parts about one cell thick, the thinnest %.2g of a cell at "
-                  "%s m: they bend too stiffly, by half or more, where thinner than their cells are long; "
-                  "else by up to a tenth too stiffly or too softly",
-                  100.0 * thin.share, thin.least, place);
+        tool_note(
+            tool,
+            "%.0f %% of the boundary is on parts that are thin for their cells: where the worst is, %.3g m "
+            "thick at %s m, the bending stiffness is %.2f (nu = 0.5) to %.2f (nu = 0) times the true "
+            "one: cells of a third of the thickness, in all directions, bend well",
+            100.0 * thin.share, thin.thickness, place, 1.0 + thin.excess[0], 1.0 + thin.excess[1]);
     }
 }

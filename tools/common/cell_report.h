@@ -28,6 +28,6 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 /* "0 0 0 to 0.1 0.1 0.2 m" */
 const char *cell_report_box(const struct box *box, char text[128]);
 
-/* Note if a tenth of the boundary or more is on parts about one cell thick. Exits with a message on
- * failure. */
+/* Note if a tenth of the boundary or more is on parts thin for their cells. Exits with a message on failure.
+ */
 void tool_note_thin(const struct tool *tool, const struct cells *cells);

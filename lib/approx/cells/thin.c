@@ -1,5 +1,6 @@
 #include "approx/cells/thin.h"
 
+#include "base/eigen.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -11,16 +12,19 @@ static const double facing = 0.5;
 /* Most cells that a ray passes: round-off might lead it in a circle. */
 enum { MOST_CELLS = 1000 };
 
-/* Mean length of the edges of a facet or cell of `count` nodes. */
-static double mean_edge(int dim, const double *x, int count, const int32_t *node)
+/* Add to C[dim * dim] weight times the covariance of the places within a cell, m2. */
+static void add_covariance(const struct cells *cells, int64_t cell, double weight, double *C)
 {
-    double sum = 0.0;
-    for (int k = 0; k < count; k++) {
-        for (int l = 0; l < k; l++) {
-            sum += vector_distance(dim, x + (int64_t)node[k] * dim, x + (int64_t)node[l] * dim);
+    int dim = cells->dim, corners = dim + 1;
+    double centre[3];
+    cell_centroid(cells, cell, centre);
+    for (int k = 0; k < corners; k++) {
+        double offset[3];
+        vector_subtract(dim, cells->x + (int64_t)cells->node[cell * corners + k] * dim, centre, offset);
+        for (int a = 0; a < dim; a++) {
+            add_scaled(dim, weight * offset[a] / (corners * (corners + 1)), offset, C + a * dim);
         }
     }
-    return 2.0 * sum / (count * (count - 1));
 }
 
 /* The distance at which the ray from x along `ray` leaves a cell, through the face opposite vertex *face; the
@@ -46,30 +50,68 @@ static double leave_cell(const struct cells *cells, int64_t cell, int entered, c
     return nearest;
 }
 
-/* The thickness at a facet of a cell, opposite its vertex `face`, m; INFINITY unless it is less than `bound`
- * times the facet's width and `bound` times the mean edge of the cells on the ray. */
+/* The thickness at a facet of a cell, opposite its vertex `face`, m, and in C[dim * dim] the mean covariance
+ * of the cells on the ray; INFINITY where 12 times its trace is less than `bound` times the square of that.
+ */
 static double thickness(const struct cells *cells, const int32_t *across, int64_t cell, int face,
-                        const double *middle, const double *inward, double bound, double width)
+                        const double *middle, const double *inward, double bound, double C[9])
 {
     int dim = cells->dim, corners = dim + 1, out = face;
-    double edges = 0.0;
+    double before = 0.0, sum[9] = {0.0};
     for (int step = 0; step < MOST_CELLS; step++) {
-        double normal[3];
+        double normal[3], trace = 0.0;
         double distance = leave_cell(cells, cell, face, middle, inward, &out, normal);
-        edges += mean_edge(dim, cells->x, corners, cells->node + cell * corners);
-        if (!(distance < bound * width)) {
+        add_covariance(cells, cell, distance - before, sum);
+        for (int i = 0; i < dim * dim; i++) {
+            C[i] = sum[i] / distance;
+            trace += i % corners == 0 ? C[i] : 0.0;
+        }
+        if (!(12.0 * trace > bound * distance * distance)) {
             return INFINITY;
         }
         int32_t next = across[cell * corners + out];
         if (next < 0) {
             bool faces = vector_dot(dim, normal, inward) > facing * vector_length(dim, normal);
-            return faces && distance < bound * edges / (step + 1) ? distance : INFINITY;
+            return faces ? distance : INFINITY;
         }
         for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {
         }
         cell = next;
+        before = distance;
     }
     return INFINITY;
+}
+
+/* The largest variance of C[dim * dim] along directions orthogonal to the unit vector n. */
+static double largest_across(int dim, const double *C, const double *n)
+{
+    double first[9], projected[9], values[3], vectors[9], largest = 0.0;
+    for (int i = 0; i < dim * dim; i++) { /* (I - n n^T) C */
+        int a = i / dim, b = i % dim;
+        first[i] = C[i];
+        for (int k = 0; k < dim; k++) {
+            first[i] -= n[a] * n[k] * C[k * dim + b];
+        }
+    }
+    for (int i = 0; i < dim * dim; i++) {
+        projected[i] = first[i] - vector_dot(dim, first + i / dim * dim, n) * n[i % dim];
+    }
+    eigen_symmetric(dim, projected, values, vectors);
+    for (int k = 0; k < dim; k++) {
+        largest = fmax(largest, values[k]);
+    }
+    return largest;
+}
+
+/* excess[2]: see struct thin_report, with the thickness and the covariance C of the cells. */
+static void bending_excess(int dim, double thickness, const double *C, const double *inward, double excess[2])
+{
+    double along = largest_across(dim, C, inward) / (thickness * thickness), normal = 0.0;
+    for (int a = 0; a < dim; a++) {
+        normal += inward[a] * vector_dot(dim, C + a * dim, inward) / (thickness * thickness);
+    }
+    excess[0] = 6.0 * (along - normal);
+    excess[1] = 6.0 * (2.0 * along - normal);
 }
 
 enum status cells_find_thin(const struct cells *cells, double bound, struct thin_report *report,
@@ -77,7 +119,7 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
 {
     int dim = cells->dim, corners = dim + 1;
     double whole = 0.0, thin = 0.0;
-    *report = (struct thin_report){.least = bound};
+    *report = (struct thin_report){0};
     NEW_SCRATCH(int32_t, across, cells->count * corners, error);
     RETURN_IF_ERROR(cells_across(cells, across, error));
     for (int64_t i = 0; i < cells->count * corners; i++) {
@@ -87,7 +129,7 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
             continue;
         }
         int32_t node[3];
-        double area[3], middle[3], inward[3];
+        double area[3], middle[3], inward[3], C[9], excess[2] = {0.0, 0.0};
         cell_face(cells, cell, face, node);
         face_area_vector(dim, cells->x, node, area);
         double size = vector_length(dim, area);
@@ -95,13 +137,17 @@ enum status cells_find_thin(const struct cells *cells, double bound, struct thin
         for (int a = 0; a < dim; a++) {
             inward[a] = -area[a] / size;
         }
-        double width = mean_edge(dim, cells->x, dim, node);
-        double ratio = thickness(cells, across, cell, face, middle, inward, bound, width) / width;
+        double across_part = thickness(cells, across, cell, face, middle, inward, bound, C);
         whole += size;
-        thin += ratio < bound ? size : 0.0;
-        if (ratio < report->least) {
-            report->least = ratio;
+        if (across_part < INFINITY) {
+            bending_excess(dim, across_part, C, inward, excess);
+        }
+        double worst = fmax(fabs(excess[0]), fabs(excess[1]));
+        thin += worst > bound ? size : 0.0;
+        if (worst > fmax(fabs(report->excess[0]), fabs(report->excess[1]))) {
+            memcpy(report->excess, excess, sizeof excess);
             memcpy(report->place, middle, (size_t)dim * sizeof *middle);
+            report->thickness = across_part;
         }
     }
     report->share = whole > 0.0 ? thin / whole : 0.0;

@@ -1,17 +1,21 @@
-/* Parts of a body that are thin compared with its cells: they are too stiff in bending. */
+/* Parts of a body whose bending stiffness is wrong, as they are thin for their cells. */
 #pragma once
 
 #include "approx/cells/cells.h"
 
-/* The thickness of a body at a boundary facet is the length of the ray from the facet's middle along its
+/* The thickness t of a body at a boundary facet is the length of the ray from the facet's middle along its
  * inward normal to the point where it leaves the body, through a facet whose normal is opposite within 60
- * degrees. Its unit is the mean edge of the facet (2D: the facet's length). A facet is thin if the thickness
- * is below the bound in this unit and also in mean edges of the cells on the ray: behind the long facets of a
- * boundary with few nodes there may be many cells. */
+ * degrees. There the body may bend: u_z = c x^2 / 2, u_x = -c x z. Within a cell the gradient of this field
+ * varies by the rotation c x and the strain c z. Smoothed cells give that the energy mu / 2 of its variance,
+ * equation (10) of lib/README.md, in place of 0 and E / (1 - nu^2) / 2. With the variances V_x and V_z of the
+ * places within a cell (means over the ray, V_x in the worst direction), the bending stiffness of a plate is
+ * therefore 1 + e times the true one, to first order, with e = 6 (V_x - V_z) / t^2 for nu = 1/2 and
+ * 6 (2 V_x - V_z) / t^2 for nu = 0. Not more cells across, but shorter ones make V_x / t^2 smaller. */
 struct thin_report {
-    double share;    /* of thin facets in the boundary, by area or length */
-    double least;    /* least thickness; the bound if there is none below it */
-    double place[3]; /* the middle of that facet, m */
+    double share;     /* of facets with an |e| above the bound in the boundary, by area or length */
+    double excess[2]; /* the largest e, for nu = 1/2 and 0; 0 if that ray was not followed */
+    double thickness; /* t there, m */
+    double place[3];  /* the middle of that facet, m */
 };
 
 /* Errors: as cells_across; STATUS_SYSTEM (memory). */
