@@ -142,18 +142,17 @@ static enum status collect_parts(const struct face_table *table, const struct fa
                                  const int64_t *face_of, bool split, struct boundary_sides *sides,
                                  struct corner *corners, int64_t *parts, struct error *error)
 {
-    SCRATCH int64_t *group = NULL;
     int64_t count = 2 * set->count * table->dim;
     boundary_collect_corners(table, set, face_of, split, corners, parts);
     if (sides != NULL) {
         sides->node_average_count = *parts;
-        RETURN_IF_ERROR(NEW_ARRAY(&group, set->count, error));
-        RETURN_IF_ERROR(
-            boundary_add_sides(table, set, split, corners, parts, group, &sides->group_count, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&sides->facet_group, set->count, error));
+        RETURN_IF_ERROR(boundary_add_sides(table, set, split, corners, parts, sides->facet_group,
+                                           &sides->group_count, error));
         RETURN_IF_ERROR(NEW_ARRAY(&sides->group, *parts, error));
         RETURN_IF_ERROR(NEW_ARRAY(&sides->flat, *parts, error));
         for (int64_t i = 0; i < count; i++) {
-            sides->group[corners[i].part] = group[corners[i].facet];
+            sides->group[corners[i].part] = sides->facet_group[corners[i].facet];
         }
     }
     return STATUS_OK;
@@ -227,7 +226,7 @@ enum status boundary_sides_build(const struct face_table *table, const struct fa
 
 void boundary_sides_free(struct boundary_sides *sides)
 {
-    FREE_ALL(sides->group, sides->flat);
+    FREE_ALL(sides->group, sides->facet_group, sides->flat);
     *sides = (struct boundary_sides){0};
 }
 

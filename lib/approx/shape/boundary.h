@@ -57,9 +57,10 @@ MUST_CHECK enum status boundary_averages_build(const struct face_table *table, c
 struct boundary_sides {
     int64_t node_average_count; /* averages before this one are boundary averages, the others sides */
     int64_t group_count;
-    int64_t *group; /* averages.count: with `split` the side of each average, else the piece of the set,
-                       connected by nodes, that contains it */
-    bool *flat;     /* averages.count: all of its facets have the same normal, to a thousandth */
+    int64_t *group;       /* averages.count: with `split` the side of each average, else the piece of the set,
+                             connected by nodes, that contains it */
+    int64_t *facet_group; /* of each facet of the set */
+    bool *flat;           /* averages.count: all of its facets have the same normal, to a thousandth */
 };
 MUST_CHECK enum status boundary_sides_build(const struct face_table *table, const struct facet_set *set,
                                             bool split, struct boundary_averages *averages,

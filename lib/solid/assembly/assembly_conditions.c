@@ -96,6 +96,26 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
     return status;
 }
 
+/* Record the facets of curved sides along whose normals the condition prescribes the displacement. */
+static enum status note_sliding(const struct prescription *p, const struct boundary_sides *sides,
+                                struct error *error)
+{
+    struct sliding *sliding = &p->system->sliding;
+    const struct facet_set *set = &p->condition->facets;
+    int dim = p->input->cells.dim;
+    int64_t first = sliding->facet_count;
+    for (int64_t f = 0; f < set->count; f++) {
+        int64_t side = sides->facet_group[f];
+        struct sliding_facet facet = {.side = sliding->side_count + (int32_t)side, .section = p->number};
+        memcpy(facet.node, set->facet + f * dim, (size_t)dim * sizeof *facet.node);
+        if (!sides->flat[sides->node_average_count + side]) {
+            RETURN_IF_ERROR(sliding_add_facet(sliding, &facet, error));
+        }
+    }
+    sliding_sort(sliding, first, sides->group_count);
+    return STATUS_OK;
+}
+
 /* Add the rows of the first `count` averages, and record the values that the condition prescribes at their
  * nodes. With sides, mark the components that earlier conditions hold in each group. */
 static enum status add_all(const struct prescription *p, const struct boundary_averages *averages,
@@ -104,10 +124,16 @@ static enum status add_all(const struct prescription *p, const struct boundary_a
     int dim = p->input->cells.dim;
     int64_t first = p->system->rows.count;
     struct nodal_constraints *nodal = p->nodal_constraints;
+    bool slides = sides != NULL && p->condition->kind == CONDITION_NORMAL;
     for (int64_t a = 0; a < count; a++) {
         struct demand demand;
+        int64_t before = p->system->rows.count;
         RETURN_IF_ERROR(
             add_rest(p, averages, a, sides != NULL ? p->shared + sides->group[a] * dim : NULL, error));
+        bool curved = slides && !sides->flat[sides->node_average_count + sides->group[a]];
+        for (int64_t r = before; curved && r < p->system->rows.count; r++) {
+            RETURN_IF_ERROR(sliding_add_row(&p->system->sliding, r, error));
+        }
         RETURN_IF_ERROR(prescription_demand(p, averages, a, true, &demand, error));
         RETURN_IF_ERROR(GROW_ARRAY(&nodal->list, nodal->count + demand.count, &nodal->room, error));
         for (int k = 0; k < demand.count; k++) {
@@ -201,6 +227,9 @@ static enum status add_averages(struct prescription *p, struct error *error)
     TRY(build_averages(p, &averages, &sides, error));
     TRY(NEW_ARRAY(&p->shared, sides.group_count * p->input->cells.dim, error));
     TRY(add_all(p, &averages, &sides, sides.node_average_count, error));
+    if (p->condition->kind == CONDITION_NORMAL) {
+        TRY(note_sliding(p, &sides, error));
+    }
     for (int64_t a = sides.node_average_count; a < averages.count; a++) {
         if (sides.flat[a]) {
             TRY(add_side(p, &averages, &sides, a, error));

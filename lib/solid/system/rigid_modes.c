@@ -1,5 +1,6 @@
 #include "solid/system/rigid_modes.h"
 
+#include "approx/cells/cells.h"
 #include "base/box.h"
 #include "base/eigen.h"
 #include "base/memory.h"
@@ -73,20 +74,134 @@ static void add_node(struct parts *parts, int32_t p, int32_t node, double factor
     null_space_add(&parts->space, p, factor, value);
 }
 
-/* Impose that the average of each row from `first` on does not move along the row's direction. */
-static enum status hold_rows(struct parts *parts, const struct constraint_rows *rows, int64_t first,
-                             struct error *error)
+/* Impose that the average of row r does not move along the row's direction. */
+static enum status hold_row(struct parts *parts, const struct constraint_rows *rows, int64_t r,
+                            struct error *error)
 {
-    for (int64_t r = first; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        double weights = 0.0;
-        for (int64_t i = 0; i < average.length; i++) {
-            int32_t node = average.idx[i];
-            add_node(parts, part_of(parts, node), node, average.phi[i],
-                     rows->direction + r * parts->system->dim);
-            weights += fabs(average.phi[i]);
+    struct average average = constraint_rows_average(rows, r);
+    double weights = 0.0;
+    for (int64_t i = 0; i < average.length; i++) {
+        int32_t node = average.idx[i];
+        add_node(parts, part_of(parts, node), node, average.phi[i], rows->direction + r * parts->system->dim);
+        weights += fabs(average.phi[i]);
+    }
+    return null_space_impose(&parts->space, least_value * weights, error);
+}
+
+/* Impose the rows of conditions, but not yet those on curved sides, and the springs. */
+static enum status hold_rows(struct parts *parts, struct error *error)
+{
+    const struct solid_system *system = parts->system;
+    const struct sliding *sliding = &system->sliding;
+    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties;
+    for (int64_t r = 0, curved = 0; r < rows->count; r++) {
+        if (curved < sliding->row_count && sliding->row[curved] == r) {
+            curved++;
+        } else {
+            RETURN_IF_ERROR(hold_row(parts, rows, r, error));
         }
-        RETURN_IF_ERROR(null_space_impose(&parts->space, least_value * weights, error));
+    }
+    for (int64_t r = penalties->count - system->spring_count; r < penalties->count; r++) {
+        RETURN_IF_ERROR(hold_row(parts, penalties, r, error));
+    }
+    return STATUS_OK;
+}
+
+/* The motions of a part, as coefficients of its rigid modes, along the normals of curved sides. With the
+ * value v_f of a motion at the middle of facet f, of area A_f: */
+struct curved {
+    double area;                                 /* sum of A_f */
+    double correlation[MOST_MODES * MOST_MODES]; /* sum of A_f (v^2 at the nodes - v_f^2 / 2), where v at a
+                                                    node is the mean over its facets */
+};
+
+/* curved[parts->count] */
+static enum status measure_curved(const struct parts *parts, struct curved *curved, struct error *error)
+{
+    const struct solid_system *system = parts->system;
+    const struct sliding *sliding = &system->sliding;
+    int dim = system->dim, modes = mode_count(dim);
+    NEW_SCRATCH(double, sum, system->node_count * modes, error);
+    NEW_SCRATCH(double, weight, system->node_count, error);
+    for (int64_t f = 0; f < sliding->facet_count; f++) {
+        const int32_t *node = sliding->facet[f].node, p = part_of(parts, node[0]);
+        double area[3], centre[3], mode[3], v[MOST_MODES];
+        face_area_vector(dim, system->X, node, area);
+        double size = vector_length(dim, area);
+        vector_middle(dim, system->X, dim, node, centre);
+        for (int k = 0; k < modes; k++) {
+            rigid_mode(&parts->box[p], k, centre, mode);
+            v[k] = vector_dot(dim, area, mode) / size;
+        }
+        for (int k = 0; k < modes; k++) {
+            add_scaled(modes, -0.5 * size * v[k], v, curved[p].correlation + k * modes);
+        }
+        for (int k = 0; k < dim; k++) {
+            add_scaled(modes, size / dim, v, sum + (int64_t)node[k] * modes);
+            weight[node[k]] += size / dim;
+        }
+        curved[p].area += size;
+    }
+    for (int64_t n = 0; n < system->node_count; n++) {
+        struct curved *own = &curved[part_of(parts, (int32_t)n)];
+        for (int k = 0; k < modes && weight[n] > 0.0; k++) {
+            add_scaled(modes, sum[n * modes + k] / weight[n], sum + n * modes, own->correlation + k * modes);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Impose what the curved sides of part p hold of its motions that are free so far. */
+static enum status hold_curved(struct parts *parts, int32_t p, const struct curved *curved,
+                               struct error *error)
+{
+    int modes = mode_count(parts->system->dim), n = parts->space.columns[p];
+    double basis[MOST_MODES * MOST_MODES], reduced[MOST_MODES * MOST_MODES] = {0.0};
+    double value[MOST_MODES], vector[MOST_MODES * MOST_MODES];
+    memcpy(basis, parts->space.basis[p], (size_t)(modes * n) * sizeof *basis);
+    for (int i = 0; i < modes * modes; i++) {
+        for (int k = 0; k < n; k++) {
+            add_scaled(n, curved->correlation[i] * basis[i / modes * n + k], basis + i % modes * n,
+                       reduced + k * n);
+        }
+    }
+    eigen_symmetric(n, reduced, value, vector);
+    for (int k = 0; k < n; k++) {
+        double motion[MOST_MODES] = {0.0};
+        for (int i = 0; i < modes * n; i++) {
+            motion[i / n] += basis[i] * vector[i % n * n + k];
+        }
+        if (value[k] > least_value * least_value * curved->area) {
+            null_space_add(&parts->space, p, 1.0, motion);
+            RETURN_IF_ERROR(null_space_impose(&parts->space, least_value, error));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Impose the conditions along normals of curved sides. Facets approximate the surface: a motion along it has
+ * values on them that are not 0 but change their sign from facet to facet. Such a motion is free: more than
+ * half of the mean square of its values vanishes where the values of facets that meet are averaged. Parts
+ * whose motions are coupled to those of others are held row by row. */
+static enum status hold_sliding(struct parts *parts, struct error *error)
+{
+    const struct sliding *sliding = &parts->system->sliding;
+    if (sliding->row_count == 0) {
+        return STATUS_OK;
+    }
+    NEW_SCRATCH(struct curved, curved, parts->count, error);
+    RETURN_IF_ERROR(measure_curved(parts, curved, error));
+    NEW_SCRATCH(bool, alone, parts->count, error);
+    for (int32_t p = 0; p < parts->count; p++) {
+        alone[p] = parts->space.next[p] == p;
+        if (alone[p] && curved[p].area > 0.0) {
+            RETURN_IF_ERROR(hold_curved(parts, p, &curved[p], error));
+        }
+    }
+    for (int64_t i = 0; i < sliding->row_count; i++) {
+        if (!alone[part_of(parts, parts->system->rows.node[sliding->row[i]])]) {
+            RETURN_IF_ERROR(hold_row(parts, &parts->system->rows, sliding->row[i], error));
+        }
     }
     return STATUS_OK;
 }
@@ -128,9 +243,8 @@ static enum status parts_find(struct parts *parts, int64_t joint_count, const st
         box_add(&parts->box[joint[j].part], 1, system->X + (int64_t)joint[j].node * dim);
     }
     RETURN_IF_ERROR(null_space_begin(parts->count, mode_count(dim), MOST_FREE, &parts->space, error));
-    RETURN_IF_ERROR(hold_rows(parts, &system->rows, 0, error));
-    RETURN_IF_ERROR(
-        hold_rows(parts, &system->penalties, system->penalties.count - system->spring_count, error));
+    RETURN_IF_ERROR(hold_rows(parts, error));
+    RETURN_IF_ERROR(hold_sliding(parts, error));
     for (int64_t j = 0; j < joint_count; j++) {
         RETURN_IF_ERROR(hold_joint(parts, &joint[j], error));
     }

@@ -3,8 +3,8 @@
 
 #include "solid/system/system.h"
 
-/* The rigid motions of a part that violate no condition. Springs of measured points count as conditions,
- * contacts do not. */
+/* The rigid motions of a part that violate no condition; along the normals of curved sides, none but by what
+ * the facets deviate from a surface. Springs of measured points count as conditions, contacts do not. */
 struct rigid_modes {
     double centre[3];     /* of the box of its nodes, m */
     int translations;     /* number of free translations, */

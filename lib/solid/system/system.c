@@ -29,6 +29,7 @@ void system_free(struct solid_system *system)
     }
     FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
     constraint_rows_free(&system->rows);
+    sliding_free(&system->sliding);
     constraint_rows_free(&system->penalties);
     constraint_nodes_free(&system->penalty_nodes);
     FREE_ALL(system->penalty_stiffness, system->penalty_force);

@@ -6,6 +6,7 @@
 #include "solid/constraint/constraint.h"
 #include "solid/contact/contact.h"
 #include "solid/system/curve.h"
+#include "solid/system/sliding.h"
 
 /* A dead load: forces on the parameters, scaled by a load curve. */
 struct dead_load {
@@ -64,6 +65,7 @@ struct solid_system {
                                                                 their nodal averages (may be empty) */
     int64_t contact_count;
     struct constraint_rows rows;
+    struct sliding sliding;             /* those of the rows along the normals of curved sides */
     const struct condition *conditions; /* of the rows, for messages; the caller's; NULL: not known */
     /* Penalty stabilisation of the constraints. Boundary averages do not constrain variations of the field
      * within them, which grow under a pressure of about ten shear moduli. Penalties at the quadrature points

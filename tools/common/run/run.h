@@ -155,6 +155,10 @@ void run_contacts_judge(struct run *run, double slack, double share);
  * two), if the scene requests forces: these are too large. */
 void run_displacements_judge(const struct run *run);
 
+/* For the final state: notes a curved side whose displacement is prescribed along its normal, and that slides
+ * so far that it leaves its surface. */
+void run_sliding_judge(const struct run *run);
+
 /* Dynamic: step to the end time. Exits with a verdict if this fails; adds the section energy on request. */
 void run_dynamic(struct run *run);
 

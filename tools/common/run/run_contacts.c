@@ -16,7 +16,8 @@
 static const double most_thin = 0.5;
 
 /* A result of which more than this share of the forces is missing, because of the remaining penetration, is
- * refused. */
+ * refused; sliding sides are reported if they leave their surface by more than this share of how far they
+ * slide. */
 static const double most_missing = 0.01;
 
 /* Positions of the nodes. */
@@ -338,5 +339,29 @@ void run_displacements_judge(const struct run *run)
         if (whole) {
             note_narrow(run, condition, core);
         }
+    }
+}
+
+void run_sliding_judge(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    struct sliding_error worst;
+    char place[96];
+    if (system->sliding.facet_count == 0) {
+        return;
+    }
+    SCRATCH double *field = run_new_values(run, system->node_count * system->dim);
+    assembly_nodal_field(&run->model->assembly, run->u, field);
+    TOOL_TRY(run->tool, sliding_measure(&system->sliding, system->dim, system->node_count, system->X, field,
+                                        &worst, &error));
+    if (worst.share > most_missing) {
+        point_text(system->dim, worst.place, place);
+        tool_note(
+            run->tool,
+            "%s: [displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
+            "its surface by %.2g m, as `normal` acts along the normal at rest: use a [contact] with that "
+            "surface as rigid one, or smaller loads",
+            run->scene->path, system->conditions[worst.section].name, worst.slide,
+            0.5 * worst.slide * worst.slide / worst.distance, place, worst.distance);
     }
 }

@@ -29,6 +29,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
         run_folds_judge(run);
         run_contacts_judge(run, report->penetration_allowed, 0.0);
         run_displacements_judge(run);
+        run_sliding_judge(run);
         return;
     }
     if (report->outcome == RELAXATION_STALLED) {
