@@ -15,8 +15,11 @@ enum { MOST_MODES = EIGEN_MOST };
 /* A row constrains a rigid mode if its value for the mode is at least this share of the sum of its
  * weights. */
 static const double least_value = 1e-4;
-/* Least squared singular value: of a free motion of a part, and of the rotation in it. */
+/* Least squared singular value of a free motion of a part. */
 static const double least_share2 = 1e-8;
+/* Least rotation, squared, of what is named a rotation: one about an axis a hundred sizes of the body away is
+ * more likely a translation along facets. */
+static const double least_turn2 = 1e-4;
 /* Most coupled free motions that are kept. */
 enum { MOST_FREE = 300 };
 
@@ -314,7 +317,7 @@ static void split_modes(const struct parts *parts, int32_t p, struct rigid_modes
                 mode[a] += mix[i * count + k] * basis[i][a];
             }
         }
-        if (turned[k] > least_share2) {
+        if (turned[k] > least_turn2) {
             put_rotation(&parts->box[p], mode, modes);
         } else {
             memcpy(modes->along[modes->translations++], mode, (size_t)dim * sizeof *mode);
