@@ -92,7 +92,11 @@ SCENE
     cp table.mts copy.mts
     refused 2 "copy.mts: a stream, but not a checkpoint" mtled -c copy.mts run.scene table.mts
     mts drop state.preconditioner.mass run.ckpt > less.ckpt
-    refused 2 "state.preconditioner.mass is missing or does not fit" mtled -c less.ckpt run.scene table.mts
+    run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
+    [[ $stderr == *"less.ckpt.frames: not the frames that less.ckpt goes on from: remove both to begin anew" ]]
+    cp run.ckpt.frames less.ckpt.frames
+    run -2 --separate-stderr mtled -c less.ckpt run.scene table.mts
+    [[ $stderr == *"state.preconditioner.mass is missing or does not fit" ]]
     refused 2 "no regular file" mtled -c /dev/null run.scene table.mts
     cmp run.ckpt kept
 }
@@ -113,7 +117,7 @@ SCENE
 
 @test "a place that cannot be written is reported at once; one that fills up later leaves the last checkpoint" {
     run -3 --separate-stderr mtled -c no/such/folder/run.ckpt run.scene table.mts
-    [[ $stderr == "mtled: no/such/folder/run.ckpt.new: No such file or directory" ]]
+    [[ $stderr == "mtled: no/such/folder/run.ckpt.frames: No such file or directory" ]]
     run -3 --separate-stderr bash -c 'ulimit -f 4; mtled -c run.ckpt run.scene table.mts > /dev/null'
     [[ $stderr == "mtled: run.ckpt.new: cannot write: File too large" ]]
     [ -z "$(find . -name 'run.ckpt*')" ]

@@ -73,9 +73,8 @@ setup() {
     done
     diff <(rows u.frame.3 full.dat) <(rows u full.dat)
     grep -q '^# u.frame.3 .*time=1$' full.dat
-    [ "$(mts list full.dat | grep -oE '^[^	]*\.frames?[^	]*' | xargs)" = "u.frame.0 parameters.frame.0 stress.frame.0 strain.frame.0 \
-reactions.frames energy.frames u.frame.1 parameters.frame.1 stress.frame.1 strain.frame.1 u.frame.2 parameters.frame.2 \
-stress.frame.2 strain.frame.2 u.frame.3 parameters.frame.3 stress.frame.3 strain.frame.3" ]
+    [ "$(mts list full.dat | grep -oE '^[^	]*\.frames?[^	]*' | xargs)" = "u.frame.0 parameters.frame.0 stress.frame.0 strain.frame.0 u.frame.1 parameters.frame.1 stress.frame.1 strain.frame.1 u.frame.2 parameters.frame.2 \
+stress.frame.2 strain.frame.2 u.frame.3 parameters.frame.3 stress.frame.3 strain.frame.3 reactions.frames energy.frames" ]
     for name in stress strain; do
         rows $name.frame.0 full.dat | awk '{ for (i = 1; i <= 4; i++) if ($i != 0) exit 1 } END { exit NR != 50 }'
         diff <(rows $name.frame.3 full.dat) <(rows $name full.dat)

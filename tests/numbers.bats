@@ -147,6 +147,22 @@ END
     mts recover u.dat 2> note | mts list | grep -q '^u.frame.1	'
 }
 
+@test "frames are written as they come, in constant memory; more than a stream holds are refused before the run" {
+    scene dynamic 0.3 'components = 0, 0.01' 'end_time = 8000' | sed 's/^frames.*/interval = 1/' > run.scene
+    mtled -q -o u.dat run.scene table.mts &
+    for size in 100000 4000000; do
+        until [ "$(stat -c %s u.dat.part 2> note || echo 0)" -gt $size ]; do sleep 0.05; done
+        awk '/^VmHWM/ { print $2 }' /proc/$!/status >> kilobytes
+    done
+    kill -KILL $!
+    wait $! || true
+    awk '{ m[NR] = $1 } END { exit !(m[1] > 0 && m[2] < m[1] + 500) }' kilobytes
+    mts recover u.dat.part 2> note | mts list | grep -q '^u.frame.1000	'
+    sed -i 's/^interval.*/interval = 0.1/' run.scene
+    refused 2 "80000 frames of 2 sections each, where a stream has at most 16384 sections" mtled -o v.dat run.scene table.mts
+    [ ! -e v.dat.part ]
+}
+
 @test "mts recover: what is whole in front of a cut or a damage; nothing of what has no whole section" {
     mts recover table.mts 2> said | cmp - <(mts recover < table.mts)
     [ ! -s said ]

@@ -190,7 +190,8 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     run -0 --separate-stderr mtled -v none.scene stack.mts
     [[ $stderr == *"mtled: none.scene: the body folds from "*" of the load on: "*": once more, with contact of the body with itself"* ]]
     [[ $stderr == *$'steps without contact of the body with itself\t'* ]]
-    cmp <(bare all.dat) <(bare <(printf '%s\n' "$output"))
+    # Frame 0, before the fold, is of the first run, which has no contact.
+    cmp <(mts drop -t gaps.frame.0 all.dat | bare) <(printf '%s\n' "$output" | bare)
     mtled none.scene - < stack.mts 2> note > piped.dat # a pipe cannot be read twice
     cmp <(rows u all.dat) <(rows u piped.dat)
     # With a rigid surface that moves: the curves of what was there stay.

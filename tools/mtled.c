@@ -20,8 +20,8 @@ static const char usage[] =
     "off by more than 0.05 of the largest energy.\n"
     "\n"
     "Nothing is written by a run that ends with a verdict or by a signal, but where the scene asks\n"
-    "for frames: then those so far and the last good state follow, as a stream that says at its\n"
-    "end that it is not whole; mts recover makes it one. With -o FILE it is FILE.part.\n"
+    "for frames: these are written as they come (-o FILE: to FILE.part), then the last good state;\n"
+    "the stream says at its end that it is not whole, and mts recover makes it one.\n"
     "\n"
     "Sections on request, of the final state: stress (Cauchy), strain (Green-Lagrange), pressure\n"
     "and volume_ratio of each integration point; reactions and moments of each displacement and\n"
@@ -42,8 +42,8 @@ static const char usage[] =
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes;\n"
     "with another scene, cloud, cut or version it is refused. FILE is replaced as a whole, and the\n"
-    "one before is FILE.old. It is a stream with the last field as u.last and the frames so far;\n"
-    "when the results are written, both go.\n"
+    "one before is FILE.old. It is a stream with the last field as u.last; FILE.frames has the\n"
+    "frames so far. At the end all are removed.\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        a report on standard error: steps, error, costs\n"
@@ -109,13 +109,13 @@ static void become_mpi(char *argv[])
     exit((int)STATUS_INPUT);
 }
 
-/* The checkpoint and the previous one must be neither an input nor the result, as they are removed at the
- * end. */
+/* The checkpoint, the previous one and the frames must be neither an input nor the result, as they are
+ * removed at the end. */
 static void check_checkpoint(const struct tool *tool)
 {
-    static const char *const suffixes[] = {"", ".old"};
+    static const char *const suffixes[] = {"", ".old", ".frames"};
     const char *file = tool_value(tool, "checkpoint");
-    for (int i = 0; i < 2 && file != NULL; i++) {
+    for (int i = 0; i < 3 && file != NULL; i++) {
         SCRATCH char *name = tool_text(tool, "%s%s", file, suffixes[i]);
         overwrite_refuse(tool, "checkpoint", suffixes[i]);
         if (tool->output != NULL && overwrite_is_same(name, tool->output)) {
@@ -186,6 +186,7 @@ static void prepare(struct run *run)
     run_contacts_begin(run);
     run_folds_begin(run);
     run_stability_begin(run);
+    run_frames_begin(run);
     stream_give_back(run->stream);
 }
 
@@ -205,9 +206,8 @@ static void compute(struct run *run)
 static void write_results(struct run *run)
 {
     run_put_results(run);
-    sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
     double started = clock_seconds();
-    tool_write(run->tool, run->stream);
+    run_frames_end(run);
     run->write_seconds = clock_seconds() - started;
     run_checkpoint_remove(run);
     if (run->verbose) {
@@ -242,6 +242,7 @@ int main(int argc, char *argv[])
     double started = clock_seconds();
     TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
     read_stream(&tool, &stream, &parts);
+    run_frames_check(&run);
     run.read_seconds = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");
     run_start_read(&run);
@@ -251,6 +252,7 @@ int main(int argc, char *argv[])
     write_results(&run);
     run_folds_free(&run);
     run_stability_free(&run);
+    run_frames_free(&run);
     stream_free(&run.start.stream);
     free(run.u);
     return tool_end(&tool);

@@ -61,28 +61,44 @@ static char *temporary_name(const char *target)
     return asprintf(&name, "%.*s.%.200s.XXXXXX", folder, target, target + folder) < 0 ? NULL : name;
 }
 
+static char *part_name(const char *target)
+{
+    char *name;
+    return asprintf(&name, "%s.part", target) < 0 ? NULL : name;
+}
+
 static enum status fail_output(const struct output *output, struct error *error)
 {
     return fail(error, STATUS_SYSTEM, "%s: %s", output->name, strerror(errno));
 }
 
-static enum status open_temporary(struct output *output, const struct stat *present, struct error *error)
+/* Open a file of a new name, which is removed if the program ends before it is complete. */
+static int open_new(struct output *output)
 {
     static bool prepared;
-    output->temporary = temporary_name(output->target);
-    if (output->temporary == NULL) {
-        return fail_memory(error, output->name);
-    }
     if (!prepared) {
         atexit(remove_pending);
         prepared = true;
     }
     handle_signals();
-    output->descriptor = mkostemp(output->temporary, O_CLOEXEC);
+    int descriptor = mkostemp(output->temporary, O_CLOEXEC);
+    pending = descriptor >= 0 ? output->temporary : NULL;
+    return descriptor;
+}
+
+static enum status open_temporary(struct output *output, bool grows, const struct stat *present,
+                                  struct error *error)
+{
+    output->temporary = grows ? part_name(output->target) : temporary_name(output->target);
+    if (output->temporary == NULL) {
+        return fail_memory(error, output->name);
+    }
+    output->descriptor =
+        grows ? open(output->temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666)
+              : open_new(output);
     if (output->descriptor < 0) {
         return fail_output(output, error);
     }
-    pending = output->temporary;
     if (fchmod(output->descriptor, file_mode(present)) != 0) {
         return fail_output(output, error);
     }
@@ -100,7 +116,7 @@ static void abandon(struct output *output)
     *output = (struct output){.descriptor = -1, .name = output->name};
 }
 
-enum status output_open(struct output *output, const char *name, struct error *error)
+static enum status open_output(struct output *output, const char *name, bool grows, struct error *error)
 {
     struct stat present;
     enum status status = STATUS_OK;
@@ -115,11 +131,21 @@ enum status output_open(struct output *output, const char *name, struct error *e
     }
     output->target = exists ? realpath(name, NULL) : strdup(name);
     status = output->target == NULL ? fail_output(output, error)
-                                    : open_temporary(output, exists ? &present : NULL, error);
+                                    : open_temporary(output, grows, exists ? &present : NULL, error);
     if (status != STATUS_OK) {
         abandon(output);
     }
     return status;
+}
+
+enum status output_open(struct output *output, const char *name, struct error *error)
+{
+    return open_output(output, name, false, error);
+}
+
+enum status output_open_part(struct output *output, const char *name, struct error *error)
+{
+    return open_output(output, name, true, error);
 }
 
 enum status output_end(struct output *output, enum status status, struct error *error)

@@ -15,9 +15,20 @@ struct output {
  * at a time. */
 MUST_CHECK enum status output_open(struct output *output, const char *name, struct error *error);
 
+/* The same under the temporary name NAME.part, which stays if the program ends before output_end: for an
+ * output that grows while it is computed. */
+MUST_CHECK enum status output_open_part(struct output *output, const char *name, struct error *error);
+
 /* Close the output and rename the file to its target; if this or the writing (`status`) failed, remove it.
  * The message of a failure begins with the name. */
 MUST_CHECK enum status output_end(struct output *output, enum status status, struct error *error);
+
+/* Begin and end the output of a stream: tool->output, with `grows` as NAME.part, or standard output. Refuses
+ * to write binary to a terminal; reports delayed write errors. */
+MUST_CHECK enum status tool_output_open(const struct tool *tool, bool grows, struct output *output,
+                                        struct error *error);
+MUST_CHECK enum status tool_output_end(const struct tool *tool, struct output *output, enum status status,
+                                       struct error *error);
 
 /* The file to which a tool prints: its output file, or standard output; or writes by its descriptor. */
 struct target {

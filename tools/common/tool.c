@@ -287,20 +287,34 @@ void tool_write(const struct tool *tool, struct stream *stream)
     tool_copy(tool, stream);
 }
 
-static enum status write_output(const struct tool *tool, const struct stream *stream, struct error *error)
+enum status tool_output_open(const struct tool *tool, bool grows, struct output *output, struct error *error)
 {
-    struct output output;
     if (tool->output != NULL) {
-        RETURN_IF_ERROR(output_open(&output, tool->output, error));
-        return output_end(&output, stream_write(stream, output.descriptor, tool->text, error), error);
+        return grows ? output_open_part(output, tool->output, error)
+                     : output_open(output, tool->output, error);
     }
+    *output = (struct output){.descriptor = STDOUT_FILENO, .name = "standard output"};
     if (!tool->text && isatty(STDOUT_FILENO)) {
         return fail(error, STATUS_INPUT,
                     "no binary to a terminal: redirect it, name a file by -o, or ask for text");
     }
-    RETURN_IF_ERROR(
-        fail_in(error, stream_write(stream, STDOUT_FILENO, tool->text, error), "standard output"));
-    return close_stdout(error);
+    return STATUS_OK;
+}
+
+enum status tool_output_end(const struct tool *tool, struct output *output, enum status status,
+                            struct error *error)
+{
+    if (tool->output != NULL) {
+        return output_end(output, status, error);
+    }
+    return status != STATUS_OK ? fail_in(error, status, "%s", output->name) : close_stdout(error);
+}
+
+static enum status write_output(const struct tool *tool, const struct stream *stream, struct error *error)
+{
+    struct output output;
+    RETURN_IF_ERROR(tool_output_open(tool, false, &output, error));
+    return tool_output_end(tool, &output, stream_write(stream, output.descriptor, tool->text, error), error);
 }
 
 /* The first of several processes writes; all get its status. */
@@ -309,36 +323,6 @@ void tool_copy(const struct tool *tool, const struct stream *stream)
     struct error error = {""};
     enum status status = process_speaks() ? write_output(tool, stream, &error) : STATUS_OK;
     tool_check(tool, (enum status)ranks_most(process_ranks(), (int64_t)status), &error);
-}
-
-/* Open NAME.part for an incomplete result, beside a regular or new file, but not beside a device. */
-static int open_part(const char *output)
-{
-    struct stat present;
-    SCRATCH char *name = NULL;
-    if ((stat(output, &present) == 0 && !S_ISREG(present.st_mode)) ||
-        asprintf(&name, "%s.part", output) < 0) {
-        return -1;
-    }
-    return open(name, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-}
-
-void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason)
-{
-    struct error ignored;
-    if (!process_speaks()) {
-        return;
-    }
-    int descriptor = tool->output != NULL ? open_part(tool->output) : STDOUT_FILENO;
-    if (descriptor < 0 || (tool->output == NULL && !tool->text && isatty(STDOUT_FILENO))) {
-        return;
-    }
-    signal(SIGPIPE, SIG_IGN); /* exit with our own status */
-    tool_provenance(tool, stream);
-    if (stream_write_stopped(stream, reason, descriptor, tool->text, &ignored) == STATUS_OK) {
-        (void)fsync(descriptor);
-    }
-    close(descriptor);
 }
 
 int tool_end(const struct tool *tool)

@@ -116,10 +116,6 @@ void tool_write(const struct tool *tool, struct stream *stream);
 /* The same without a provenance line, for a change of only the form of a stream. */
 void tool_copy(const struct tool *tool, const struct stream *stream);
 
-/* Write an incomplete result (see stream_write_stopped) to standard output, or to the name of tool->output
- * with ".part" appended. Failures are ignored, as the program already ends with an error. */
-void tool_write_stopped(const struct tool *tool, struct stream *stream, const char *reason);
-
 /* Close standard output and report delayed write errors; for tools that print with stdio. Returns STATUS_OK,
  * or exits with 3. */
 int tool_end(const struct tool *tool);

@@ -198,7 +198,7 @@ enum status checkpoint_write(const char *file, bool keep_old, const struct strea
 
 enum status checkpoint_remove(const char *file, struct error *error)
 {
-    static const char *const endings[] = {".new", ".old", ""};
+    static const char *const endings[] = {".new", ".old", ".frames", ""};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         SCRATCH char *name = NULL;
         RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));

@@ -34,7 +34,7 @@ MUST_CHECK enum status checkpoint_fill(struct stream *stream, const struct check
 MUST_CHECK enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
                                         struct error *error);
 
-/* Remove FILE, FILE.old and FILE.new, as far as they exist. */
+/* Remove FILE, FILE.old, FILE.new and FILE.frames, as far as they exist. */
 MUST_CHECK enum status checkpoint_remove(const char *file, struct error *error);
 
 /* Where a checkpoint was found. */

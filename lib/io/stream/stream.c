@@ -190,13 +190,13 @@ enum status stream_append(struct stream *stream, const char *name, enum element_
 {
     /* Allocate all slots at once, as untouched zero pages: sections never move when others are added. */
     if (stream->sections == NULL) {
-        stream->sections = calloc(SECTION_LIMIT, sizeof *stream->sections);
+        stream->sections = calloc(STREAM_SECTION_LIMIT, sizeof *stream->sections);
         if (stream->sections == NULL) {
             return fail_memory(error, "sections");
         }
     }
-    if (stream->section_count == SECTION_LIMIT) {
-        return fail(error, STATUS_INPUT, "%s: more than %d sections", name, SECTION_LIMIT);
+    if (stream->section_count == STREAM_SECTION_LIMIT) {
+        return fail(error, STATUS_INPUT, "%s: more than %d sections", name, STREAM_SECTION_LIMIT);
     }
     struct section slot = {
         .name = strdup(name), .type = type, .rows = rows, .cols = cols, .attributes = strdup(attributes)};

@@ -9,6 +9,8 @@
 
 #define MTS_VERSION "0.1.0"
 
+enum { STREAM_SECTION_LIMIT = 1 << 14 }; /* sections of a stream */
+
 enum element_type { TYPE_I4, TYPE_I8, TYPE_F4, TYPE_F8 };
 
 /* One table: rows x cols elements, row-major, at least 8-byte aligned (64 when owned or mapped binary). */
@@ -56,10 +58,34 @@ MUST_CHECK enum status stream_recover(struct stream *stream, int descriptor, con
 MUST_CHECK enum status stream_write(const struct stream *stream, int descriptor, bool text,
                                     struct error *error);
 
-/* Write an incomplete stream: it ends with "# stopped REASON" in place of the end line, so that no reader
- * takes it for complete. */
-MUST_CHECK enum status stream_write_stopped(const struct stream *stream, const char *reason, int descriptor,
-                                            bool text, struct error *error);
+/* The same section by section, so that not all of them need be in memory at once. */
+struct stream_writer {
+    int descriptor;
+    bool text;
+    char *block;           /* bytes not yet written */
+    size_t held;           /* their number */
+    int64_t offset;        /* of the next byte, from the start of the stream */
+    int64_t section_count; /* so far */
+    unsigned long crc;     /* of the bytes outside the payloads */
+};
+
+/* Begin a stream, with the provenance of another one, unless that is NULL: then what is written continues one
+ * that has been begun before. To be freed, also on failure. */
+MUST_CHECK enum status stream_writer_begin(struct stream_writer *writer, int descriptor, bool text,
+                                           const struct stream *provenance, struct error *error);
+void stream_writer_free(struct stream_writer *writer);
+
+/* Append section i of a stream; release its pages, if it is in a mapped input. */
+MUST_CHECK enum status stream_writer_put(struct stream_writer *writer, const struct stream *stream, int64_t i,
+                                         struct error *error);
+
+/* Write what has been appended so far. */
+MUST_CHECK enum status stream_writer_flush(struct stream_writer *writer, struct error *error);
+
+/* End the stream. Where `stopped` is not NULL it is incomplete for this reason: it ends with "# stopped
+ * REASON" in place of the end line, so that no reader takes it for complete. */
+MUST_CHECK enum status stream_writer_end(struct stream_writer *writer, const char *stopped,
+                                         struct error *error);
 
 /* Write the rows of one section as bare text: a line per row, single blanks between the numbers. */
 MUST_CHECK enum status stream_write_rows(const struct section *section, int descriptor, struct error *error);

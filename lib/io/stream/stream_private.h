@@ -9,14 +9,13 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "binary payloads are little-endian and used in place");
 
 enum {
-    NAME_LIMIT = 127,        /* bytes of a section's name */
-    KEY_LIMIT = 63,          /* bytes of an attribute's key */
-    LINE_LIMIT = 1 << 20,    /* bytes of a header or provenance line with its newline */
-    COLUMN_LIMIT = 1 << 20,  /* columns of a section */
-    SECTION_LIMIT = 1 << 14, /* sections of a stream */
-    NUMBER_LIMIT = 2048,     /* bytes of a number in text */
-    PAYLOAD_ALIGNMENT = 64,  /* of a binary payload, from the start of the stream */
-    BLOCK_SIZE = 1 << 20     /* bytes read or written at once */
+    NAME_LIMIT = 127,       /* bytes of a section's name */
+    KEY_LIMIT = 63,         /* bytes of an attribute's key */
+    LINE_LIMIT = 1 << 20,   /* bytes of a header or provenance line with its newline */
+    COLUMN_LIMIT = 1 << 20, /* columns of a section */
+    NUMBER_LIMIT = 2048,    /* bytes of a number in text */
+    PAYLOAD_ALIGNMENT = 64, /* of a binary payload, from the start of the stream */
+    BLOCK_SIZE = 1 << 20    /* bytes read or written at once */
 };
 
 /* stream.c: bounds that hold for every section, whether read or put. */

@@ -1,7 +1,5 @@
 #include "run/run.h"
 
-#include "io/stream/sections.h"
-
 #include <stdarg.h>
 
 static void show_progress(struct display *display, const struct progress *progress)
@@ -23,6 +21,9 @@ bool run_progress(void *context, const struct progress *progress)
 {
     struct run *run = context;
     show_progress(&run->display, progress);
+    if (run->again) {
+        return false;
+    }
     run_folds_check(run, progress->u, progress->time, false);
     run_stability_follow(run, progress);
     return run_checkpoint_step(run, progress);
@@ -35,21 +36,8 @@ void run_clear_progress(const struct display *display)
     }
 }
 
-/* The number that follows that of the last frame. */
-static int64_t next_frame(const struct stream *stream)
-{
-    char name[40];
-    for (int64_t number = 1;; number++) {
-        snprintf(name, sizeof name, "u.frame.%lld", (long long)number);
-        if (stream_find(stream, name) == NULL) {
-            return number;
-        }
-    }
-}
-
 void run_fail(struct run *run, enum status status, const char *format, ...)
 {
-    const struct scene_output *output = &run->scene->output;
     struct error reason;
     char text[sizeof reason.text], folds[sizeof reason.text] = "";
     va_list values;
@@ -65,13 +53,7 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
          in_part ? ": let all of it touch (facets = *, against = *)" : "");
     tool_note(run->tool, "%s", reason.text);
     (void)process_fails_alone(); /* the others wait while the first one writes */
-    if (output->frames > 0 || output->interval > 0.0) {
-        if (run->last_good >= 0.0) {
-            run_put_frame(run, next_frame(run->stream), run->last_good, run->u);
-        }
-        sections_remove(run->stream, MADE_WITH_POINTS, MADE_WITH_SHAPES);
-        tool_write_stopped(run->tool, run->stream, reason.text);
-    }
+    run_frames_stop(run, reason.text);
     tool_exit(status);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "comparison.h"
+#include "output.h"
 #include "model/model.h"
 #include "parts/parts_input.h"
 #include "process.h"
@@ -33,6 +34,18 @@ struct run_checkpoint {
     const volatile sig_atomic_t *interrupted; /* number of the signal, or 0 */
     enum status status;                       /* of writing when interrupted */
     struct error error;
+};
+
+/* The frames, which are written as they come. */
+struct run_frames {
+    bool are_given;
+    int64_t next;                /* the number of the first one that is not yet written */
+    int64_t written;             /* how many sections of run->stream are */
+    struct output output;        /* to which they are, */
+    struct stream_writer writer; /* by this writer */
+    char *kept_file;             /* FILE.frames of -c FILE, which has them as well; or NULL */
+    struct stream_writer kept;
+    int64_t kept_bytes, kept_sections;
 };
 
 /* Consecutive searches that find a fold. */
@@ -94,6 +107,7 @@ struct run {
     struct stream *stream; /* receives what the scene's [output] requests */
     struct display display;
     struct run_checkpoint checkpoint;
+    struct run_frames frames;
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
@@ -112,7 +126,7 @@ bool run_progress(void *context, const struct progress *progress);
 void run_clear_progress(const struct display *display);
 
 /* End the run without result: print a message and exit with `status`, see tool_fail. If the scene requests
- * frames, those so far and the last good state are written as an incomplete stream. */
+ * frames, the last good state follows those so far, and the stream says that it is incomplete. */
 _Noreturn void run_fail(struct run *run, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -162,13 +176,37 @@ void run_sliding_judge(const struct run *run);
 /* Dynamic: step to the end time. Exits with a verdict if this fails; adds the section energy on request. */
 void run_dynamic(struct run *run);
 
-/* A frame_function; the context is the struct run: adds the sections u.frame.NUMBER and
+/* A frame_function; the context is the struct run: writes the sections u.frame.NUMBER and
  * parameters.frame.NUMBER. */
 void run_put_frame(void *context, int64_t number, double time, const double *u);
 
 /* The same for a state of equilibrium, run->u, at which the system was evaluated last, with all output of the
  * scene: sections X.frame.NUMBER, and a row of reactions.frames and energy.frames. */
 void run_put_equilibrium(void *context, int64_t number, double time, const double *u);
+
+/* ---- frames: written as they come ---- */
+
+/* Exits where a stream cannot hold as many frames as the scene asks for; before the run. */
+void run_frames_check(const struct run *run);
+
+/* Before the first step, if the scene asks for frames: begin the output, with those of a checkpoint. */
+void run_frames_begin(struct run *run);
+
+/* Write the sections of frame `number`, unless they have been written before the run began anew or it is to
+ * (run_folds_let_touch), and remove them from run->stream. Collective. */
+void run_frames_write(struct run *run, int64_t number);
+
+/* Write the final state, as run->stream has it, and end the output. */
+void run_frames_end(struct run *run);
+
+/* End the output as incomplete, with the last good state. Failures are ignored, as the program already ends
+ * with an error. */
+void run_frames_stop(struct run *run, const char *reason);
+void run_frames_free(struct run *run);
+
+/* What has been written, as state of the run; make it reach the disk. */
+MUST_CHECK enum status run_frames_state(struct run *run, const struct state *state, struct error *error);
+MUST_CHECK enum status run_frames_sync(const struct run *run, struct error *error);
 
 /* Whether a section of this name belongs to the frames. */
 bool run_is_of_frames(const char *name);
@@ -195,6 +233,9 @@ struct moment {
     double time;
 };
 
+/* Add the field of parameters u at the nodes, and these. */
+void run_put_field(const struct run *run, const struct moment *moment, const double *u);
+
 /* Append a row, the time and values[count], which are freed, to the table over frames in section `name`. */
 void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
                     const char *attributes);
@@ -212,8 +253,8 @@ void run_put_results(struct run *run);
 
 /* ---- checkpoints ---- */
 
-/* Before the first step: catch signals, and read the checkpoint file, if there is one; its frames are put
- * into run->stream. The model must be built. Exits if the file is of another run. */
+/* Before the first step: catch signals, and read the checkpoint file, if there is one; its tables of frames
+ * are put into run->stream. The model must be built. Exits if the file is of another run. */
 void run_checkpoint_begin(struct run *run);
 
 /* The state from which the run continues, or NULL. */
@@ -259,8 +300,8 @@ bool run_folds_touch_in_part(const struct run *run);
 /* Forget what was seen. */
 void run_folds_forget(struct run *run);
 
-/* Whether parts of the boundary have passed through each other, and contact would hold them apart: notes so,
- * and the run is to end without a verdict (run->again). */
+/* Whether parts of the boundary have passed through each other, and contact would hold them apart: notes so
+ * once, and the run is to end without a verdict (run->again). */
 bool run_folds_let_touch(struct run *run);
 
 /* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to

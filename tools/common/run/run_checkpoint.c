@@ -37,8 +37,8 @@ static void share(const struct run *run, struct stream *stream, const struct sec
                                    section->attributes, section->data, false, &error));
 }
 
-/* Copy the frames of the restored run into the stream. */
-static void take_frames(struct run *run)
+/* Copy the tables of frames of the restored run into the stream. */
+static void take_tables(struct run *run)
 {
     const struct stream *restored = &run->checkpoint.restored;
     for (int64_t i = 0; i < restored->section_count; i++) {
@@ -76,6 +76,14 @@ static void compare_processes(const struct run *run)
     }
 }
 
+/* The state of this program, without what a model must be built for. */
+static enum status visit_own(struct run *run, const struct state *state, struct error *error)
+{
+    const struct state_value value = {"touches_itself", STATE_FLAGS, &run->touches_itself, 1};
+    RETURN_IF_ERROR(state_visit(state, NULL, &value, 1, error));
+    return run_frames_state(run, state, error);
+}
+
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -95,11 +103,9 @@ static void resume(struct run *run)
     checkpoint->state = checkpoint_state(&checkpoint->restored);
     checkpoint->is_restored = true;
     checkpoint->is_ours = source == CHECKPOINT_NEWEST;
-    take_frames(run);
-    bool touches_itself = false;
-    const struct state_value value = {"touches_itself", STATE_FLAGS, &touches_itself, 1};
-    TOOL_TRY(run->tool, state_visit(&checkpoint->state, NULL, &value, 1, &error));
-    if (touches_itself) {
+    take_tables(run);
+    TOOL_TRY(run->tool, visit_own(run, &checkpoint->state, &error));
+    if (run->touches_itself) {
         run_touch_itself(run);
     }
 }
@@ -130,7 +136,8 @@ const struct state *run_checkpoint_state(const struct run *run)
     return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
 }
 
-/* Put sections for viewing the checkpoint: the cloud, the frames so far, and the field at this step. */
+/* Put sections for viewing the checkpoint: the cloud, and the field at this step; and the tables of frames.
+ */
 static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
 {
     static const char *const names[] = {"nodes.x", "cells", "cells.region"};
@@ -160,11 +167,10 @@ struct whole_state {
 static enum status visit_whole(void *owner, const struct state *state, struct error *error)
 {
     const struct whole_state *whole = owner;
-    const struct state_value value = {"touches_itself", STATE_FLAGS, &whole->run->touches_itself, 1};
     RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
     RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
     RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
-    return state_visit(state, NULL, &value, 1, error);
+    return visit_own(whole->run, state, error);
 }
 
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
@@ -174,6 +180,7 @@ static enum status write_now(struct run *run, const struct progress *progress, s
     enum status status;
     put_view(run, progress, &stream);
     struct whole_state whole = {run, progress};
+    TRY(run_frames_sync(run, error));
     TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
     TRY(checkpoint_write(checkpoint->file, checkpoint->is_ours, &stream, error));
     checkpoint->is_ours = true;
@@ -196,6 +203,10 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
     if (checkpoint->status != STATUS_OK && !interrupted) {
         run_clear_progress(&run->display);
         if (is_first) { /* fail now rather than when the checkpoint is needed */
+            struct error unused;
+            enum status ignored =
+                checkpoint->is_restored ? STATUS_OK : checkpoint_remove(checkpoint->file, &unused);
+            (void)ignored;
             return checkpoint->status;
         }
         tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",

@@ -22,7 +22,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     double largest_move = field_largest(system->node_count, system->dim, run->u);
     bool inverted = report->outcome == DYNAMICS_INVERTED;
     char place[96];
-    if (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run)) {
+    if (run->again || (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run))) {
         return;
     }
     point_text(scene->dim,

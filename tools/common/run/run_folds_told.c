@@ -153,6 +153,9 @@ bool run_folds_let_touch(struct run *run)
 {
     char text[400];
     bool whole;
+    if (run->again) {
+        return true;
+    }
     if (run->scene->output.folds_allowed || count_touching(run->scene, &whole) > 0 || !is_crossed(run) ||
         is_through_support(run)) {
         return false;

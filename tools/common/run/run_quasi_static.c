@@ -11,7 +11,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "", load[48] = "";
-    if (report->outcome != RELAXATION_STOPPED && run_folds_let_touch(run)) {
+    if (run->again || (report->outcome != RELAXATION_STOPPED && run_folds_let_touch(run))) {
         return;
     }
     if (report->load < 1.0) {

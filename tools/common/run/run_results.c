@@ -23,8 +23,7 @@ static void put(const struct run *run, const struct moment *moment, const char *
     run_put(run, full, rows, cols, timed, values);
 }
 
-/* Put the field at the nodes, and its parameters. */
-static void put_field(const struct run *run, const struct moment *moment, const double *u)
+void run_put_field(const struct run *run, const struct moment *moment, const double *u)
 {
     int dim = run->scene->dim;
     int64_t nodes = run->model->system.node_count;
@@ -55,8 +54,9 @@ void run_put_supports(const struct run *run)
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
-    put_field(run, &(struct moment){number, time}, u);
+    run_put_field(run, &(struct moment){number, time}, u);
     run_folds_check(run, u, time, true);
+    run_frames_write(run, number);
 }
 
 bool run_is_of_frames(const char *name)
@@ -237,10 +237,12 @@ static void put_state(struct run *run, const struct moment *moment)
 void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
-    run_put_frame(run, number, time, u);
+    run_put_field(run, &(struct moment){number, time}, u);
+    run_folds_check(run, u, time, true);
     run_stability_check(run, time);
     run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
     put_state(run, &(struct moment){number, time});
+    run_frames_write(run, number);
 }
 
 void run_put_results(struct run *run)
@@ -251,5 +253,5 @@ void run_put_results(struct run *run)
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
     put_state(run, &(struct moment){.frame = FRAME_NONE});
-    put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
+    run_put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
 }
