@@ -9,7 +9,7 @@ nifti.py moved SCAN RESULT     rms error of the moved test image, and that of th
 nifti.py fields TO BACK        largest distance from x of the place that TO and then BACK lead to, in voxels, inside the cube
 nifti.py volumes FILE          label and ml
 nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, as NIfTI-2, big-endian, of 4 dimensions, with a NaN, a middle slice
-nifti.py value FILE I J K      the value of a voxel
+nifti.py value FILE I J K ...   the values of voxels, a line each
 """
 
 import sys
@@ -214,11 +214,12 @@ def change(source, path, what):
     nib.save(image, path)
 
 
-def value(path, i, j, k):
+def value(path, *voxels):
     image = nib.load(path)
     values = image.get_fdata()
-    value = values.reshape(values.shape + (1,) * (3 - values.ndim))[int(i), int(j), int(k)]
-    print(*["%.9g" % v for v in np.atleast_1d(value).ravel()])
+    values = values.reshape(values.shape + (1,) * (3 - values.ndim))
+    for voxel in range(0, len(voxels), 3):
+        print(*["%.9g" % v for v in np.atleast_1d(values[tuple(map(int, voxels[voxel : voxel + 3]))]).ravel()])
 
 
 if __name__ == "__main__":
