@@ -159,7 +159,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
         mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts
         cmp <(bare one.dat) <(bare two.dat)
     fi
-    sed -i 's/^\[solver\]/&\nramp_steps = 6000/' run.scene
+    sed -i 's/^\[solver\]/&\nramp_steps = 2000/' run.scene
     mtled run.scene table.mts > whole.dat
     begin_and_end TERM run.scene
     [ $status -eq 143 ]
@@ -224,23 +224,24 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\n[solver]\nramp_steps = 3000/' > run.scene
     cp stack.mts table.mts
     mtled run.scene table.mts > whole.dat 2> note
-    rm -f run.ckpt*
-    mtled -c run.ckpt -o out.dat run.scene table.mts 2> said &
-    for ((i = 0; i < 2400; i++)); do
-        ! grep -q 'once more' said || break
-        sleep 0.05
+    for _ in 1 2 3 4 5; do # on a busy machine it may be over before that is seen
+        mtled -c run.ckpt -o out.dat run.scene table.mts 2> said 3>&- &
+        while [ -n "$(jobs -rp)" ] && ! grep -q 'once more' said; do sleep 0.02; done
+        kill -TERM $! 2> note || true
+        status=0
+        wait $! || status=$?
+        [ $status -eq 0 ] || break
     done
-    grep -q 'once more' said
-    kill -TERM $!
-    wait $! && false || [ $? -eq 143 ]
+    [ $status -eq 143 ]
     run -0 --separate-stderr mtled -c run.ckpt -o out.dat run.scene table.mts
     [[ $stderr == "mtled: going on from step "* && $stderr != *"once more"* ]]
     cmp whole.dat out.dat
     if [ -x "$BUILD/bin/mtled-mpi" ]; then
         export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts 2> note
+        sed '/^ramp_steps/d' run.scene > short.scene
+        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat short.scene table.mts 2> note
         [ "$(grep -c 'once more' note)" -eq 1 ]
-        cmp <(bare whole.dat) <(bare two.dat)
+        mtled short.scene table.mts 2> note | cmp <(bare two.dat) <(bare)
     fi
 }
 
