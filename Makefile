@@ -12,7 +12,7 @@
 #   gallery  liver  phantom     examples that others can judge, with pictures
 #   convergence  speed-error    error against mesh size, and against time, beside mixed elements and CalculiX
 #   uncertainty                 brain shift with uncertain stiffness; cases of a table: pipelines/sweep
-#   scale                       time, bytes and memory of each stage for a node; a body in parts
+#   scale                       time, bytes and memory of each stage for a node
 #   adaptive                    what the estimate of the discretisation error is worth; graded meshes against even ones
 #   bench  estimate             speed of the kernels; what the estimate of the iteration's error is worth
 # make refine SCENE=... GEO=... TOL=0.1mm    a scene of your own, on meshes refined where it must be (pipelines/refine.mk)
@@ -44,8 +44,6 @@ SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize
 CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -linih -lz -lm
-# What lib/approx/partition/partition_metis.c takes, for the programs that cut bodies.
-$(BUILD)/bin/part $(BUILD)/tests/partition: LDLIBS += -lmetis
 
 LIBRARY := $(BUILD)/libmtled.a
 LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c lib/*/*/*.c))

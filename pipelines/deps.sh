@@ -1,6 +1,6 @@
 #!/bin/bash
 # Install what the project needs and what is missing. Quick and silent when nothing is. Programs may come from any
-# package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package. METIS cuts bodies (part), and
+# package (gnuplot-qt is as good as gnuplot-nox, which would push it out); libraries are asked for by package.
 # Open MPI is for mtled in several processes (make mpi).
 # CalculiX and FreeFEM (with a BLAS that does it justice) are for comparison only: the studies need them, no program does. Python's
 # are for the tests, which read what tovtk and warp write; plastimatch applies a field of warp to a scan. mricron-data has the scan of a
@@ -23,7 +23,7 @@ fuzz)
 *)
     programs=(gcc:gcc make:make pkg-config:pkg-config gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx
         FreeFem++-nw:freefem++ bats:bats shellcheck:shellcheck plastimatch:plastimatch mpirun:openmpi-bin)
-    libraries=(libgsl-dev libinih-dev zlib1g-dev libmetis-dev libopenmpi-dev libcmocka-dev libfreefem++ libopenblas0-serial
+    libraries=(libgsl-dev libinih-dev zlib1g-dev libopenmpi-dev libcmocka-dev libfreefem++ libopenblas0-serial
         python3-numpy python3-vtk9 python3-meshio python3-nibabel mricron-data)
     ;;
 esac

@@ -16,7 +16,7 @@ RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d
     adaptive/refinement=refinement adaptive/reach=refinement-reach adaptive/unattended=unattended neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes neurosurgery/rounds=neurosurgery-rounds \
     neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/64000/pipe=scale-64000 scale/1000000/pipe=scale-1000000 scale/brain-64000/pipe=scale-brain-64000 \
-    scale/brain-1000000/pipe=scale-brain-1000000 scale/parts=scale-parts scale/model=scale-model \
+    scale/brain-1000000/pipe=scale-brain-1000000 \
     voxels/voxels=voxels voxels/meshes=voxels-meshes neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results

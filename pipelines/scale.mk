@@ -1,19 +1,15 @@
-# make scale: what each stage of the pipe costs for each node (time, bytes, memory) on cubes of ten and a hundred thousand nodes; halos of a
-# body in parts; time of an evaluation on up to 1 024 processes, by a model
+# make scale: what each stage of the pipe costs for each node (time, bytes, memory) on cubes of ten and a hundred thousand nodes
 #
-# Everything lies in build/out/scale: stages.tsv, parts.tsv, model.tsv. `make scale NODES=1000000` does something else: the whole pipe on a cube of
+# The table is build/out/scale/stages.tsv. `make scale NODES=1000000` does something else: the whole pipe on a cube of
 # so many nodes, to the displacements, in build/out/scale/NODES/pipe.tsv, with all processors (OMP_NUM_THREADS); `make scale BRAIN=1000000` does so on
 # the whole brain with its skull, in build/out/scale/brain-NODES. A million nodes take 12 GB of disk, 16 GB of memory.
 SCALE := $(OUT)/scale
 SCALE_SIZES ?= 22 47
-SCALE_PARTS ?= 2 4 8 16 32 64 128 256 512 1024
-# Nodes along an edge of the cube that is cut: a million take minutes.
-SCALE_CUT ?= 100
 SCALE_SCRIPTS := pipelines/scale
-SCALE_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn mtled part)
+SCALE_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn mtled)
 
 .PHONY: scale
-scale: $(if $(NODES)$(BRAIN),$(NODES:%=$(SCALE)/%/pipe.tsv) $(BRAIN:%=$(SCALE)/brain-%/pipe.tsv),$(SCALE)/stages.tsv $(SCALE)/parts.tsv $(SCALE)/model.tsv)
+scale: $(if $(NODES)$(BRAIN),$(NODES:%=$(SCALE)/%/pipe.tsv) $(BRAIN:%=$(SCALE)/brain-%/pipe.tsv),$(SCALE)/stages.tsv)
 	@for table in $^; do awk -F '\t' '{ for (i = 1; i <= NF; i++) printf "%-" (i == 1 ? 21 : 14) "s ", $$i; print "" }' \
 	    $$table; echo; done
 
@@ -35,17 +31,6 @@ $(SCALE)/brain-%/pipe.tsv: $(SCALE_SCRIPTS)/pipe.sh $(SCALE_SCRIPTS)/measured.py
 	bash $< $* $(@D) examples/brain3d
 	$(SCALE_PIPE)
 
-# Wider supports are not asked for: the halo is that of an evaluation.
-$(SCALE)/cut.mts: $(BUILD)/bin/cloud
-	@mkdir -p $(@D)
-	cloud -d 3 -k jittered --jitter 0.15 -n $(SCALE_CUT) --box 0,0.1,0,0.1,0,0.1 -o $@
-
-$(SCALE)/parts.tsv: $(SCALE)/cut.mts $(BUILD)/bin/part
-	(for parts in $(SCALE_PARTS); do part -k $$parts -w 1 -v $< 2>&1; done) | awk '!/^parts/ || NR == 1' > $@
-
 $(SCALE)/stages.tsv: $(SCALE_SIZES:%=$(SCALE)/%.rows)
 	(printf 'stage\tnodes\tus_per_node\tB_written\tB_peak\tB_not_mapped\tGB_not_mapped\n'; \
 	    cat $^) > $@
-
-$(SCALE)/model.tsv: $(SCALE_SCRIPTS)/model.awk $(SCALE)/stages.tsv $(SCALE)/parts.tsv
-	awk -f $^ > $@

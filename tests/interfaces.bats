@@ -85,29 +85,17 @@ even() {
     [ "$status" -eq 1 ]
 }
 
-@test "any number of threads, a stream or a file, parts and whole: the same bytes; -i none: none of it" {
+@test "any number of threads, a stream or a file: the same bytes; -i none: none of it" {
     layers
     ipoints body.mts > points.mts
     OMP_NUM_THREADS=1 support -i middle,right points.mts | mts text | bare > one.txt
     OMP_NUM_THREADS=3 support -i middle,right < points.mts | mts text | bare > three.txt
     cmp one.txt three.txt
-    part -k 2 -o part.%d.mts body.mts
-    for k in 0 1; do
-        ipoints part.$k.mts | support -i middle,right > cut.$k.mts
-        mts check cut.$k.mts
-    done
-    unpart cut.?.mts | mts text | bare > joined.txt
-    cmp one.txt joined.txt
     support -i left,middle,right points.mts | mts text | bare > all.txt
     support points.mts | mts text | bare | cmp - all.txt
     support -i none points.mts | mts text | bare > plain.txt
     [ "$(rows support.side plain.txt | wc -l)" -eq 0 ]
     support -i middle,right points.mts | support -i none | mts text | bare | cmp - plain.txt
-    # A result keeps its sides in parts.
-    scene xmin,ymin ymax -0.006 > body.scene
-    through -i middle
-    part -k 2 -o result.%d.mts u.dat 2> left_out
-    unpart result.?.mts | mts print parameters.side - | cmp - <(mts print parameters.side u.dat)
 }
 
 @test "Gauss points see one side as well" {
@@ -165,7 +153,7 @@ even() {
 }
 
 # In 3D faces between cells share points at the middles of edges; those at an interface do not.
-@test "in 3D: layers in series, exact in every cell; parts and whole, again and anew: the same bytes" {
+@test "in 3D: layers in series, exact in every cell; again and anew: the same bytes" {
     cloud -d 3 -k jittered -n 8,5,5 --jitter 0.15 --seed 2 --box 0,0.14,0,0.08,0,0.08 > cloud.mts
     mts text cloud.mts | awk '
         # cells on either side of the lattice plane x = 0.06
@@ -191,9 +179,6 @@ even() {
     support -i none points.mts | mts text | bare > plain.txt
     support -i stiff points.mts | support -i none | mts text | bare | cmp - plain.txt
     support points.mts | support -i stiff | mts text | bare | cmp - one.txt
-    part -k 2 -o part.%d.mts body.mts
-    for k in 0 1; do ipoints part.$k.mts | support -i stiff > cut.$k.mts; done
-    unpart cut.?.mts | mts text | bare | cmp - one.txt
 }
 
 @test "regions of single cells, slivers among them: their supports reach across" {

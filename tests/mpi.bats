@@ -1,4 +1,4 @@
-# mtled-mpi: several processes under mpirun give the bytes of one, of one stream or of parts; one message, one status; a process that
+# mtled-mpi: several processes under mpirun give the bytes of one, of one stream; one message, one status; a process that
 # dies loses little.
 
 load common.bash
@@ -35,27 +35,6 @@ same() {
     for count in $1; do
         processes "$count" -q -o many.dat "$2" table.mts 2> many.said
         cmp one.dat many.dat
-        cmp one.said many.said
-        rm many.dat
-    done
-}
-
-# in_parts COUNT FILE OPTIONS OF shapefn: the cloud in so many parts, part.0.mts and on, each with its own tables.
-in_parts() {
-    rm -f part.*
-    part -k "$1" -o part.%d.mts "$2"
-    for ((k = 0; k < $1; k++)); do
-        shapefn "${@:3}" -o table.new part.$k.mts 2> note
-        mv table.new part.$k.mts
-    done
-}
-
-# same_of_parts COUNTS SCENE: what so many processes make of part.%d.mts is what one makes of table.mts, but for how that was made.
-same_of_parts() {
-    mtled -q -o one.dat "$2" table.mts 2> one.said
-    for count in $1; do
-        processes "$count" -q -o many.dat "$2" part.%d.mts 2> many.said
-        cmp <(bare one.dat) <(bare many.dat)
         cmp one.said many.said
         rm many.dat
     done
@@ -122,14 +101,11 @@ SCENE
     same '1 2 3 7' run.scene
 }
 
-@test "the same in 3D with every load, near incompressibility; in 8 parts" {
-    cube 6 > cube.mts
-    shapefn cube.mts > table.mts 2> note
+@test "the same in 3D with every load, near incompressibility" {
+    cube 6 | shapefn > table.mts 2> note
     every_load > run.scene
     same '2 4' run.scene
     OMP_WAIT_POLICY=active same 2 run.scene # processes that wait do so at work
-    in_parts 8 cube.mts
-    same_of_parts '1 3 7' run.scene
 }
 
 @test "the same of a rod with slow modes" {
@@ -138,39 +114,15 @@ SCENE
     same 2 rod.scene
 }
 
-@test "parts: a brain section in 8 and 64, by 1, 2, 3, 4 and 7 processes, and by mtled" {
+@test "the same of a brain section with contact, of a stream as text, and of tables that mtled makes itself" {
     cp "$BATS_TEST_DIRNAME"/../examples/brain2d/{brain2d.geo,brain2d.scene,load.tsv,skull.tsv} .
     gmsh -2 -v 1 brain2d.geo -setnumber lc 9 -o brain.msh
     nodes -u mm brain.msh > brain.mts
-    shapefn brain.mts > table.mts 2> note
-    in_parts 64 brain.mts
-    same_of_parts '2 4 7' brain2d.scene
-    in_parts 8 brain.mts
-    same_of_parts '1 3' brain2d.scene
-    mtled -q -o alone.dat brain2d.scene part.%d.mts
-    cmp <(bare one.dat) <(bare alone.dat)
-    # The operand is not told of: the input is the same, whatever it is called.
-    ! grep -q '^# @ mtled.*part' alone.dat
-}
-
-@test "parts: in time with gravity; Gauss points; tables that mtled makes itself" {
-    cube 5 > cube.mts
-    shapefn cube.mts > table.mts 2> note
-    { swinging_block | sed 's/^dim = 2/dim = 3/; s/^gravity.*/gravity = 0, 0, -9.81/; s/ymin/zmin/; s/components = 0, 0/&, 0/'
-        printf '[output]\nframes = 3\nenergy = yes\nstrain = yes\n'; } > run.scene
-    in_parts 4 cube.mts
-    same_of_parts '3' run.scene
-    part -k 2 -o part.%d.mts cube.mts
-    mtled -q -o one.dat run.scene table.mts
-    processes 2 -q -o many.dat run.scene part.%d.mts 2> said
+    shapefn -t brain.mts > table.mts 2> note
+    same '7' brain2d.scene
+    processes 2 -q -o many.dat brain2d.scene brain.mts 2> said
     [ "$(wc -l < said)" -eq 1 ]
     cmp <(bare one.dat) <(bare many.dat)
-    ipoints -g 4 cube.mts | shapefn > table.mts 2> note
-    for k in 0 1; do
-        ipoints -g 4 part.$k.mts | shapefn > table.new 2> note
-        mv table.new part.$k.mts
-    done
-    same_of_parts '2' run.scene
 }
 
 # one_line STATUS TEXT COMMAND...: that status, nothing on standard output, that one line.
@@ -182,93 +134,16 @@ one_line() {
         { echo "status $status: $stderr"; return 1; }
 }
 
-@test "parts that do not belong together or are not whole: one line, soon" {
-    cloud -d 2 -k jittered -n 10 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
-    pressed_block > block.scene
-    in_parts 4 square.mts
-    cp part.2.mts whole.mts
-    SECONDS=0
-    refused_part() { # TEXT: by the process that reads it, and by others
-        one_line 2 "$1" processes 2 -q block.scene part.%d.mts
-        cp whole.mts part.2.mts
-    }
-    rm part.2.mts
-    refused_part "part.2.mts: part 2 of 4 is missing"
-    cp part.0.mts first.mts
-    mts text first.mts | sed 's/parts=4/parts=1000000/' > part.0.mts
-    refused_part "part.999999.mts: part 999999 of 1000000 is missing"
-    mv first.mts part.0.mts
-    cp part.1.mts part.2.mts
-    refused_part "part.1.mts and part.2.mts are the same part, 1"
-    head -c 5000 whole.mts > part.2.mts
-    refused_part "part.2.mts: "
-    part -k 4 -w 2 -o other.%d.mts square.mts
-    shapefn -o part.2.mts other.2.mts 2> note
-    refused_part "part.0.mts and part.2.mts are parts of different cuts: cut again"
-    part -k 4 -o other.%d.mts square.mts
-    cp other.2.mts part.2.mts
-    refused_part "part.2.mts: no section points.x, but in part.0.mts: run the same stages on all parts"
-    shapefn -b mls1 -o part.2.mts other.2.mts 2> note
-    refused_part "part.2.mts: support.radius: not made as in part.0.mts: run the same stages on all parts"
-    mts text whole.mts | sed 's/^# @ shapefn [^ ]*/# @ shapefn 0.0.1/' > part.2.mts
-    refused_part "part.0.mts and part.2.mts were made by different versions of shapefn: make them again"
-    cp square.mts part.2.mts
-    refused_part "part.2.mts: no section part.node: not a part of a body"
-    mts text whole.mts | awk '/^# / { on = $2 == "edge.phi" } !/^#/ && NF && on { $1 = $1 * 1.01 } { print }' > part.2.mts
-    refused_part "not the shape functions at this edge: run shapefn again"
-    entries=$(mts print edge.ptr whole.mts | sed -n 21p)
-    mts text whole.mts | awk -v n="$entries" '
-        /^# / { on = $2; if (on ~ /^edge\.(idx|phi)$/) { sub(" " $4 " ", " " ($4 - n) " "); left = n } print; next }
-        NF && on == "edge.ptr" { print ($1 > n ? $1 - n : 0); next }
-        NF && on ~ /^edge\.(idx|phi)$/ && left-- > 0 { next }
-        { print }' > part.2.mts
-    refused_part "not the shape functions at this edge: run shapefn again"
-    mts text whole.mts | awk '/^# / { on = $2 == "edge.idx" } !/^#/ && NF && on && n++ == 50 { $1 = 900000 } { print }' > part.2.mts
-    refused_part "part.2.mts: edge.idx: row 50: no node 900000"
-    one_line 2 "5 processes for 4 parts: take fewer (mpirun -n), or cut more parts" processes 5 block.scene part.%d.mts
-    one_line 2 "part.%d.%d: has to have one %d" processes 2 block.scene part.%d.%d
-    one_line 2 "none.0.mts: No such file" processes 2 block.scene none.%d.mts
-    cp square.mts lone.0.mts
-    one_line 2 "lone.0.mts: no section part.node: not a part of a body" processes 2 block.scene lone.%d.mts
-    one_line 2 "the input is one part of a body: name all, as part.%d.mts" processes 2 block.scene part.1.mts
-    part -k 4 -w 1 -o part.%d.mts square.mts
-    for k in 0 1 2 3; do
-        support -k 5 part.$k.mts 2> note | shapefn > table.new
-        mv table.new part.$k.mts
-    done
-    one_line 2 "a neighbour at the edge of the halo: cut again with a wider one (part -w, now 1)" processes 3 block.scene part.%d.mts
-    [ $SECONDS -lt 100 ] # no process has waited for another that was gone
-}
-
 @test "a full disk on one process: one line at once, nothing half-written" {
-    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
     pressed_block > block.scene
-    in_parts 3 square.mts
-    one_line 3 'No space left on device' processes 3 -o /dev/full block.scene part.%d.mts
-    one_line 2 '/dev/full: is no regular file' processes 3 -c /dev/full block.scene part.%d.mts
-    one_line 3 'nowhere/run.ckpt.new: No such file' processes 3 -c nowhere/run.ckpt block.scene part.%d.mts
+    one_line 3 'No space left on device' processes 3 -o /dev/full block.scene table.mts
+    one_line 2 '/dev/full: is no regular file' processes 3 -c /dev/full block.scene table.mts
+    one_line 3 'nowhere/run.ckpt.new: No such file' processes 3 -c nowhere/run.ckpt block.scene table.mts
     printf 'trap "" XFSZ\nulimit -f 8\nexec mtled-mpi "$@"\n' > full.sh
     one_line 3 'run.ckpt.new: cannot write: File too large' mpirun --quiet --mca btl self,tcp --oversubscribe --bind-to none \
-        -n 1 bash full.sh -c run.ckpt -o out.dat block.scene part.%d.mts : -n 2 mtled-mpi -c run.ckpt -o out.dat block.scene part.%d.mts
+        -n 1 bash full.sh -c run.ckpt -o out.dat block.scene table.mts : -n 2 mtled-mpi -c run.ckpt -o out.dat block.scene table.mts
     [ -z "$(find . -name 'run.ckpt*' -o -name 'out.dat*')" ]
-}
-
-@test "parts: a process that is killed, and other processes that go on from its checkpoint" {
-    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
-    { pressed_block; printf '[solver]\nramp_steps = 4000\n[output]\nframes = 2\n'; } > run.scene
-    shapefn -o table.mts square.mts 2> note
-    in_parts 3 square.mts
-    mtled -q -o whole.dat run.scene table.mts
-    begin 2 -q -c run.ckpt -e 0 -o out.dat run.scene part.%d.mts
-    kill -KILL "$(pgrep -P $! | sed -n 2p)"
-    status=0
-    wait $! || status=$?
-    [ $status -eq 137 ]
-    [ ! -e out.dat ]
-    one_line 2 "run.ckpt" mtled -q -c run.ckpt -o out.dat run.scene table.mts # another input
-    processes 3 -q -c run.ckpt -o out.dat run.scene part.%d.mts 2> said
-    grep -qx 'mtled: going on from step [0-9]*, kept in run.ckpt\(.old\)\?' said
-    cmp <(bare whole.dat) <(bare out.dat)
 }
 
 @test "the same in time; with Gauss points; in threads" {
@@ -339,18 +214,17 @@ one_line() {
 }
 
 @test "mtled under mpirun is mtled-mpi; without it one line and no results" {
-    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
+    cloud -d 2 -k jittered -n 8 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
     pressed_block > block.scene
-    in_parts 3 square.mts
-    mtled -q block.scene part.%d.mts > one.dat
-    mpirun --quiet --oversubscribe --bind-to none -n 2 mtled -q block.scene part.%d.mts > many.dat
+    mtled -q block.scene table.mts > one.dat
+    mpirun --quiet --oversubscribe --bind-to none -n 2 mtled -q block.scene table.mts > many.dat
     cmp one.dat many.dat
-    mpirun --quiet -n 1 mtled -q -o lone.dat block.scene part.%d.mts
+    mpirun --quiet -n 1 mtled -q -o lone.dat block.scene table.mts
     cmp one.dat lone.dat
     mkdir apart
     cp "$BUILD/bin/mtled" apart
     SECONDS=0
-    one_line 2 'it is built by make mpi' mpirun --quiet --oversubscribe --bind-to none -n 3 apart/mtled -o out.dat block.scene part.%d.mts
+    one_line 2 'it is built by make mpi' mpirun --quiet --oversubscribe --bind-to none -n 3 apart/mtled -o out.dat block.scene table.mts
     [ ! -e out.dat ]
     [ $SECONDS -lt 10 ]
 }

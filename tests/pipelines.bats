@@ -357,3 +357,11 @@ END
     run -1 awk -f "$pipelines/brain2d-convergence.awk" 4-1.errors
     [[ "$output" == *'no avg in 4-1.even'* ]]
 }
+
+@test "make scale: every stage of the pipe" {
+    top=$BATS_TEST_DIRNAME/..
+    at=$PWD/out/scale
+    make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/out" SCALE_SIZES=6 "$at/stages.tsv" > log 2>&1 || { cat log; false; }
+    [ "$(cut -f 1 "$at/stages.tsv" | paste -s -d /)" = "stage/cloud/ipoints/support/shapefn/mtled, one step/mtled, an evaluation" ]
+    awk -F '\t' 'NR > 1 && !($2 == 216 && $3 > 0) { exit 1 } $1 == "shapefn" { exit !($4 > 5000 && $4 < 12000) }' "$at/stages.tsv"
+}

@@ -340,9 +340,6 @@ int main(int argc, char *argv[])
     }
     double unit = tool_length_unit(&tool, "unit", 1);
     tool_read(&tool, tool.operands[0], &stream);
-    if (stream_find(&stream, "part.node") != NULL) {
-        tool_fail(&tool, STATUS_INPUT, "the input is one part of a body: make groups before it is cut");
-    }
     TOOL_TRY(&tool, group_body_read(&stream, &body, &error));
     for (int i = 0; i < tool.options.use_count; i++) {
         const struct option_use *use = &tool.options.use[i];

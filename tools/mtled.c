@@ -8,8 +8,8 @@ static const char usage[] =
     "of the mesh (see mtled-scene(5)). Writes the nodes, the cells and u (m), the displacement\n"
     "field at the nodes, a row for each as in the mesh, as text; its parameters and supports, for\n"
     "interp and fieldcmp; and what else the scene's [output] asks for. Without earlier sections the\n"
-    "defaults of ipoints, support and shapefn are run first, with the same result. A FILE with\n"
-    "%d in its name is all parts of a body (see part), with the same result as well.\n"
+    "defaults of ipoints, support and shapefn are run first, with the same result. Under mpirun\n"
+    "several processes (make mpi) read one FILE and share the work; the bytes are the same.\n"
     "\n"
     "Quasi-static scenes are relaxed until the estimated remaining error, relative to the\n"
     "displacement, is below the scene's tolerance. Dynamic scenes are stepped to their end time by\n"
@@ -41,7 +41,7 @@ static const char usage[] =
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes;\n"
-    "with another scene, cloud, cut or version it is refused. FILE is replaced as a whole, and the\n"
+    "with another scene, cloud or version it is refused. FILE is replaced as a whole, and the\n"
     "one before is FILE.old. It is a stream with the last field as u.last; FILE.frames has the\n"
     "frames so far. At the end all are removed.\n"
     "\n"
@@ -68,7 +68,7 @@ static const char usage[] =
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled brain2d.scene > u.dat\n"
-    "  mpirun -n 4 mtled -o u.dat brain2d.scene part.%d.mts    by processes (make mpi); same bytes\n";
+    "  mpirun -n 4 mtled -o u.dat brain2d.scene body.mts\n";
 
 #include "stage_options.h"
 #include "process.h"
@@ -150,20 +150,12 @@ static double parse(struct tool *tool)
     return tool_number(tool, "every", 0.0, 1e9, 60.0);
 }
 
-/* Read the stream, from one file or from those of all parts, and remove earlier results. */
-static void read_stream(const struct tool *tool, struct stream *stream, struct parts_input *parts)
+/* Read the stream and remove earlier results. */
+static void read_stream(const struct tool *tool, struct stream *stream)
 {
-    const char *input = tool->operands[1];
-    if (parts_are_named(input)) {
-        parts_read(tool, input, stream, parts);
-    } else {
-        tool_read(tool, input, stream);
-    }
+    tool_read(tool, tool->operands[1], stream);
     sections_remove(stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
     run_drop_frames(stream);
-    if (stream_find(stream, "part.node") != NULL) {
-        tool_fail(tool, STATUS_INPUT, "the input is one part of a body: name all, as part.%%d.mts");
-    }
 }
 
 /* Build the model, at rest or in the state of a checkpoint. */
@@ -172,7 +164,7 @@ static void prepare(struct run *run)
     struct model *model = run->model;
     run_put_supports(run);
     run_checkpoint_begin(run);
-    TOOL_TRY(run->tool, model_build(run->stream, run->parts->edge_reader, run->scene, model, &error));
+    TOOL_TRY(run->tool, model_build(run->stream, run->scene, model, &error));
     run_put_supports(run); /* the sides may have been numbered anew */
     if (model->note.text[0] != '\0') {
         tool_note(run->tool, "%s", model->note.text);
@@ -224,7 +216,6 @@ int main(int argc, char *argv[])
     FREED_BY(stream_free) struct stream stream = {0};
     FREED_BY(scene_free) struct scene scene = {0};
     FREED_BY(model_free) struct model model = {0};
-    FREED_BY(parts_free) struct parts_input parts = {.given = false};
     process_begin(&argc, &argv);
     become_mpi(argv);
     tool_begin(&tool, usage, 1, 2, argc, argv);
@@ -234,14 +225,13 @@ int main(int argc, char *argv[])
         .scene = &scene,
         .model = &model,
         .stream = &stream,
-        .parts = &parts,
         .verbose = tool_given(&tool, "verbose") && process_speaks(),
         .start_file = tool_value(&tool, "start"),
         .checkpoint = {.file = tool_value(&tool, "checkpoint"), .interval = parse(&tool)},
         .display = {.shown = !tool_given(&tool, "quiet") && process_speaks() && isatty(STDERR_FILENO)}};
     double started = clock_seconds();
     TOOL_TRY(&tool, scene_read(tool.operands[0], &scene, &error));
-    read_stream(&tool, &stream, &parts);
+    read_stream(&tool, &stream);
     run_frames_check(&run);
     run.read_seconds = clock_seconds() - started;
     stage_fill(&tool, &stream, "shapefn");

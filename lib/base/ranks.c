@@ -154,8 +154,10 @@ static enum status list_wanted(struct halo *halo, int64_t items, const bool *wan
     return STATUS_OK;
 }
 
-enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
-                                 int64_t **receive, int64_t **receive_first, struct error *error)
+/* Exchange lists of any length: send[send_first[r]] to before send[send_first[r + 1]] goes to process r; what
+ * it sends begins at (*receive)[(*receive_first)[r]]. */
+static enum status exchange_lists(const struct ranks *ranks, const int64_t *send, const int64_t *send_first,
+                                  int64_t **receive, int64_t **receive_first, struct error *error)
 {
     int count = ranks->count;
     NEW_SCRATCH(int64_t, each, count, error);
@@ -184,8 +186,8 @@ enum status halo_build(const struct ranks *ranks, int64_t items, const bool *wan
         return STATUS_OK;
     }
     RETURN_IF_ERROR(list_wanted(halo, items, wanted, owner, context, error));
-    RETURN_IF_ERROR(ranks_exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send,
-                                         &halo->send_first, error));
+    RETURN_IF_ERROR(
+        exchange_lists(ranks, halo->receive, halo->receive_first, &halo->send, &halo->send_first, error));
     RETURN_IF_ERROR(NEW_ARRAY(&halo->sent, halo->send_first[ranks->count] * width, error));
     return NEW_ARRAY(&halo->received, halo->receive_first[ranks->count] * width, error);
 }

@@ -49,14 +49,6 @@ MUST_CHECK enum status ranks_agree(const struct ranks *ranks, enum status status
 MUST_CHECK enum status ranks_list(const struct ranks *ranks, int64_t value, int64_t **each,
                                   struct error *error);
 
-/* Collective exchange of lists of any length. send[send_first[r]] to before send[send_first[r + 1]] goes to
- * process r; what process r sends begins at (*receive)[(*receive_first)[r]].
- * (*receive)[(*receive_first)[count]] and (*receive_first)[count + 1] are to be freed, also on failure.
- * `ranks` is not NULL. */
-MUST_CHECK enum status ranks_exchange_lists(const struct ranks *ranks, const int64_t *send,
-                                            const int64_t *send_first, int64_t **receive,
-                                            int64_t **receive_first, struct error *error);
-
 /* Divide a list of items into one range of about the same work for each process: (*first)[count + 1], to be
  * freed. work[items] >= 0; NULL: the same for all. */
 MUST_CHECK enum status ranks_share(const struct ranks *ranks, int64_t items, const double *work,

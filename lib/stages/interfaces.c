@@ -90,21 +90,3 @@ enum status stage_renew(struct stream *stream, const int32_t *side, struct error
     RETURN_IF_ERROR(stage_lists(stream, &recorded.support, &report, error));
     return stage_shapefn(stream, &recorded.shapes, error);
 }
-
-enum status stage_own_part(const struct stream *stream, struct support_options *options, struct error *error)
-{
-    const struct section *node = stream_find(stream, "part.node"), *owner;
-    char value[64];
-    int64_t part = 0;
-    if (node == NULL) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(stream_view(stream, "part.owner", &owner, error));
-    if (!section_attribute(node, "part", value, sizeof value)) {
-        return fail(error, STATUS_INPUT, "part.node: no part=: not written by part");
-    }
-    RETURN_IF_ERROR(parse_integer(value, "part.node: part", 0, INT32_MAX, &part, error));
-    options->owner = owner->data;
-    options->part = (int32_t)part;
-    return STATUS_OK;
-}

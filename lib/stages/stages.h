@@ -53,11 +53,6 @@ struct support_report {
 MUST_CHECK enum status stage_interfaces(const struct stream *stream, const char *names, int32_t **side,
                                         struct error *error);
 
-/* For a part of a body (part.node): set owner and part of the options, so that supports of other parts'
- * points do not stop at interfaces. */
-MUST_CHECK enum status stage_own_part(const struct stream *stream, struct support_options *options,
-                                      struct error *error);
-
 /* Add the sections of support: support.radius, support.side where options->side is given, and the lists nbr,
  * facepoint and node. */
 MUST_CHECK enum status stage_support(struct stream *stream, const struct support_options *options,

@@ -152,7 +152,6 @@ enum status stage_lists(struct stream *stream, const struct support_options *opt
         RETURN_IF_ERROR(
             stream_put_copy(stream, "support.side", TYPE_I4, cells.count, 1, "", actual.side, error));
     }
-    RETURN_IF_ERROR(stage_own_part(stream, &actual, error));
     RETURN_IF_ERROR(
         support_space_build(&actual, &cells, stream_find(stream, "support.radius")->data, &space, error));
     bool smoothed = points_are_smoothed(points); /* gradients come from the faces alone */

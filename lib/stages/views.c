@@ -13,7 +13,7 @@
 static const char *producer(const struct section_kind *kind)
 {
     static const char *const of_stages[] = {"nodes", "ipoints", "support", "shapefn", "mtled"};
-    return strncmp(kind->name, "part.", 5) == 0 ? "part" : of_stages[kind->stage];
+    return of_stages[kind->stage];
 }
 
 /* The dimension, from the columns of coordinates; 0 if there are none. */

@@ -45,5 +45,4 @@ mapfile -t long < <(dynamic 40)
 awk -v nodes=$nodes -v a="${short[0]}" -v b="${long[0]}" -v c="${short[1]}" -v d="${long[1]}" 'BEGIN {
     if (!(d > c)) { print "stages.sh: no evaluations counted" > "/dev/stderr"; exit 1 }
     printf "mtled, an evaluation\t%d\t%.2f\t-\t-\t-\t-\n", nodes, 1e6 * (b - a) / (d - c) / nodes }'
-row 'part, 8 parts' 0 "$at.part.log" "$at.cloud.mts" part -k 8 -o "$at.part.%d.mts"
-rm "$at".part.?.mts "$at.shapefn.mts" "$at.ipoints.mts"
+rm "$at.shapefn.mts" "$at.ipoints.mts"

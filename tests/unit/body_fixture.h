@@ -95,7 +95,6 @@ static inline struct smoothed_cells_input sample_smoothed(const struct sample *s
                                          .edge_ptr = assembly->lists.ptr,
                                          .edge_idx = assembly->lists.idx,
                                          .edge_phi = assembly->phi,
-                                         .edge_reader = assembly->edge_reader,
                                          .node_ptr = assembly->node_lists.ptr,
                                          .node_idx = assembly->node_lists.idx,
                                          .node_phi = assembly->node_phi};

@@ -34,7 +34,6 @@ struct member {
     const struct sample *sample;
     const struct setup *setup;
     const double *u;
-    bool reads_some; /* of the averages over the faces; else all of them */
     double *results; /* of the team's member 0 .. count - 1 in turn */
     int64_t *count;  /* of results */
 };
@@ -185,51 +184,13 @@ static int64_t room(const struct sample *sample)
     return 8 * sample->cloud.node_count * sample->dim + 20 * sample->assembly.point_count + 8;
 }
 
-/* Of the rows of edges every so manieth, as if the others were another process's; the
- * caller frees lists and phi. */
-static void keep_some(const struct ranks *ranks, const struct assembly *all, struct assembly *some)
-{
-    int64_t rows = face_row_count(&all->faces), *ptr, pairs = all->lists.ptr[rows];
-    int32_t *idx, *reader;
-    double *phi;
-    ARRAY(ptr, rows + 1);
-    ARRAY(idx, pairs);
-    ARRAY(phi, pairs);
-    ARRAY(reader, rows);
-    for (int64_t r = 0; r < rows; r++) {
-        int64_t from = all->lists.ptr[r], length = 0;
-        reader[r] = (int32_t)(r * r % ranks->count);
-        if (reader[r] == ranks->rank) {
-            length = all->lists.ptr[r + 1] - from;
-            memcpy(idx + ptr[r], all->lists.idx + from, (size_t)length * sizeof *idx);
-            memcpy(phi + ptr[r], all->phi + from, (size_t)length * sizeof *phi);
-        }
-        ptr[r + 1] = ptr[r] + length;
-    }
-    some->lists.ptr = ptr;
-    some->lists.idx = idx;
-    some->phi = phi;
-    some->edge_reader = reader;
-}
-
 static void *evaluate_member(void *context)
 {
     struct member *member = context;
     struct setup setup = *member->setup;
-    struct sample sample = *member->sample;
-    bool reads_some = member->reads_some && setup.faces;
     setup.ranks = &member->ranks;
     omp_set_num_threads(1); /* of this thread's regions */
-    if (reads_some) {
-        keep_some(&member->ranks, &member->sample->assembly, &sample.assembly);
-    }
-    FREED_BY(body_free) struct body body = make_body(&sample, &setup);
-    if (reads_some) { /* the body has fetched what it needs */
-        free((void *)(uintptr_t)sample.assembly.lists.ptr);
-        free((void *)(uintptr_t)sample.assembly.lists.idx);
-        free((void *)(uintptr_t)sample.assembly.phi);
-        free((void *)(uintptr_t)sample.assembly.edge_reader);
-    }
+    FREED_BY(body_free) struct body body = make_body(member->sample, &setup);
     member->count[member->ranks.rank] =
         evaluate(&body, member->u, member->results + member->ranks.rank * room(member->sample));
     return NULL;
@@ -245,17 +206,13 @@ static void check_body(const struct sample *sample, const struct setup *setup, s
     double *u = deformed_field(sample, &body, force, random);
     int64_t count = evaluate(&body, u, alone);
     assert_true(count > 0 && count <= some && largest(alone, count) > 0.0);
-    for (size_t i = 0; i < 2 * sizeof counts / sizeof *counts; i++) {
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         struct member members[MOST];
         int64_t have[MOST];
-        int team = counts[i / 2];
+        int team = counts[i];
         for (int r = 0; r < team; r++) {
-            members[r] = (struct member){.sample = sample,
-                                         .setup = setup,
-                                         .u = u,
-                                         .reads_some = i % 2 == 1,
-                                         .results = results,
-                                         .count = have};
+            members[r] =
+                (struct member){.sample = sample, .setup = setup, .u = u, .results = results, .count = have};
         }
         memset(results, 0, (size_t)(some * MOST) * sizeof *results);
         run_team(team, members, evaluate_member);

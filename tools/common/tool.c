@@ -89,16 +89,6 @@ char *tool_text(const struct tool *tool, const char *format, ...)
     return tool_memory(tool, text);
 }
 
-char *tool_numbered(const struct tool *tool, const char *what, const char *pattern, int64_t number)
-{
-    const char *at = strstr(pattern, "%d");
-    if (at != NULL && strstr(at + 1, "%d") == NULL) {
-        return tool_text(tool, "%.*s%lld%s", (int)(at - pattern), pattern, (long long)number, at + 2);
-    }
-    tool_fail(tool, STATUS_INPUT, "%s%s: has to have one %%d, where the number of the part goes", what,
-              pattern);
-}
-
 /* Open missing standard descriptors so that using them fails: a file opened later must not become standard
  * input, output or error. */
 static void fill_descriptors(void)
@@ -200,7 +190,7 @@ int tool_open(const struct tool *tool, const char *file, const char **name)
         if (descriptor < 0) {
             tool_fail(tool, STATUS_INPUT, "%s: %s", file, strerror(errno));
         }
-        tool_names_input(file);
+        main_input = main_input == NULL && !stdin_read ? file : main_input;
         return descriptor;
     }
     if (stdin_read) {
@@ -212,11 +202,6 @@ int tool_open(const struct tool *tool, const char *file, const char **name)
     main_input = main_input == NULL ? file : main_input;
     stdin_read = true;
     return STDIN_FILENO;
-}
-
-void tool_names_input(const char *operand)
-{
-    main_input = main_input == NULL && !stdin_read ? operand : main_input;
 }
 
 void tool_read(const struct tool *tool, const char *file, struct stream *stream)

@@ -77,10 +77,6 @@ void *tool_memory(const struct tool *tool, void *memory);
 /* Print a text, to be freed; exits if there is no memory. */
 char *tool_text(const struct tool *tool, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* A pattern such as part.%d.mts with a number in place of %d, to be freed; exits, naming the pattern by
- * `what`, unless it has exactly one %d. */
-char *tool_numbered(const struct tool *tool, const char *what, const char *pattern, int64_t number);
-
 /* Print "name: message" and exit; `status` may also be 128 + the number of a signal. */
 _Noreturn void tool_fail(const struct tool *tool, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -94,9 +90,6 @@ void tool_note(const struct tool *tool, const char *format, ...) __attribute__((
 /* Open a file for reading (NULL or "-": standard input, only once) and return the descriptor; *name receives
  * its name for messages. Exits on failure. */
 int tool_open(const struct tool *tool, const char *file, const char **name);
-
-/* Declare that an operand is read in place of standard input, by other means than tool_open. */
-void tool_names_input(const char *operand);
 
 /* Read a stream from a file (NULL or "-": standard input); exits on failure with a message naming it. */
 void tool_read(const struct tool *tool, const char *file, struct stream *stream);

@@ -15,10 +15,7 @@ struct support_options {
     enum visibility_rule visibility; /* whether neighbours must be visible through the cells */
     struct mls mls;                  /* the shape functions for which the lists are made */
     /* Used by support_space.h only: */
-    const int32_t *side;  /* of each cell: its side of the interfaces at which supports stop; NULL: none */
-    const int32_t *owner; /* with sides: the part of each node (partition.h); NULL: the whole body */
-    int32_t part; /* supports of points of other parts do not stop at interfaces, as the halo may contain too
-                     little of a side */
+    const int32_t *side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
 };
 
 /* Radii of 1.8 times the local spacing, in 3D 2 times; with widening, and the default MLS. */

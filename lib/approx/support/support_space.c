@@ -1,6 +1,5 @@
 #include "approx/support/support_space.h"
 
-#include "approx/partition/partition.h"
 #include "approx/visibility/visibility_private.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -40,12 +39,6 @@ static enum status cut_out(const struct support_space *space, const int32_t *cel
     return STATUS_OK;
 }
 
-/* The number of sides; the whole body, if needed, is one more. */
-static int64_t sides_in(const struct support_space *space)
-{
-    return space->side_count + (space->owner != NULL);
-}
-
 /* Divide the body into its sides. */
 static enum status cut(struct support_space *space, struct error *error)
 {
@@ -59,9 +52,8 @@ static enum status cut(struct support_space *space, struct error *error)
     RETURN_IF_ERROR(lists_by_row(cells->count, 1, space->cell_side, sides, &first, &cell, error));
     NEW_SCRATCH(int32_t, local_node, cells->node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&space->place, cells->count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&space->side, (int64_t)sides + 1, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&space->side, sides, error));
     space->side_count = sides;
-    space->side[sides].node_count = space->owner != NULL ? cells->node_count : 0;
     memset(local_node, -1, (size_t)cells->node_count * sizeof *local_node);
     for (int32_t s = 0; s < sides; s++) {
         space->side[s].cell_count = first[s + 1] - first[s];
@@ -99,15 +91,13 @@ enum status support_space_build(const struct support_options *options, const str
                                     .by_cells = options->visibility == VISIBILITY_CELLS && cells->count > 0};
     space->cell_side = space->by_cells ? options->side : NULL;
     if (space->cell_side != NULL) {
-        space->owner = options->owner;
-        space->part = options->part;
         RETURN_IF_ERROR(cut(space, error));
     } else {
         RETURN_IF_ERROR(NEW_ARRAY(&space->side, 1, error));
         space->side_count = 1;
         space->side[0].node_count = cells->node_count;
     }
-    for (int64_t s = 0; s < sides_in(space); s++) {
+    for (int64_t s = 0; s < space->side_count; s++) {
         if (space->side[s].node_count > 0) {
             RETURN_IF_ERROR(index_side(space, &space->side[s], error));
         }
@@ -117,7 +107,7 @@ enum status support_space_build(const struct support_options *options, const str
 
 void support_space_free(struct support_space *space)
 {
-    for (int64_t s = 0; space->side != NULL && s < sides_in(space); s++) {
+    for (int64_t s = 0; space->side != NULL && s < space->side_count; s++) {
         free_side(&space->side[s]);
     }
     FREE_ALL(space->side, space->place);
@@ -147,22 +137,6 @@ static void sides_of_nodes(const struct support_space *space, int64_t count, int
         for (int64_t n = 0; n < space->side[s].node_count; n++) {
             side[space->side[s].node[n]] = (int32_t)s;
         }
-    }
-}
-
-/* Assign nodes of other parts, and points in no own cell of the part, to the side that is the whole body. */
-static void sides_of_others(const struct support_space *space, const struct visibility_places *places,
-                            int64_t count, int32_t *side)
-{
-    for (int64_t p = 0; p < count && space->owner != NULL; p++) {
-        int64_t cells;
-        const int32_t *cell = visibility_places_cells(places, p, &cells);
-        bool own = places->nodes ? space->owner[p] == space->part : places->cell == NULL;
-        for (int64_t i = 0; i < cells && !places->nodes; i++) {
-            own = own ||
-                  (cell[i] >= 0 && partition_cell_owner(&space->cells, cell[i], space->owner) == space->part);
-        }
-        side[p] = own ? side[p] : (int32_t)space->side_count;
     }
 }
 
@@ -221,11 +195,10 @@ static enum status places_on_sides(const struct support_space *space, const stru
     }
     items = 0;
     for (int64_t p = 0; p < count; p++) {
-        bool whole = side[p] == space->side_count;
         const int32_t *cell = visibility_places_cells(places, p, &cells);
         for (int64_t k = 0; k < cells; k++) {
-            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == side[p])) {
-                (*item)[items++] = whole ? cell[k] : space->place[cell[k]];
+            if (cell[k] >= 0 && space->cell_side[cell[k]] == side[p]) {
+                (*item)[items++] = space->place[cell[k]];
             }
         }
         (*ptr)[p + 1] = items;
@@ -274,14 +247,13 @@ static enum status lists_of_sides(const struct support_options *options, const s
     NEW_SCRATCH(bool, unserved, count, error);
     NEW_SCRATCH(int32_t, side, count, error);
     NEW_SCRATCH(struct support_body, body, space->side_count + 1, error);
-    struct sided sided = {space, places, count, side, sides_in(space), body};
+    struct sided sided = {space, places, count, side, space->side_count, body};
     if (places->nodes) {
         sides_of_nodes(space, count, side);
     } else {
         sides_of_cells(space, places, count, side);
     }
     RETURN_IF_ERROR(locate_sides(space, count, x, side, error));
-    sides_of_others(space, places, count, side);
     for (int64_t s = 0; s < sided.body_count; s++) {
         const struct support_side *of = &space->side[s];
         body[s] = (struct support_body){&of->grid, &of->visibility, of->node};
@@ -295,10 +267,8 @@ static enum status lists_of_sides(const struct support_options *options, const s
         return STATUS_OK;
     }
     support_free(lists);
-    if (sided.body_count == space->side_count) {
-        RETURN_IF_ERROR(index_side(space, &whole, error));
-        body[sided.body_count++] = (struct support_body){&whole.grid, &whole.visibility, NULL};
-    }
+    RETURN_IF_ERROR(index_side(space, &whole, error));
+    body[sided.body_count++] = (struct support_body){&whole.grid, &whole.visibility, NULL};
     return build_sided(options, &sided, x, what, NULL, lists, error);
 }
 

@@ -8,7 +8,7 @@
 
 #include "approx/support/support.h"
 
-/* One side, or the whole body. */
+/* One side; without interfaces the whole body. */
 struct support_side {
     int64_t node_count, cell_count;
     int32_t *node;  /* node_count: their numbers in the whole body, ascending; NULL: all */
@@ -25,11 +25,8 @@ struct support_space {
     bool by_cells;            /* neighbours must be visible through the cells; else all within their radius */
     const int32_t *cell_side; /* the caller's: cells.count, or NULL: one side */
     int64_t side_count;
-    struct support_side *side; /* side_count; for a part of a body with sides followed by the whole, for
-                              points that are not its own */
-    const int32_t *owner;      /* the caller's: cells.node_count, or NULL: no part, or no sides */
-    int32_t part;
-    int32_t *place; /* cells.count, with several sides: the number of each cell on its side */
+    struct support_side *side; /* side_count */
+    int32_t *place;            /* cells.count, with several sides: the number of each cell on its side */
 };
 
 /* radius[node_count], m. Errors: STATUS_INPUT for cells that share a face with more than one other, and,

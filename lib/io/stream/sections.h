@@ -1,5 +1,5 @@
 /* The table of the sections that the programs know. It determines what `mts check` expects of each, which
- * sections are void if an earlier stage is run again, and how a body is cut into parts and joined. */
+ * sections are void if an earlier stage is run again. */
 #pragma once
 
 #include "io/stream/stream.h"
@@ -41,7 +41,7 @@ struct section_kind {
     enum section_stage stage;
 };
 
-enum { SECTION_KINDS = 58 };
+enum { SECTION_KINDS = 53 };
 extern const struct section_kind section_kinds[SECTION_KINDS];
 
 /* The entry of a section; of a section X.frame.K that of X. NULL: not in the table. */

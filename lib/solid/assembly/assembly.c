@@ -49,7 +49,6 @@ static enum status build_body(struct assembly *input, struct solid_system *syste
                                             .edge_ptr = input->lists.ptr,
                                             .edge_idx = input->lists.idx,
                                             .edge_phi = input->phi,
-                                            .edge_reader = input->edge_reader,
                                             .node_ptr = input->node_lists.ptr,
                                             .node_idx = input->node_lists.idx,
                                             .node_phi = input->node_phi,

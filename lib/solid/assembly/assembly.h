@@ -58,8 +58,6 @@ struct assembly {
     struct neighbours lists, boundary_lists, node_lists;
     const double *phi, *dphi; /* dphi NULL: averages over faces */
     const double *boundary_phi, *node_phi;
-    const int32_t *edge_reader; /* of smoothed cells: the process that has read each row of `lists`, which is
-                                   empty in others; NULL: all have all */
     /* Called, unless NULL, when `lists`, phi and dphi, which take most of the memory, are no longer needed.
      */
     void (*copied)(void *context);

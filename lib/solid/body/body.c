@@ -165,24 +165,6 @@ static int worthwhile_threads(const struct body *body)
     return (int)(by_work < available ? by_work : available);
 }
 
-/* Pairs of edge or node and neighbour; where each process has but some rows of the edges, of all of them. */
-static enum status count_pairs(const struct body_input *input, struct body *body, struct error *error)
-{
-    const struct smoothed_cells_input *cells = input->smoothed;
-    int64_t of_edges = cells->edge_ptr[face_row_count(cells->faces)];
-    SCRATCH int64_t *each = NULL;
-    body->pair_count = cells->node_ptr[body->node_count];
-    if (cells->edge_reader != NULL) {
-        RETURN_IF_ERROR(ranks_list(input->ranks, of_edges, &each, error));
-        of_edges = 0;
-        for (int r = 0; r < input->ranks->count; r++) {
-            of_edges += each[r];
-        }
-    }
-    body->pair_count += of_edges;
-    return STATUS_OK;
-}
-
 enum status body_build(const struct body_input *input, struct body *body, struct error *error)
 {
     *body = (struct body){.dim = input->dim,
@@ -205,7 +187,8 @@ enum status body_build(const struct body_input *input, struct body *body, struct
     if (!body->smoothed) {
         RETURN_IF_ERROR(copy_gradients(input, body, error));
     } else {
-        RETURN_IF_ERROR(count_pairs(input, body, error));
+        body->pair_count = input->smoothed->node_ptr[body->node_count] +
+                           input->smoothed->edge_ptr[face_row_count(input->smoothed->faces)];
         RETURN_IF_ERROR(smoothed_cells_build(input->smoothed, body, error));
     }
     body->threads = worthwhile_threads(body);

@@ -37,12 +37,9 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const int32_t *edge_reader; /* edge_count: the process that has read each row; the row is empty in others.
-                                   NULL: every process has all */
-    void (*copied)(
-        void *context); /* called when edge_ptr, edge_idx and edge_phi are no longer needed, and their memory
-                           has been released (memory_give_back); or NULL. Where each of several processes has
-                           all rows, they are needed until the body is freed, and it is not called */
+    void (*copied)(void *context); /* called when edge_ptr, edge_idx and edge_phi are no longer needed, and
+                                      their memory has been released (memory_give_back); or NULL. Several
+                                      processes need them until the body is freed, and it is not called */
     void *context;
 };
 

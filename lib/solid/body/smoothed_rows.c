@@ -4,7 +4,6 @@
 #include "base/chunks.h"
 #include "base/lists.h"
 #include "base/memory.h"
-#include "base/read_rows.h"
 #include "base/vector.h"
 #include "solid/body/body.h"
 
@@ -104,12 +103,9 @@ static enum status list_faces(const struct smoothed_cells_input *input, const st
     return STATUS_OK;
 }
 
-/* A given table of shape functions: its section, what a row stands for, and the points of the rows. With
- * several processes, rows that others have read are empty. */
+/* A given table of shape functions: its section, what a row stands for, and the points of the rows. */
 struct given_table {
     const char *section, *of;
-    const int32_t *reader; /* of each row, as in smoothed_cells_input; NULL: all rows are here */
-    int rank;
     const int64_t *ptr;
     const int32_t *idx;
     const double *phi, *x;
@@ -124,9 +120,6 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
 #pragma omp parallel for reduction(min : bad) num_threads(chunks_of(rows, ROWS_FOR_THREAD).threads)
     for (int64_t r = 0; r < rows; r++) {
         double sum[4] = {-1.0}, size = 0.0, extent = 0.0;
-        if (table->reader != NULL && table->reader[r] != table->rank) {
-            continue;
-        }
         for (int64_t i = table->ptr[r]; i < table->ptr[r + 1]; i++) {
             sum[0] += table->phi[i];
             size += fabs(table->phi[i]);
@@ -148,78 +141,6 @@ static enum status check_table(const struct given_table *table, int64_t rows, in
     return STATUS_OK;
 }
 
-/* Mark in wanted[] all rows of the cells that have a row in touched[]: the stiffness of own nodes needs them.
- */
-static void add_rows_of_cells(const struct body *body, const bool *touched, bool *wanted)
-{
-    const struct field_averages *averages = &body->cells.averages;
-    int edges = CELL_EDGES(body->dim);
-    int64_t faces = field_averages_faces(averages, body->dim);
-    for (int64_t r = 0; r < averages->row_count; r++) {
-        for (int64_t i = averages->use_ptr[r]; i < averages->use_ptr[r + 1] && touched[r]; i++) {
-            int64_t q = field_averages_cell(averages, body->dim, averages->use[i]);
-            int64_t first = smoothed_cells_group(body, q), end = smoothed_cells_group_end(body, q);
-            for (int64_t c = first * edges; c < end * edges; c++) {
-                wanted[averages->of_use[c] / VECTOR_STRIDE(body->dim)] = true;
-            }
-            for (int64_t f = field_averages_face(averages, first); f < field_averages_face(averages, end);
-                 f++) {
-                wanted[averages->of_use[faces + f] / VECTOR_STRIDE(body->dim)] = true;
-            }
-        }
-    }
-}
-
-/* wanted[edges]: the averages that own cells need, those with own nodes in them, and all other rows
- * of the cells that these belong to. */
-static enum status list_edges(const struct smoothed_cells_input *input, const struct read_rows *rows,
-                              const struct body *body, const int64_t *order, bool *wanted,
-                              struct error *error)
-{
-    const struct field_averages *averages = &body->cells.averages;
-    SCRATCH bool *in_order = NULL;
-    NEW_SCRATCH(bool, touched, averages->row_count, error);
-    RETURN_IF_ERROR(body_share_values(body, &in_order, error));
-    RETURN_IF_ERROR(read_rows_with(rows, body_share_owner, body, wanted, error));
-    for (int64_t r = 0; r < averages->row_count; r++) {
-        int64_t n =
-            r < face_row_count(input->faces) ? -1 : body->node_order[r - face_row_count(input->faces)];
-        touched[r] = n < 0 && wanted[order[r]];
-        for (int64_t i = n < 0 ? 0 : input->node_ptr[n]; n >= 0 && i < input->node_ptr[n + 1]; i++) {
-            touched[r] = touched[r] || body_share_owner(body, input->node_idx[i]) == rows->ranks->rank;
-        }
-    }
-    add_rows_of_cells(body, touched, in_order);
-    for (int64_t e = 0; e < face_row_count(input->faces); e++) {
-        wanted[order[e]] = wanted[order[e]] || in_order[e];
-    }
-    return STATUS_OK;
-}
-
-/* Fetch the rows of the edge table that this process needs, where none has read all of it. */
-static enum status fetch_edges(const struct smoothed_cells_input *input, struct body *body,
-                               struct average_table *edges, struct error *error)
-{
-    struct sparse *fetched = &body->cells.averages.fetched;
-    const struct read_rows rows = {.ranks = body->share.ranks,
-                                   .row_count = face_row_count(input->faces),
-                                   .column_count = body->node_count,
-                                   .ptr = input->edge_ptr,
-                                   .idx = input->edge_idx,
-                                   .value = input->edge_phi,
-                                   .reader = input->edge_reader};
-    NEW_SCRATCH(bool, wanted, face_row_count(input->faces), error);
-    RETURN_IF_ERROR(list_edges(input, &rows, body, edges->order, wanted, error));
-    RETURN_IF_ERROR(read_rows_fetch(&rows, wanted, fetched, error));
-    edges->ptr = fetched->ptr;
-    edges->idx = fetched->idx;
-    edges->phi = fetched->value;
-    if (input->copied != NULL) {
-        input->copied(input->context);
-    }
-    return STATUS_OK;
-}
-
 /* One process: copy all rows. */
 static enum status copy_all(const struct smoothed_cells_input *input,
                             const struct field_averages_input *tables, struct body *body, struct error *error)
@@ -233,16 +154,13 @@ static enum status copy_all(const struct smoothed_cells_input *input,
 }
 
 /* Several processes: copy the rows that this one's cells need, and the columns of its nodes. */
-static enum status copy_shares(const struct smoothed_cells_input *input, struct field_averages_input *tables,
-                               struct body *body, struct error *error)
+static enum status copy_shares(const struct field_averages_input *tables, struct body *body,
+                               struct error *error)
 {
     struct body_share *share = &body->share;
     struct field_averages *averages = &body->cells.averages;
     struct row_operator *rows = &body->rows;
     SCRATCH bool *needed = NULL, *used = NULL;
-    if (input->edge_reader != NULL) {
-        RETURN_IF_ERROR(fetch_edges(input, body, &tables->tables[0], error));
-    }
     RETURN_IF_ERROR(body_share_values(body, &needed, error));
     RETURN_IF_ERROR(row_ranges_of(0, averages->row_count, needed, &share->values, error));
     RETURN_IF_ERROR(field_averages_copy(tables, needed, 0, body->node_count, &rows->matrix, error));
@@ -251,7 +169,7 @@ static enum status copy_shares(const struct smoothed_cells_input *input, struct 
     RETURN_IF_ERROR(sparse_rows_used(&rows->columns, &used, error));
     RETURN_IF_ERROR(body_share_rows(body, used, error));
     memcpy(averages->given, tables->tables, sizeof averages->given);
-    return field_averages_drop_copied(&rows->matrix, averages, error);
+    return STATUS_OK;
 }
 
 enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct body *body,
@@ -271,13 +189,11 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     RETURN_IF_ERROR(match_edges(input, body, place, edge_of_cell, error));
     NEW_SCRATCH(double, x, rows * dim, error);
     RETURN_IF_ERROR(place_rows(faces, input->x, x, error));
-    const struct given_table edges = {
-        "edge.phi",      "edge",          input->edge_reader, ranks_rank(body->share.ranks),
-        input->edge_ptr, input->edge_idx, input->edge_phi,    x};
-    const struct given_table nodes = {"node.phi",      "node",          NULL,    0, input->node_ptr,
+    const struct given_table edges = {"edge.phi",      "edge",          input->edge_ptr,
+                                      input->edge_idx, input->edge_phi, x};
+    const struct given_table nodes = {"node.phi",      "node",          input->node_ptr,
                                       input->node_idx, input->node_phi, input->x};
-    enum status checked = check_table(&edges, rows, dim, input->x, error);
-    RETURN_IF_ERROR(input->edge_reader != NULL ? ranks_agree(body->share.ranks, checked, error) : checked);
+    RETURN_IF_ERROR(check_table(&edges, rows, dim, input->x, error));
     RETURN_IF_ERROR(check_table(&nodes, body->node_count, dim, input->x, error));
     RETURN_IF_ERROR(NEW_ARRAY(&order, rows, error));
     RETURN_IF_ERROR(renumber_morton(dim, rows, x, NULL, order, error));
@@ -304,7 +220,7 @@ enum status smoothed_rows_build(const struct smoothed_cells_input *input, struct
     if (body->share.ranks == NULL) {
         RETURN_IF_ERROR(copy_all(input, &tables, body, error));
     } else {
-        RETURN_IF_ERROR(copy_shares(input, &tables, body, error));
+        RETURN_IF_ERROR(copy_shares(&tables, body, error));
         averages->edge_order = array_take(&order);
     }
     return STATUS_OK;

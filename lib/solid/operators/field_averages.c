@@ -170,37 +170,8 @@ enum status field_averages_build(const struct field_averages_input *input, struc
     return list_uses(input->dim, averages, error);
 }
 
-enum status field_averages_drop_copied(const struct sparse *matrix, struct field_averages *averages,
-                                       struct error *error)
-{
-    struct sparse *fetched = &averages->fetched;
-    struct average_table *edges = &averages->given[0];
-    const int64_t *ptr = matrix->ptr;
-    int64_t at = 0, begin = 0;
-    if (fetched->ptr == NULL) {
-        return STATUS_OK;
-    }
-    NEW_SCRATCH(bool, kept, fetched->row_count, error);
-    for (int64_t r = 0; r < fetched->row_count; r++) {
-        kept[edges->order[r]] = ptr[r] == ptr[r + 1];
-    }
-    for (int64_t f = 0; f < fetched->row_count; f++) {
-        int64_t end = fetched->ptr[f + 1], length = kept[f] ? end - begin : 0;
-        memmove(fetched->idx + at, fetched->idx + begin, (size_t)length * sizeof *fetched->idx);
-        memmove(fetched->value + at, fetched->value + begin, (size_t)length * sizeof *fetched->value);
-        begin = end;
-        fetched->ptr[f + 1] = at += length;
-    }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->idx, at + 1, error));
-    RETURN_IF_ERROR(RESIZE_ARRAY(&fetched->value, at + 1, error));
-    edges->idx = fetched->idx;
-    edges->phi = fetched->value;
-    return STATUS_OK;
-}
-
 void field_averages_free(struct field_averages *averages)
 {
-    sparse_free(&averages->fetched);
     FREE_ALL(averages->value, averages->force, averages->of_use, averages->use_force, averages->use_ptr,
              averages->use, averages->face_cell, averages->face_vertex, averages->face_gradient,
              averages->edge_order);

@@ -43,8 +43,7 @@ struct field_averages {
     double *face_gradient; /* and the gradient of that vertex's linear shape function, 3 of each, 1/m (2D: the
                               last 0) */
     struct average_table given[2]; /* with several processes: the caller's tables, edges and nodes, */
-    int64_t *edge_order;           /* and the order of their rows; */
-    struct sparse fetched;         /* where none has read all rows of edges: those that this process needs */
+    int64_t *edge_order;           /* and the order of their rows */
 };
 
 /* The first use of the vertices. */
@@ -92,7 +91,4 @@ MUST_CHECK enum status field_averages_copy(const struct field_averages_input *in
                                            int64_t first, int64_t last, struct sparse *matrix,
                                            struct error *error);
 
-/* Free the fetched rows that have been copied into the matrix. */
-MUST_CHECK enum status field_averages_drop_copied(const struct sparse *matrix,
-                                                  struct field_averages *averages, struct error *error);
 void field_averages_free(struct field_averages *averages);

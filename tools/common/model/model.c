@@ -35,8 +35,8 @@ static void drop_copied(void *stream)
     stream_remove(stream, "edge.phi");
 }
 
-enum status model_build(struct stream *stream, const int32_t *edge_reader, const struct scene *scene,
-                        struct model *model, struct error *error)
+enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
+                        struct error *error)
 {
     struct assembly *input = &model->assembly;
     bool renewed;
@@ -55,7 +55,6 @@ enum status model_build(struct stream *stream, const int32_t *edge_reader, const
     RETURN_IF_ERROR(check_moments(model, error));
     RETURN_IF_ERROR(model_conditions(model, error));
     input->ranks = process_ranks();
-    input->edge_reader = renewed ? NULL : edge_reader;
     input->copied = drop_copied;
     input->context = stream;
     RETURN_IF_ERROR(assembly_build(input, &model->system, &model->note, error));

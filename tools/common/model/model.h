@@ -20,10 +20,9 @@ struct model {
 };
 
 /* Build the whole system; the stream and the scene must outlive the model, which stays where it is. Regions
- * without a material are an error that names them. Tables that the body copies leave the stream. edge_reader
- * as in struct parts_input. */
-MUST_CHECK enum status model_build(struct stream *stream, const int32_t *edge_reader,
-                                   const struct scene *scene, struct model *model, struct error *error);
+ * without a material are an error that names them. Tables that the body copies leave the stream. */
+MUST_CHECK enum status model_build(struct stream *stream, const struct scene *scene, struct model *model,
+                                   struct error *error);
 void model_free(struct model *model);
 
 /* Steps of model_build, in their own files: materials of regions and points; displacements, loads and

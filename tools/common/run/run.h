@@ -4,7 +4,6 @@
 #include "comparison.h"
 #include "output.h"
 #include "model/model.h"
-#include "parts/parts_input.h"
 #include "process.h"
 #include "approx/support/support_space.h"
 #include "base/clock.h"
@@ -103,7 +102,6 @@ struct run {
     const struct tool *tool;
     struct scene *scene; /* see run_again */
     struct model *model;
-    const struct parts_input *parts;
     struct stream *stream; /* receives what the scene's [output] requests */
     struct display display;
     struct run_checkpoint checkpoint;

@@ -115,9 +115,6 @@ void run_checkpoint_begin(struct run *run)
     struct run_checkpoint *checkpoint = &run->checkpoint;
     if (checkpoint->file != NULL || process_ranks() != NULL) {
         TOOL_TRY(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error));
-        if (run->parts->given) {
-            checkpoint->identity.input = run->parts->identity;
-        }
         if (run->start_file != NULL) {
             checkpoint->identity.input += checkpoint_identify_input(&run->start.stream);
         }
