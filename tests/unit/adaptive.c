@@ -210,41 +210,4 @@ TEST(depth_where_needed)
     assert_true(near / (double)near_count > 2.0 * far / (double)far_count);
 }
 
-TEST(threads)
-{
-    int before = omp_get_max_threads();
-    for (int dim = 2; dim <= 3; dim++) {
-        FREED_BY(body_free) struct body body = body_of(dim, dim == 2 ? 9 : 3);
-        omp_set_num_threads(1);
-        FREED_BY(adaptive_points_free) struct adaptive_points one = integrate(&body, 0.1, 3);
-        omp_set_num_threads(3);
-        FREED_BY(adaptive_points_free) struct adaptive_points three = integrate(&body, 0.1, 3);
-        assert_int_equal(one.count, three.count);
-        assert_memory_equal(one.x, three.x, (size_t)(one.count * dim) * sizeof(double));
-        assert_memory_equal(one.weight, three.weight, (size_t)one.count * sizeof(double));
-        assert_memory_equal(one.cell, three.cell, (size_t)one.count * sizeof(int32_t));
-        assert_memory_equal(one.level, three.level, (size_t)one.count * sizeof(int32_t));
-    }
-    omp_set_num_threads(before);
-}
-
-TEST(failures)
-{
-    FREED_BY(body_free) struct body body = body_of(2, 4);
-    struct adaptive_options options = body.options;
-    struct adaptive_points points;
-    options.rule_points = 5;
-    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_INPUT,
-          "no rule of 5 points");
-    adaptive_points_free(&points);
-    options = body.options;
-    options.support.mls.basis = BASIS_QUADRATIC;
-    options.support.widen = false;
-    for (int64_t n = 0; n < body.cells.node_count; n++) {
-        body.radius[n] *= 0.6;
-    }
-    FAILS(adaptive_points_build(&options, &body.cells, body.radius, &points, &error), STATUS_VERDICT, "mls2");
-    adaptive_points_free(&points);
-}
-
 RUN_TESTS(NULL, NULL)

@@ -1,15 +1,12 @@
 /* Checkpoints: a run that is interrupted at any step, put away in a file and taken up by another process's
- * fresh system goes on to the same bits; and whatever becomes of one of the two files, the other one serves.
- */
+ * fresh system goes on to the same bits; states that do not fit are refused. */
 #include "lattice_fixture.h"
 
 #include "io/checkpoint/checkpoint.h"
 #include "solid/dynamics/dynamics.h"
 #include "solid/relaxation/relaxation.h"
 
-#include <fcntl.h>
 #include <stdio.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static const struct checkpoint_identity identity = {.scene = 0x12345678, .input = 0xff};
@@ -193,111 +190,6 @@ static enum status visit_pair(void *owner, const struct state *state, struct err
     const struct state_value values[] = {{"count", STATE_COUNTS, &pair->count, 1},
                                          {"number", STATE_NUMBERS, &pair->number, 1}};
     return state_visit(state, NULL, values, 2, error);
-}
-
-static enum status write_pair(int64_t step, struct error *error)
-{
-    FREED_BY(stream_free) struct stream stream = {0};
-    struct pair pair = {.count = step, .number = (double)step / 3};
-    enum status status = checkpoint_fill(&stream, &identity, step, visit_pair, &pair, error);
-    if (status == STATUS_OK) {
-        status = checkpoint_write(file, true, &stream, error);
-    }
-    return status;
-}
-
-/* The step of what can be read, 0 for nothing, -1 on an error, whose text must contain `text`. */
-static int64_t readable(const struct checkpoint_identity *expected, const char *text)
-{
-    FREED_BY(stream_free) struct stream stream = {0};
-    struct error said = {""};
-    enum checkpoint_source source;
-    int64_t step = 0;
-    enum status status = checkpoint_read(file, expected, &stream, &source, &step, &said);
-    if (status != STATUS_OK) {
-        if (strstr(said.text, text) == NULL) {
-            fail_msg("'%s' does not tell of '%s'", said.text, text);
-        }
-        assert_int_equal(stream.section_count, 0);
-        return -1;
-    }
-    if (source != CHECKPOINT_NONE) {
-        struct pair pair;
-        struct state state = checkpoint_state(&stream);
-        GOOD(visit_pair(&pair, &state, &error));
-        assert_int_equal(pair.count, step);
-        assert_true(pair.number == (double)step / 3);
-    }
-    return step;
-}
-
-static off_t size_of(const char *name)
-{
-    struct stat status;
-    assert_int_equal(stat(name, &status), 0);
-    return status.st_size;
-}
-
-TEST(one_of_two_serves)
-{
-    GOOD(checkpoint_remove(file, &error));
-    assert_int_equal(readable(&identity, ""), 0);
-    GOOD(write_pair(7, &error));
-    assert_int_equal(access(old, F_OK), -1);
-    GOOD(write_pair(8, &error));
-    assert_int_equal(readable(&identity, ""), 8);
-    off_t whole = size_of(file);
-    for (off_t size = 0; size < whole; size += 61) { /* cut short anywhere: the older one */
-        assert_int_equal(truncate(file, size), 0);
-        assert_int_equal(readable(&identity, ""), 7);
-        GOOD(checkpoint_remove(file, &error));
-        GOOD(write_pair(7, &error));
-        GOOD(write_pair(8, &error));
-    }
-    assert_int_equal(unlink(file), 0); /* killed between the two renamings */
-    assert_int_equal(readable(&identity, ""), 7);
-    GOOD(write_pair(9, &error)); /* nothing to keep: the older one stays */
-    assert_int_equal(readable(&identity, ""), 9);
-    assert_int_equal(truncate(file, 100), 0);
-    assert_int_equal(readable(&identity, ""), 7);
-    assert_int_equal(truncate(old, 100), 0);
-    assert_int_equal(readable(&identity, "remove it and "), -1);
-    GOOD(checkpoint_remove(file, &error));
-    assert_int_equal(readable(&identity, ""), 0);
-}
-
-TEST(of_something_else)
-{
-    struct checkpoint_identity other = identity;
-    GOOD(write_pair(3, &error));
-    other.scene++;
-    assert_int_equal(readable(&other, "another scene"), -1);
-    other = identity;
-    other.input++;
-    assert_int_equal(readable(&other, "another cloud or table"), -1);
-    GOOD(checkpoint_remove(file, &error));
-}
-
-/* Whatever goes wrong while writing, what was there stays. */
-TEST(failures_leave_what_was_there)
-{
-    char new[104];
-    snprintf(new, sizeof new, "%s.new", file);
-    GOOD(write_pair(4, &error));
-    assert_int_equal(mkdir(new, 0700), 0); /* the new one cannot be opened */
-    FAILS(write_pair(5, &error), STATUS_SYSTEM, "");
-    assert_int_equal(readable(&identity, ""), 4);
-    assert_int_equal(rmdir(new), 0);
-    assert_int_equal(symlink("/dev/full", new), 0); /* nor is a link followed */
-    FAILS(write_pair(5, &error), STATUS_SYSTEM, "");
-    assert_int_equal(readable(&identity, ""), 4);
-    GOOD(write_pair(6, &error)); /* the failed one has been cleared away */
-    assert_int_equal(readable(&identity, ""), 6);
-    GOOD(checkpoint_remove(file, &error));
-    assert_int_equal(symlink("/dev/null", file), 0); /* no device is replaced */
-    FAILS(write_pair(5, &error), STATUS_INPUT, "");
-    assert_int_equal(readable(&identity, "no regular file"), -1);
-    assert_int_equal(unlink(file), 0);
 }
 
 /* Values that are missing, of another size or out of range. */

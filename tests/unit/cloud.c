@@ -87,28 +87,6 @@ TEST_IN_EACH_DIM(facets_look_outward)
     }
 }
 
-TEST_IN_EACH_DIM(neighbours_conform)
-{
-    struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-    FREED_BY(cloud_free) struct cloud cloud = make(&options);
-    struct cells cells = {dim, cloud.node_count, cloud.x, cloud.cell_count, cloud.cells};
-    FREED_BY(faces_free) struct faces boundary = {0};
-    GOOD(faces_build(&cells, true, &boundary, &error));
-    assert_int_equal(boundary.count, cloud.facet_count);
-    assert_int_equal(boundary.count, dim == 2 ? 14 : 2 * 2 * (12 + 8 + 6));
-}
-
-TEST(regular_nodes_are_where_they_should)
-{
-    struct cloud_options options = options_of(CLOUD_REGULAR, 3);
-    FREED_BY(cloud_free) struct cloud cloud = make(&options);
-    for (int64_t n = 0; n < cloud.node_count; n++) {
-        assert_true(fabs(cloud.x[3 * n] - (-1 + (double)(n % 5))) < 1e-15);
-        assert_true(fabs(cloud.x[3 * n + 1] - (double)(n / 5 % 4) / 3) < 1e-15);
-        assert_true(fabs(cloud.x[3 * n + 2] - (2 + 0.25 * (double)(n / 20))) < 1e-15);
-    }
-}
-
 /* Jitter moves inner nodes by no more than it may, the boundary not at all, and depends on the seed only. */
 TEST(jitter_is_bounded)
 {
@@ -148,58 +126,6 @@ TEST(grading_has_its_ratio)
     assert_true(x[0] == -1 && x[8] == 3);
     assert_true(fabs((x[8] - x[6]) / (x[2] - x[0]) - 8) < 1e-12);
     assert_true(fabs((x[4] - x[2]) / (x[2] - x[0]) - 2) < 1e-12);
-}
-
-TEST(halton_is_in_the_box_and_even)
-{
-    struct cloud_options options = options_of(CLOUD_HALTON, 3);
-    options.count[0] = 1000;
-    FREED_BY(cloud_free) struct cloud cloud = make(&options);
-    int eighth[8] = {0};
-    for (int64_t n = 0; n < cloud.node_count; n++) {
-        int at = 0;
-        for (int a = 0; a < 3; a++) {
-            double x = cloud.x[3 * n + a];
-            assert_true(x > options.low[a] && x < options.high[a]);
-            at = 2 * at + (x > (options.low[a] + options.high[a]) / 2);
-        }
-        eighth[at]++;
-    }
-    for (int i = 0; i < 8; i++) {
-        assert_in_range(eighth[i], 115, 135);
-    }
-}
-
-TEST(overturned_tetrahedra_are_left_out)
-{
-    struct cloud_options options = options_of(CLOUD_JITTERED, 3);
-    options.count[0] = options.count[1] = options.count[2] = 12;
-    options.jitter = 0.5;
-    FREED_BY(cloud_free) struct cloud cloud = make(&options);
-    assert_int_equal(cloud.node_count, 1728);
-    assert_int_equal(cloud.cell_count, 0);
-    assert_int_equal(cloud.facet_count, 0);
-}
-
-TEST(wrong_options_are_refused)
-{
-    static const char *const about[] = {"dimension", "count", "count", "box", "box", "jitter", "ratio"};
-    struct cloud_options good = options_of(CLOUD_JITTERED, 2);
-    for (int i = 0; i < 7; i++) {
-        struct cloud_options options = good;
-        FREED_BY(cloud_free) struct cloud cloud = {0};
-        struct error error = {""};
-        options.dim = i == 0 ? 4 : 2;
-        options.count[1] = i == 1 ? 1 : i == 2 ? INT32_MAX : 4;
-        options.high[0] = i == 3 ? -1 : i == 4 ? NAN : 3;
-        options.jitter = i == 5 ? 0.6 : 0.5;
-        if (i == 6) {
-            options.kind = CLOUD_GRADED;
-            options.ratio = 0.5;
-        }
-        assert_int_equal(cloud_make(&options, &cloud, &error), STATUS_INPUT);
-        assert_ptr_equal(strstr(error.text, about[i]), error.text);
-    }
 }
 
 TEST(functions_have_their_values)

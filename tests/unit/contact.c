@@ -1,7 +1,5 @@
 /* Contact of contact nodes with rigid surfaces: forces are the gradient of the energy and balance, contact
- * nodes are skipped only where that changes nothing, multipliers remove the penetration, and nothing is
- * pulled in from behind.
- */
+ * nodes are skipped only where that changes nothing, and multipliers remove the penetration. */
 #include "contact_fixture.h"
 
 /* force = - d energy / du, with and without multipliers. */
@@ -316,50 +314,6 @@ TEST(curved_boundary)
     struct contact contact = built(&contact_nodes, make_shell(2, CONTACT_NODES, 1.0, false), 1.0);
     contact_force(&contact, u, force);
     ALL_NEAR(CONTACT_NODES, contact.gap, NULL, 1e-14);
-}
-
-/* The wrong side of the surface is noticed. */
-TEST(wrong_side)
-{
-    struct rigid_surface surface;
-    struct contact contact;
-    struct error said;
-    struct contact_nodes contact_nodes;
-    static const double corners[] = {1, 0, 0, 0};
-    make_particles(&contact_nodes, 2, 0.1);
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        contact_nodes.X[2 * a] = 0.5;
-        contact_nodes.X[2 * a + 1] = a < 3 ? -0.04 : -0.25;
-    }
-    GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-    FAILS_WITH(
-        contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &error),
-        STATUS_INPUT,
-        "contact: node 3 starts 0.25 m behind the rigid surface: state its other "
-        "side, or leave the node's facets out");
-    assert_null(surface.vertex);
-    contact_free(&contact);
-    /* Slightly behind is in contact from the start. */
-    for (int a = 3; a < CONTACT_NODES; a++) {
-        contact_nodes.X[2 * a + 1] = 1.0;
-    }
-    GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-    GOOD(contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &error));
-    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    contact_force(&contact, u, force);
-    NEAR_TO(force[1], 0.04 * 0.1, 1e-15);
-    contact_free(&contact);
-    /* So it is where the body faces the surface; with its back to it, it is on the wrong side. */
-    for (int back = 0; back < 2; back++) {
-        contact_nodes.normal[1] = back ? 1.0 : -1.0;
-        GOOD(rigid_build(2, 1, corners, false, &surface, &error));
-        enum status status =
-            contact_build(&contact_nodes.averages, NULL, contact_nodes.X, 2, &surface, 1.0, &contact, &said);
-        assert_int_equal(status, back ? STATUS_INPUT : STATUS_OK);
-        contact_free(&contact);
-    }
-    assert_string_equal(said.text, "contact: node 0 starts 0.04 m behind the rigid surface: state its other "
-                                   "side, or leave the node's facets out");
 }
 
 RUN_TESTS(NULL, NULL)

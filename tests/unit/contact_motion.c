@@ -1,10 +1,5 @@
-/* Contacts whose surface moves, their work and moments; what of them is of this state alone; contacts of
- * points.
- */
+/* Contacts whose surface moves; contacts of points. */
 #include "contact_fixture.h"
-
-/* Curves' values: of the translation, of the rotation. */
-static const double one_each[2] = {1.0, 1.0};
 
 /* A motion with everything in it; its two curves are numbers 0 and 1. */
 static struct rigid_motion some_motion(int dim, struct random *random)
@@ -102,109 +97,6 @@ TEST(moved_together)
         }
     }
     assert_true(contacts > 400);
-}
-
-/* While the surface moves and the contact nodes stay, the energy of the penalty grows by the work of the
- * surface. */
-TEST(work_of_the_surface)
-{
-    struct random random = {8};
-    struct contact_nodes contact_nodes;
-    int pressed = 0;
-    for (int round = 0; round < 10; round++) {
-        int dim = 2 + round % 2, steps = 2000;
-        double u[NODES * 3] = {0.0}, work = 0.0, unresolved = 0.0, begin = 0.0;
-        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
-        FREED_BY(contact_free)
-        struct contact contact = built(&contact_nodes, make_shell(dim, 4, 0.8, false), 7e3);
-        contact.motion = some_motion(dim, &random);
-        contact.motion.angle = fmod(contact.motion.angle, 0.3);
-        for (int step = 0; step <= steps; step++) {
-            double now[2], next[2], last[2];
-            for (int i = 0; i < 2; i++) {
-                last[i] = (step - 1.0) / steps;
-                now[i] = (double)step / steps;
-                next[i] = (step + 1.0) / steps;
-            }
-            contact_move(&contact, now);
-            contact_measure(&contact, u, false);
-            begin = step == 0 ? contact_energy(&contact) : begin;
-            struct contact_work before = contact_work(&contact, last, now);
-            struct contact_work after = contact_work(&contact, now, next);
-            work += 0.5 * ((step > 0 ? before.work : 0.0) + (step < steps ? after.work : 0.0));
-            unresolved = fmax(unresolved, after.unresolved);
-        }
-        double energy = contact_energy(&contact) - begin;
-        NEAR_TO(work, energy, 1e-4 * fabs(energy) + 2.0 * unresolved);
-        pressed += fabs(energy) > 1.0 && unresolved > 0.0 && unresolved < 1e-3 * fabs(energy);
-    }
-    assert_true(pressed >= 8);
-}
-
-/* The moment is that of the forces on the parameters, about any point, also where contact nodes are raised.
- */
-TEST(moment)
-{
-    struct random random = {9};
-    struct contact_nodes contact_nodes;
-    for (int round = 0; round < 20; round++) {
-        int dim = 2 + round % 2;
-        double u[NODES * 3], force[NODES * 3] = {0.0}, position_[CONTACT_NODES * 3], sum[3] = {0.0}, told[3],
-                                           zero[NODES * 3] = {0.0};
-        double point[3] = {0.3, -0.2, 0.7};
-        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
-        for (int a = 0; a < CONTACT_NODES; a++) {
-            contact_nodes.normal[a * dim] = 1.0;
-            for (int i = 0; i < dim; i++) {
-                position_[a * dim + i] = position(&contact_nodes, zero, a, i);
-            }
-        }
-        contact_nodes.averages.position = position_;
-        FREED_BY(contact_free)
-        struct contact contact = built(&contact_nodes, make_shell(dim, 12, 2.0, false), 7e3);
-        contact.motion = some_motion(dim, &random);
-        push_out(u, &random);
-        contact_move(&contact, one_each);
-        contact_force(&contact, u, force);
-        contact_moment(&contact, point, told);
-        for (int n = 0; n < NODES; n++) {
-            double arm[3] = {0.0}, f[3] = {0.0};
-            for (int i = 0; i < dim; i++) {
-                arm[i] = contact_nodes.X[n * dim + i] + u[n * dim + i] - point[i];
-                f[i] = force[n * dim + i];
-            }
-            for (int i = 0; i < 3; i++) {
-                sum[i] += arm[(i + 1) % 3] * f[(i + 2) % 3] - arm[(i + 2) % 3] * f[(i + 1) % 3];
-            }
-        }
-        for (int i = 0; i < 3; i++) {
-            NEAR_TO(told[i], sum[i], 1e-8 * (1.0 + fabs(sum[i])));
-        }
-    }
-}
-
-/* For points too far from the surface the search is skipped. Measured with `all` they have the gaps of this
- * state. */
-TEST(gaps_of_this_state)
-{
-    struct contact_nodes contact_nodes;
-    struct random random = {10};
-    make_contact_nodes(&contact_nodes, 2, 0.1, &random);
-    FREED_BY(contact_free) struct contact contact = built(&contact_nodes, make_shell(2, 12, 5.0, false), 1.0);
-    double u[NODES * 3] = {0.0}, first[CONTACT_NODES];
-    contact_measure(&contact, u, false);
-    memcpy(first, contact.gap, sizeof first);
-    for (int i = 0; i < NODES; i++) {
-        u[2 * i] = 0.5;
-    }
-    contact_measure(&contact, u, true);
-    double changed = 0.0;
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        double x[2] = {position(&contact_nodes, u, a, 0), position(&contact_nodes, u, a, 1)};
-        NEAR_TO(contact.gap[a], rigid_closest(&contact.surface, x, INFINITY).gap, 1e-14);
-        changed = fmax(changed, fabs(contact.gap[a] - first[a]));
-    }
-    assert_true(changed > 0.2);
 }
 
 /* Points in pairs on edges of a line of nodes: multipliers are at the nodes, and an augmentation makes them

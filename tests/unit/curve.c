@@ -1,5 +1,4 @@
-/* Load curves: end values, smoothness, monotone interpolation; one clear error for each wrong table (fault
- * 13). */
+/* Load curves: end values, smoothness, monotone interpolation. */
 #include "unit.h"
 
 #include "solid/system/curve.h"
@@ -78,36 +77,6 @@ TEST(tabulated)
         }
     }
     rate_is_derivative(&curve);
-}
-
-TEST(two_points)
-{
-    static const double points[] = {0, 1, 8, 5};
-    FREED_BY(curve_free) struct load_curve curve = {0};
-    GOOD(curve_tabulate(&curve, 2, points, 4, &error));
-    NEAR_TO(curve_value(&curve, .5), 2, 1e-15);
-    NEAR_TO(curve_rate(&curve, .5), 2, 1e-15); /* per s, not per unit of time */
-}
-
-static void fails(int64_t count, const double *points, double end, const char *expected)
-{
-    struct load_curve curve;
-    FAILS_WITH(curve_tabulate(&curve, count, points, end, &error), STATUS_INPUT, expected);
-    assert_null(curve.time);
-}
-
-TEST(faults)
-{
-    fails(1, (double[]){0, 1}, 1, "load curve of 1 point: give at least two, times from 0 to 1");
-    fails(0, NULL, 1, "load curve of 0 point: give at least two, times from 0 to 1");
-    fails(3, (double[]){0, 0, .7, 1, .6, 1}, 1,
-          "row 3: time 0.6 does not come after 0.7: order the rows by time");
-    fails(3, (double[]){0, 0, .7, 1, .7, 2}, 1,
-          "row 3: time 0.7 does not come after 0.7: order the rows by time");
-    fails(2, (double[]){0, 0, .9, 1}, 1, "row 2: load curve ends at time 0.9: it must cover 0 to 1");
-    fails(2, (double[]){.1, 0, 3, 1}, 3, "row 1: load curve begins at time 0.1: it must cover 0 to 3");
-    fails(2, (double[]){0, 0, (double)NAN, 1}, 1, "row 2: time or factor is not finite");
-    fails(2, (double[]){0, (double)INFINITY, 1, 1}, 1, "row 1: time or factor is not finite");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,5 +1,4 @@
-/* Fields at points and their comparison: exact for linear fields on any cloud, node matching, statistics, and
- * NaN, which never passes. */
+/* Fields at points: exact for linear fields on any cloud and in each cell; what is outside of a body. */
 #include "approx_fixture.h"
 
 #include "approx/field/field_compare.h"
@@ -18,12 +17,6 @@ static double *linear_field(int dim, int64_t count, const double *x)
         values[2 * n + 1] = -7.0;
     }
     return values;
-}
-
-static struct nodal_field view(const struct scattered *cloud, const double *values)
-{
-    return (struct nodal_field){
-        .cells = {.dim = cloud->dim, .node_count = cloud->count, .x = cloud->x}, .cols = 2, .values = values};
 }
 
 TEST_IN_EACH_DIM(linear_fields_are_exact)
@@ -63,18 +56,6 @@ TEST(spacing_with_and_without_cells)
     assert_true(spacing[4] == nearest[4]);
 }
 
-/* A cloud of nodes alone: within twice a node's spacing. */
-TEST(outside_of_nodes)
-{
-    static const double x[] = {0, 0, 1, 0, 0, 1}, spacing[] = {1, 1, 1};
-    static const double points[] = {0.5, 0.5, 2.9, 0, 0, -1.9, 3.1, 0, 0, -2.1, 0, 0};
-    static const bool expected[] = {false, false, false, true, true, false};
-    struct cells cells = {2, 3, x, 0, NULL};
-    bool got[6];
-    GOOD(field_outside(&cells, spacing, FIELD_MARGIN, 6, points, got, &error));
-    assert_memory_equal(got, expected, sizeof got);
-}
-
 /* Beyond a side, beyond a corner (an edge, in 3D), in a notch between cells; within 0 and within a margin. */
 TEST(outside_of_cells)
 {
@@ -101,113 +82,6 @@ TEST(outside_of_cells)
     assert_memory_equal(got, in3, sizeof in3);
     GOOD(field_outside(&cells3, spacing, 0.2, 9, points3, got, &error));
     assert_memory_equal(got, near3, sizeof near3);
-}
-
-/* In order, in another order, with two nodes at one place, and moved by more than round-off. */
-TEST(matching)
-{
-    FREED_BY(scattered_free) struct scattered cloud = scatter(2, 9, 1, &places[2], 0.3, 12);
-    double *other = zeros(cloud.count * 2, sizeof *other);
-    int32_t *match = zeros(cloud.count, sizeof *match);
-    char seen[81] = {0};
-    bool matched;
-    memcpy(cloud.x + 2 * 40, cloud.x + 2 * 41, 2 * sizeof(double));
-    for (int64_t n = 0; n < 81; n++) { /* 31 and 81 have no common factor */
-        other[2 * (n * 31 % 81)] = cloud.x[2 * n] + 0.9e-10 * (n % 2 == 0 ? 1 : -1);
-        other[2 * (n * 31 % 81) + 1] = cloud.x[2 * n + 1];
-    }
-    GOOD(field_match_nodes(2, 81, cloud.x, 81, cloud.x, match, &matched, &error));
-    assert_true(matched);
-    for (int32_t n = 0; n < 81; n++) {
-        assert_int_equal(match[n], n);
-    }
-    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
-    assert_true(matched);
-    for (int64_t n = 0; n < 81; n++) {
-        assert_false(seen[match[n]]);
-        seen[match[n]] = 1;
-        AT_MOST(fabs(other[2 * match[n]] - cloud.x[2 * n]), 1e-10);
-        AT_MOST(fabs(other[2 * match[n] + 1] - cloud.x[2 * n + 1]), 1e-10);
-    }
-    other[5] += 1e-8;
-    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
-    assert_false(matched);
-    GOOD(field_match_nodes(2, 81, cloud.x, 80, cloud.x, match, &matched, &error));
-    assert_false(matched);
-    memcpy(other, cloud.x, 81 * 2 * sizeof *other); /* the same places, but not equally often */
-    memcpy(other, cloud.x + 2 * 40, 2 * sizeof *other);
-    GOOD(field_match_nodes(2, 81, cloud.x, 81, other, match, &matched, &error));
-    assert_false(matched);
-}
-
-TEST(statistics_of_differences)
-{
-    double difference[] = {3.0, 0.0, 4.0, 100.0, 4.0, 1.0};
-    static const int64_t index[] = {0, 1, 2, 4, 5};
-    struct field_statistics statistics;
-    GOOD(field_statistics(5, index, difference, &statistics, &error));
-    AT_MOST(fabs(statistics.average - 2.4), 1e-15);
-    AT_MOST(fabs(statistics.rmse - sqrt(42.0 / 5.0)), 1e-15);
-    assert_true(statistics.largest == 4.0 && statistics.largest_at == 2);
-    assert_true(field_percentile(&statistics, 50) == 3.0);
-    assert_true(field_percentile(&statistics, 100) == 4.0);
-    assert_true(field_percentile(&statistics, 0) == 0.0);
-    AT_MOST(fabs(field_percentile(&statistics, 12.5) - 0.5), 1e-15);
-    field_statistics_free(&statistics);
-    difference[4] = NAN;
-    GOOD(field_statistics(5, index, difference, &statistics, &error));
-    assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
-    assert_true(isnan(field_percentile(&statistics, 50)));
-    assert_int_equal(statistics.largest_at, 4);
-    field_statistics_free(&statistics);
-    GOOD(field_statistics(0, index, difference, &statistics, &error));
-    assert_true(isnan(statistics.average) && isnan(statistics.largest) && isnan(statistics.rmse));
-    field_statistics_free(&statistics);
-    static const double field[] = {3.0, 4.0, NAN, 0.0};
-    assert_true(field_largest(1, 2, field) == 5.0);
-    assert_true(isnan(field_largest(2, 2, field)));
-}
-
-/* A field against itself, against itself on another cloud, and against one that differs at one node. */
-TEST_IN_EACH_DIM(comparisons)
-{
-    FREED_BY(scattered_free) struct scattered coarse = scatter(dim, 5, 1, &places[0], 0.0, 3);
-    FREED_BY(scattered_free)
-    struct scattered fine = scatter(dim, dim == 2 ? 12 : 8, 1, &places[0], 0.2, 4);
-    double *a = linear_field(dim, coarse.count, coarse.x), *b = linear_field(dim, fine.count, fine.x);
-    struct nodal_field first = view(&coarse, a), second = view(&fine, b);
-    struct field_comparison comparison;
-    bool *chosen = zeros(coarse.count, sizeof *chosen);
-    GOOD(field_compare(&first, &first, NULL, false, &comparison, &error));
-    assert_true(comparison.coincide && comparison.count == coarse.count && comparison.outside == 0);
-    for (int64_t n = 0; n < coarse.count; n++) {
-        assert_true(comparison.difference[n] == 0.0);
-    }
-    field_comparison_free(&comparison);
-
-    a[2 * 7] += 3.0;
-    a[2 * 7 + 1] += 4.0;
-    GOOD(field_compare(&first, &second, NULL, false, &comparison, &error));
-    assert_false(comparison.coincide);
-    for (int64_t n = 0; n < coarse.count; n++) {
-        AT_MOST(fabs(comparison.difference[n] - (n == 7 ? 5.0 : 0.0)), 1e-11);
-    }
-    field_comparison_free(&comparison);
-
-    coarse.x[9 * dim] += 10.0; /* outside, unless left out */
-    FAILS(field_compare(&first, &second, NULL, false, &comparison, &error), STATUS_INPUT, "row 9");
-    assert_int_equal(comparison.outside, 1);
-    field_comparison_free(&comparison);
-    GOOD(field_compare(&first, &second, NULL, true, &comparison, &error));
-    assert_int_equal(comparison.count, coarse.count - 1);
-    assert_true(isnan(comparison.difference[9]));
-    field_comparison_free(&comparison);
-    chosen[7] = chosen[8] = true;
-    GOOD(field_compare(&first, &second, chosen, false, &comparison, &error));
-    assert_int_equal(comparison.count, 2);
-    assert_true(comparison.node[0] == 7 && comparison.node[1] == 8);
-    assert_true(isnan(comparison.difference[0]));
-    field_comparison_free(&comparison);
 }
 
 /* Of a piecewise linear field each cell's own line, also a little beyond the cells; far from them an error.
@@ -246,16 +120,6 @@ TEST(linear_in_a_tetrahedron)
     for (int i = 0; i < 8; i++) {
         AT_MOST(fabs(got[i] - values[i]), 1e-15 * 10.0);
     }
-}
-
-/* A cloud that cannot be interpolated is not comparable: an error, not a verdict. */
-TEST(not_comparable)
-{
-    static const double line[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4}, point[] = {1.5, 1.5}, values[10] = {0.0};
-    struct nodal_field a = {.cells = {.dim = 2, .node_count = 1, .x = point}, .cols = 2, .values = values};
-    struct nodal_field b = {.cells = {.dim = 2, .node_count = 5, .x = line}, .cols = 2, .values = values};
-    FREED_BY(field_comparison_free) struct field_comparison comparison = {0};
-    FAILS(field_compare(&a, &b, NULL, false, &comparison, &error), STATUS_INPUT, "");
 }
 
 RUN_TESTS(NULL, NULL)

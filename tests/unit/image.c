@@ -201,59 +201,6 @@ TEST(spaces)
     image_free(&image);
 }
 
-TEST(spaces_that_are_none)
-{
-    double flat[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}},
-           far[3][4] = {{1, 0, 0, NAN}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-    begin_nifti(&file, 1, false, 2, 2, 2, 2, 8);
-    file.size += 8;
-    put_sform(&file, 1, flat);
-    refused("sform gives the voxels no place");
-    put_sform(&file, 1, far);
-    refused("sform gives the voxels no place");
-    put_sform(&file, 0, flat);
-    put_qform(&file, 1, INFINITY, 0, 0, (double[3]){0, 0, 0});
-    refused("qform gives the voxels no place");
-    put_qform(&file, 0, 0, 0, 0, (double[3]){0, 0, 0});
-    put_pixdim(&file, 2, 0);
-    refused("voxel sizes");
-    put_pixdim(&file, 2, 1);
-    put_units(&file, 5);
-    refused("unknown unit");
-    /* One slice needs no size across. */
-    begin_nifti(&file, 1, false, 2, 2, 1, 2, 8);
-    file.size += 4;
-    put_sform(&file, 1, flat);
-    accepted();
-    for (int r = 0; r < 3; r++) { /* the normal, as long as the step along the first axis */
-        NEAR_TO(image.to_world[r][2], (r < 2 ? -1e-3 : 1e-3) * sqrt(2.0 / 3), 1e-12);
-    }
-    image_free(&image);
-}
-
-TEST(colours_and_vectors)
-{
-    begin_nifti(&file, 1, false, 2, 2, 1, 128, 24);
-    for (int i = 0; i < 12; i++) {
-        append_value(&file, 1, (uint64_t)(10 + i));
-    }
-    put_scale(&file, 2, 5); /* not for colours */
-    accepted();
-    assert_int_equal(image.components, 3);
-    NEAR_TO(image.values[3 * 2 + 1], 17, 0);
-    image_free(&image);
-    begin_nifti(&file, 2, true, 2, 2, 1, 4, 16);
-    put_dim(&file, 0, 5);
-    put_dim(&file, 5, 3);
-    for (int i = 0; i < 12; i++) {
-        append_value(&file, 2, (uint64_t)(10 + i));
-    }
-    accepted();
-    assert_int_equal(image.components, 3);
-    NEAR_TO(image.values[3 * 2 + 1], 10 + 4 * 1 + 2, 0);
-    image_free(&image);
-}
-
 TEST(headers_that_lie)
 {
     make_kind(&kinds[2], 1, false);
@@ -294,32 +241,6 @@ TEST(headers_that_lie)
     refused("cut short");
     put_dim(&file, 1, (int64_t)1 << 40);
     refused("along dimension 1");
-}
-
-TEST(other_files)
-{
-    file.size = 0;
-    refused("is empty");
-    static const char *const texts[][2] = {
-        {"NRRD0004\n", "NRRD"},      {"# mts 1\n", "mts stream"},    {"ObjectType = Image\n", "MetaImage"},
-        {"$MeshFormat\n", "a mesh"}, {"\x5c\x01", "no NIfTI image"}, {"hello, world", "no NIfTI image"}};
-    for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
-        file.size = strlen(texts[t][0]);
-        memcpy(file.bytes, texts[t][0], file.size);
-        refused(texts[t][1]);
-    }
-    memset(file.bytes, 0, 200);
-    memcpy(file.bytes + 128, "DICM", 4);
-    file.size = 200;
-    refused("DICOM");
-    make_kind(&kinds[0], 1, false);
-    memcpy(file.bytes + 344, "ni1", 4);
-    refused("data are in a file of their own");
-    memset(file.bytes + 344, 0, 4);
-    refused("ANALYZE");
-    make_kind(&kinds[0], 2, false);
-    file.bytes[5] = 'x';
-    refused("no mark of NIfTI-2");
 }
 
 /* No part of a file passes for the whole, compressed or not; no bit of compressed data can be turned unseen.
@@ -448,35 +369,6 @@ TEST(rounding)
     write_and_read(&written, false);
     NEAR_TO(image.values[4], 13, 0);
     image_free(&image);
-}
-
-/* More than fits the first version, several blocks of compression, and components. */
-TEST(large)
-{
-    FREED_BY(image_free) struct image written = {0};
-    const size_t size[3] = {40000, 31, 1};
-    GOOD(image_new(&written, size, 3, &error));
-    written.space = IMAGE_SPACE_SCANNER;
-    for (size_t i = 0; i < 3 * image_voxels(&written); i++) {
-        written.values[i] = (float)sin((double)i);
-    }
-    write_and_read(&written, true);
-    assert_int_equal(image.version, 2);
-    assert_int_equal(image.intent, IMAGE_INTENT_VECTOR);
-    assert_same(&written, &image);
-    image_free(&image);
-    written.datatype = IMAGE_RGBA32;
-    FAILS(image_write(&written, 1, false, &error), STATUS_INPUT, "");
-}
-
-TEST(full_device)
-{
-    FREED_BY(image_free) struct image written = {0};
-    const size_t size[3] = {10, 10, 10};
-    int full = open("/dev/full", O_WRONLY);
-    GOOD(image_new(&written, size, 1, &error));
-    FAILS_WITH(image_write(&written, full, true, &error), STATUS_SYSTEM, "No space left on device");
-    close(full);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -124,42 +124,6 @@ TEST(five_labels_at_a_node)
     assert_int_equal(most, 5);
 }
 
-/* The same body from voxels in another order, mirrored along an axis: the same cells. */
-TEST(orders_of_voxels)
-{
-    const double voxel[3] = {1, 1.25, 2};
-    struct label_shape shape;
-    assert_true(label_shape_make("two", 1, voxel, &shape));
-    struct labels labels = labels_of(&shape), turned = labels;
-    uint16_t *label = zeros(shape.size[0] * shape.size[1] * shape.size[2], sizeof *label);
-    for (int d = 0; d < 3; d++) { /* axes k, i, j, the first one backwards */
-        turned.size[d] = shape.size[(d + 2) % 3];
-        for (int e = 0; e < 4; e++) {
-            turned.to_voxel[d][e] = labels.to_voxel[(d + 2) % 3][e] * (d == 0 ? -1 : 1);
-        }
-    }
-    turned.to_voxel[0][3] += (double)(turned.size[0] - 1);
-    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
-        int64_t i = v % shape.size[0], j = v / shape.size[0] % shape.size[1],
-                k = v / shape.size[0] / shape.size[1];
-        label[(j * turned.size[1] + i) * turned.size[0] + turned.size[0] - 1 - k] = shape.label[v];
-    }
-    turned.label = label;
-    struct label_cells_options options = {.spacing = 5e-3, .keep = all_kept};
-    struct label_cells a = make(&labels, &options), b = make(&turned, &options);
-    check_cells(&a);
-    check_volumes(&labels, &shape, &a, 0.01);
-    assert_int_equal(count_astray(&labels, &a), 0);
-    assert_int_equal(a.node_count, b.node_count);
-    assert_int_equal(a.cell_count, b.cell_count);
-    for (int64_t i = 0; i < 3 * a.node_count; i++) {
-        assert_true(fabs(a.x[i] - b.x[i]) < 1e-9);
-    }
-    label_cells_free(&a);
-    label_cells_free(&b);
-    free(shape.label);
-}
-
 /* Longest edge of the cells of a label, or 0, that touch its boundary, or do not. */
 static double longest_edge(const struct label_cells *mesh, int32_t label, bool at_boundary)
 {
@@ -320,58 +284,6 @@ TEST(by_sizes)
     free(shape.label);
 }
 
-/* A slice: triangles. */
-TEST(slices)
-{
-    uint16_t label[64 * 64];
-    struct labels labels = {.size = {64, 1, 64}, .label = label, .count = 3, .dim = 2, .axis = {0, 2}};
-    const double area[3] = {0, 0.5 * M_PI * 400e-6, 0.5 * M_PI * 400e-6};
-    double found[3] = {0};
-    for (int v = 0; v < 64 * 64; v++) {
-        double x = v % 64 - 31.5, z = v / 64 - 31.5;
-        label[v] = hypot(x, z) < 20 ? (x < 0 ? 1 : 2) : 0;
-    }
-    for (int d = 0; d < 3; d++) {
-        labels.to_voxel[d][d] = 1e3;
-        labels.to_voxel[d][3] = d == 1 ? 0 : 31.5;
-    }
-    struct label_cells_options options = {.spacing = 4e-3, .keep = all_kept};
-    struct label_cells mesh = make(&labels, &options);
-    check_cells(&mesh);
-    struct cells cells = label_cells_view(&mesh);
-    for (int64_t c = 0; c < cells.count; c++) {
-        found[mesh.label[c]] += cell_volume(&cells, c);
-    }
-    for (int l = 1; l < 3; l++) {
-        assert_true(fabs(found[l] / area[l] - 1) < 0.01);
-    }
-    label_cells_free(&mesh);
-    options.finest = 1e-3;
-    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "not for slices");
-}
-
-TEST(threads)
-{
-    struct label_shape shape;
-    struct label_cells mesh[2];
-    assert_true(label_shape_make("blobs", 3, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    struct label_cells_options options = {.spacing = 5e-3, .finest = 2.5e-3, .keep = all_kept};
-    int before = omp_get_max_threads();
-    for (int t = 0; t < 2; t++) {
-        omp_set_num_threads(t == 0 ? 1 : 3);
-        mesh[t] = make(&labels, &options);
-    }
-    omp_set_num_threads(before);
-    assert_int_equal(mesh[0].node_count, mesh[1].node_count);
-    assert_int_equal(mesh[0].cell_count, mesh[1].cell_count);
-    assert_memory_equal(mesh[0].x, mesh[1].x, (size_t)mesh[0].node_count * 3 * sizeof(double));
-    assert_memory_equal(mesh[0].cell, mesh[1].cell, (size_t)mesh[0].cell_count * 4 * sizeof(int32_t));
-    label_cells_free(&mesh[0]);
-    label_cells_free(&mesh[1]);
-    free(shape.label);
-}
-
 /* The shares sum to 1, their difference has the gradient it says, and far from the grid all is outside. */
 TEST(shares)
 {
@@ -402,65 +314,6 @@ TEST(shares)
             assert_true(fabs(slope - gradient[d]) < 1e-3 * 1e3);
         }
     }
-    free(shape.label);
-}
-
-TEST(what_is_lost)
-{
-    struct label_shape shape;
-    int64_t lost[64], total = 0;
-    assert_true(label_shape_make("thin", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    for (int64_t v = 0; v < shape.size[0] * shape.size[1] * shape.size[2]; v++) {
-        total += shape.label[v] == 2;
-    }
-    struct label_cells_options options = {.spacing = 8e-3, .keep = all_kept};
-    struct label_cells mesh = make(&labels, &options);
-    GOOD(label_cells_lost(&labels, options.keep, &mesh, lost, &error));
-    assert_true((double)lost[2] > 0.7 * (double)total && lost[2] <= total);
-    label_cells_free(&mesh);
-    options.spacing = 2e-3;
-    mesh = make(&labels, &options);
-    GOOD(label_cells_lost(&labels, options.keep, &mesh, lost, &error));
-    assert_int_equal(lost[2], 0);
-    label_cells_free(&mesh);
-    free(shape.label);
-}
-
-/* A thin label that is left out cuts the cylinder in two: the coarse lattice fills the gap. */
-TEST(what_is_filled)
-{
-    struct label_shape shape;
-    static const bool keep[3] = {false, true, false};
-    int64_t lost[3];
-    assert_true(label_shape_make("thin", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    for (int coarse = 0; coarse < 2; coarse++) {
-        struct label_cells_options options = {.spacing = coarse ? 6e-3 : 2e-3, .keep = keep};
-        FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
-        GOOD(label_cells_lost(&labels, keep, &mesh, lost, &error));
-        assert_int_equal(lost[0], 0);
-        assert_int_equal(lost[2] > 1000, coarse);
-    }
-    free(shape.label);
-}
-
-TEST(refusals)
-{
-    struct label_shape shape;
-    struct label_cells mesh;
-    assert_true(label_shape_make("layer", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    struct label_cells_options options = {.spacing = 1e-6, .keep = all_kept};
-    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "lattice points over the labels");
-    options.spacing = 10;
-    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT,
-          "no lattice point lies in a label: smaller?");
-    options = (struct label_cells_options){.spacing = 1, .finest = 1e-3, .keep = all_kept};
-    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "1/128");
-    memset(shape.label, 0, (size_t)(shape.size[0] * shape.size[1] * shape.size[2]) * sizeof *shape.label);
-    options = (struct label_cells_options){.spacing = 1e-3, .keep = all_kept};
-    FAILS(label_cells_make(&labels, &options, &mesh, &error), STATUS_INPUT, "all is outside");
     free(shape.label);
 }
 

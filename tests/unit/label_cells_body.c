@@ -234,23 +234,4 @@ TEST(walls_stay_apart)
     }
 }
 
-/* A label that is left out leaves a cavity, whose wall knows it. */
-TEST(cavities)
-{
-    struct label_shape shape;
-    const bool keep[5] = {false, true, false, true, true};
-    int64_t walls = 0;
-    assert_true(label_shape_make("four", 1, millimetre, &shape));
-    struct labels labels = labels_of(&shape);
-    struct label_cells_options options = {.spacing = 5e-3, .keep = keep};
-    FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
-    check_cells(&mesh);
-    for (int64_t f = 0; f < mesh.facet_count; f++) {
-        assert_true(keep[mesh.side[2 * f]] && !keep[mesh.side[2 * f + 1]]);
-        walls += mesh.side[2 * f + 1] == 2;
-    }
-    assert_true(walls > 50);
-    free(shape.label);
-}
-
 RUN_TESTS(NULL, NULL)

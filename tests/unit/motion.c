@@ -166,19 +166,6 @@ TEST(walks)
     drop_body(&body);
 }
 
-/* A body turned inside out: told, and nothing is found that is none. */
-TEST(folds)
-{
-    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, u[] = {0, 0, 0, 0, -1.5, 0, 0, 0};
-    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
-    struct cells cells = {2, 4, x, 2, node};
-    FREED_BY(motion_free) struct motion motion = {0};
-    int64_t first = -1;
-    GOOD(motion_build(&cells, u, true, NULL, &motion, &error));
-    assert_int_equal(motion_folded(&motion, &first), 1);
-    assert_int_equal(first, 1);
-}
-
 /* Whether grid point y lies in a cell, by its corners' half-planes. */
 static bool holds(const struct cells *cells, int64_t cell, const double *y)
 {

@@ -175,22 +175,6 @@ TEST(truncation_at_every_byte_is_found)
     }
 }
 
-TEST(changed_bytes_do_no_harm)
-{
-    static const unsigned char values[] = {0x00, 0x01, 0x02, 0x7f, 0xff, '$', '7', '9', '-', '\n'};
-    for (int form = 0; form < FIXTURE_FORMS; form++) {
-        struct fixture f = fixture_make(form);
-        for (size_t at = 0; at < f.size; at++) {
-            char was = f.bytes[at];
-            for (size_t v = 0; v < sizeof values; v++) {
-                f.bytes[at] = (char)values[v];
-                require_sense(f.bytes, f.size);
-            }
-            f.bytes[at] = was;
-        }
-    }
-}
-
 /* MSH 1, partitioned files and second order, as gmsh writes them, treated in the same ways; in the folder
  * that holds the tests. */
 TEST(other_forms_are_read)

@@ -1,4 +1,4 @@
-/* Options as a usage text declares them, and command lines that use them. */
+/* Command lines that use the options of a usage text. */
 #include "unit.h"
 
 #include "base/options.h"
@@ -37,51 +37,6 @@ static enum status parse(const char *line, struct options *options, char operand
         strcat(strcat(operands, i > 1 ? " " : ""), argv[i]);
     }
     return status;
-}
-
-TEST(declarations)
-{
-    static const struct option expected[] = {
-        {'k', "factor", true, false, false, NULL},
-        {'\0', "no-widen", false, false, false, NULL},
-        {'i', "interpolation", true, false, false, NULL},
-        {'\0', "part", true, true, false, NULL},
-        {'m', "mu", true, false, false, NULL},
-        {'v', "verbose", false, false, false, NULL},
-        {'h', "help", false, false, false, NULL},
-        {'\0', "version", false, false, false, NULL},
-    };
-    enum { EXPECTED = sizeof expected / sizeof *expected };
-    struct options options;
-    char text[32];
-    options_declare(&options, usage);
-    assert_int_equal(options.count, EXPECTED);
-    for (int i = 0; i < EXPECTED; i++) {
-        const struct option *option = &options.option[i];
-        assert_string_equal(option->name, expected[i].name);
-        assert_int_equal(option->letter, expected[i].letter);
-        assert_int_equal(option->takes_value, expected[i].takes_value);
-        assert_int_equal(option->repeats, expected[i].repeats);
-        assert_false(option->given);
-        assert_null(option->value);
-        assert_ptr_equal(options_find(&options, expected[i].name), option);
-    }
-    assert_true(options_has(&options, "mu"));
-    assert_false(options_has(&options, "m"));
-    assert_false(options_has(&options, "after"));
-    assert_string_equal(option_text(options_find(&options, "factor"), text), "-k");
-    assert_string_equal(option_text(options_find(&options, "no-widen"), text), "--no-widen");
-}
-
-/* A tool's own -h leaves --help without a letter; a text without a block declares these two alone. */
-TEST(own_letter)
-{
-    struct options options;
-    options_declare(&options, "voxels\n\nOptions:\n  -h, --spacing LENGTH  required\n");
-    assert_int_equal(options_find(&options, "spacing")->letter, 'h');
-    assert_int_equal(options_find(&options, "help")->letter, '\0');
-    options_declare(&options, "voxels\n");
-    assert_int_equal(options.count, 2);
 }
 
 TEST(uses)

@@ -1,5 +1,5 @@
 /* Quasi-static solution: linear patch test, closed forms, work and reaction, the error estimate as a bound,
- * and results that depend on neither threads nor the way the load is applied. */
+ * and results that do not depend on the way the load is applied. */
 #include "lattice_fixture.h"
 
 #include "solid/relaxation/relaxation.h"
@@ -144,30 +144,6 @@ static void squeeze(int dim, double stretch, bool confined, double expected, dou
 TEST(unconfined_compression)
 {
     squeeze(3, 0.8, false, -763.26922, 1.11574668);
-}
-
-/* Pressed further than to .6, free sides may fold: tests/folds.bats. */
-TEST(unconfined_extension)
-{
-    struct material material = {.model = MATERIAL_NEO_HOOKEAN};
-    material_set_moduli(&material, 3000, 0.49);
-    static const double stretches[] = {0.7, 1.2, 1.5}, expected[] = {0, 504.78406, 1050.71532};
-    for (int k = 0; k < 3; k++) {
-        /* The lateral stretch of the closed form: no lateral stress. */
-        double low = 0.5, high = 2, P[9], C[9];
-        for (int i = 0; i < 60; i++) {
-            double s = 0.5 * (low + high), F[9] = {s, 0, 0, 0, s, 0, 0, 0, stretches[k]};
-            material_isochoric_stress(&material, F, P);
-            cofactor(F, C);
-            double pressure = material_pressure(&material, determinant(F));
-            P[8] += pressure * C[8];
-            *(P[0] + pressure * C[0] > 0 ? &high : &low) = s;
-        }
-        if (k > 0) {
-            NEAR_TO(P[8] / expected[k], 1, 1e-7);
-        }
-        squeeze(3, stretches[k], false, P[8], 0.5 * (low + high));
-    }
 }
 
 TEST(confined_compression)
@@ -342,28 +318,6 @@ TEST(load_goes_on_after_an_inversion)
     AT_MOST(largest_difference(slow, u, l.system.node_count * 2), 1e-6 * 0.02);
 }
 
-TEST(any_number_of_threads)
-{
-    double *first = NULL;
-    int most = omp_get_max_threads();
-    for (int threads = 1; threads <= 3; threads++) {
-        FREED_BY(lattice_free) struct lattice l = {0};
-        omp_set_num_threads(threads);
-        int32_t curve = lattice_begin(&l, 3, 5, 0.1, CURVE_SMOOTH);
-        lattice_slide(&l, 1u << 4 | 1u << 0, curve);
-        lattice_push(&l, 5, -0.01, curve);
-        double *u = lattice_vector(&l);
-        struct relaxation_options options_of_run = to(1e-4);
-        (void)relax(&l, &options_of_run, u, NULL);
-        if (first == NULL) {
-            first = u;
-        } else {
-            assert_memory_equal(first, u, (size_t)l.system.node_count * 3 * sizeof *u);
-        }
-    }
-    omp_set_num_threads(most);
-}
-
 /* Augmentations reach the pressures that the bulk modulus itself makes of the volumes: the same forces
  * without a limit, for which a strain of 1e-9 counts by 500 000 shear moduli. */
 TEST(pressures_are_augmented)
@@ -394,22 +348,6 @@ TEST(pressures_are_augmented)
     }
 }
 
-/* A condition stated twice changes nothing; one that disagrees is a verdict that names a node. */
-TEST(conditions_twice)
-{
-    FREED_BY(lattice_free) struct lattice once = {0}, twice = {0};
-    struct relaxation_report report;
-    clamp(&once, 5, -0.01, 0, true);
-    clamp(&twice, 5, -0.01, 0, true);
-    lattice_push(&twice, 3, -0.01, 0);
-    double *u = relaxed(&once, 1e-9, NULL), *v = relaxed(&twice, 1e-9, NULL);
-    AT_MOST(largest_difference(u, v, once.system.node_count * 2), 1e-8 * 0.01);
-    lattice_push(&twice, 3, -0.0101, 0);
-    struct relaxation_options options = to(1e-6);
-    FAILS(relaxation_run(&twice.system, &options, v, NULL, &report, &error), STATUS_VERDICT,
-          "the conditions at node");
-}
-
 /* A weight on a confined column of height .1: the top sinks as the closed form says. */
 TEST(column_under_gravity)
 {
@@ -436,87 +374,6 @@ TEST(column_under_gravity)
         top += (i % 3 == 0 ? 1.0 / 6 : 1.0 / 3) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
     }
     NEAR_TO(top / -0.954976e-3, 1, 5e-3);
-}
-
-/* Frames by number and load: displacement of the last node, and the force that holds it. */
-struct album {
-    int64_t count;
-    double time[16], last[16], force[16];
-    const struct lattice *lattice;
-    const double *row_force;
-};
-
-static void collect(void *context, int64_t number, double time, const double *u)
-{
-    struct album *album = context;
-    int64_t rows = album->lattice->system.rows.count;
-    assert_int_equal(number, album->count);
-    album->time[number] = time;
-    album->last[number] = lattice_field(album->lattice, u, album->lattice->system.node_count - 1, 1);
-    album->force[number] = album->row_force[rows - 1];
-    album->count++;
-}
-
-static bool stop_at_once(void *context, const struct progress *progress)
-{
-    (void)context;
-    assert_non_null(progress->u);
-    return false;
-}
-
-TEST(frames_and_outcomes)
-{
-    struct lattice l;
-    clamp(&l, 5, -0.01, 0, true);
-    double *u = lattice_vector(&l), *row_force = lattice_vector(&l);
-    assert_true(l.system.rows.count <= 2 * l.system.node_count);
-    struct album album = {.lattice = &l, .row_force = row_force};
-    struct relaxation_options options = to(1e-5);
-    options.frames = 7;
-    options.frame = collect;
-    options.context = &album;
-    struct relaxation_report report = relax(&l, &options, u, row_force);
-    assert_int_equal(report.outcome, RELAXATION_CONVERGED);
-    assert_int_equal(album.count, 8);
-    for (int k = 0; k <= 7; k++) {
-        NEAR_TO(album.time[k], k / 7.0, 1e-15);
-    }
-    NEAR_TO(album.last[0], 0, 0);
-    NEAR_TO(album.force[0], 0, 0);
-    NEAR_TO(album.last[7], lattice_field(&l, u, l.system.node_count - 1, 1), 0);
-    /* Each is what a run to that load alone comes to. */
-    for (int k = 1; k <= 7; k++) {
-        FREED_BY(lattice_free) struct lattice alone = {0};
-        double s = k / 7.0, factor = s * s * s * (10 - 15 * s + 6 * s * s);
-        clamp(&alone, 5, -0.01 * factor, 0, true);
-        memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
-        options = to(1e-5);
-        report = relax(&alone, &options, u, row_force);
-        assert_int_equal(report.outcome, RELAXATION_CONVERGED);
-        NEAR_TO(album.last[k], lattice_field(&alone, u, alone.system.node_count - 1, 1),
-                1e-5 * 0.01 * factor);
-        NEAR_TO(album.force[k], row_force[alone.system.rows.count - 1], 1e-4 * fabs(album.force[k]));
-        assert_true(fabs(album.force[k]) > fabs(album.force[k - 1]));
-    }
-    memset(u, 0, (size_t)l.system.node_count * 2 * sizeof *u);
-    options = to(1e-12);
-    options.most_steps = 150;
-    report = relax(&l, &options, u, NULL);
-    assert_int_equal(report.outcome, RELAXATION_TOO_MANY_STEPS);
-    assert_int_equal(report.steps, 150);
-    options.progress = stop_at_once;
-    report = relax(&l, &options, u, NULL);
-    assert_int_equal(report.outcome, RELAXATION_STOPPED);
-    lattice_free(&l);
-    clamp(&l, 5, -0.01, 0, true);
-    u = lattice_vector(&l);
-    u[2 * 12] = NAN;
-    options = to(1e-6);
-    report = relax(&l, &options, u, NULL);
-    assert_int_equal(report.outcome, RELAXATION_INVERTED);
-    assert_true(!(report.least_jacobian > 0));
-    assert_true(report.inverted_point >= 0 && report.inverted_point < l.system.body.point_count);
-    lattice_free(&l);
 }
 
 RUN_TESTS(one_thread, NULL)

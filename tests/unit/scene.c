@@ -240,39 +240,6 @@ TEST(line_length)
     }
 }
 
-/* Fault 11: material constants out of range. */
-TEST(material_values)
-{
-    static const struct {
-        const char *key, *value, *words;
-    } cases[] = {
-        {"E", "0", "E: 0 is not above 0"},
-        {"E", "-3", "E: -3 is not above 0"},
-        {"E", "nan", "E: 'nan' is not a finite number"},
-        {"E", "inf", "E: 'inf' is not a finite number"},
-        {"E", "1e999", "E: '1e999' is not a finite number"},
-        {"rho", "0", "rho: 0 is not above 0"},
-        {"rho", "-1", "rho: -1 is not above 0"},
-        {"nu", ".5", "nu: 0.5 is not below 0.5: nearly incompressible"},
-        {"nu", "0.5000001", "nu: 0.5000001 is not below 0.5"},
-        {"nu", "0.7", "nearly incompressible tissue needs nu < 0.5"},
-        {"nu", "-1", "nu: -1 is not above -1"},
-        {"nu", "NaN", "nu: 'NaN' is not a finite number"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        char text[256];
-        int length = snprintf(text, sizeof text, HEAD "[material m]\n%s = %s\nregion = r\n", cases[i].key,
-                              cases[i].value);
-        static const char *const others[] = {"E = 3000\n", "nu = .3\n", "rho = 1000\n"};
-        for (size_t o = 0; o < 3; o++) {
-            if (strncmp(others[o], cases[i].key, strlen(cases[i].key)) != 0) {
-                length += snprintf(text + length, sizeof text - (size_t)length, "%s", others[o]);
-            }
-        }
-        fails(text, 5, cases[i].words);
-    }
-}
-
 /* At rest without weight nobody need give a density. */
 TEST(density_that_is_not_felt)
 {

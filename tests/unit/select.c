@@ -1,4 +1,4 @@
-/* Choosing by place, connected parts, rings, and the quality of cells. */
+/* Distances, connected parts, sides, and the quality of cells. */
 #include "unit.h"
 
 #include "approx/cells/parts.h"
@@ -33,19 +33,6 @@ TEST(quality_is_the_ratio_of_radii)
     assert_true(cell_quality(&cells, 0) == 0);
     corner[9] = NAN;
     assert_true(cell_quality(&cells, 0) == 0);
-}
-
-TEST(the_poorest_come_first)
-{
-    const double x[] = {0, 0, 1, 0, 0.5, 0.1, 0.5, 0.001, 0.5, 0.01, 0.5, 0.9};
-    const int32_t node[] = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 5};
-    struct cells cells = {2, 6, x, 4, node};
-    struct poor_cell poorest[2];
-    assert_int_equal(cells_poorest(&cells, 0.5, 2, poorest), 3);
-    assert_int_equal(poorest[0].cell, 1);
-    assert_int_equal(poorest[1].cell, 2);
-    assert_true(poorest[0].quality < poorest[1].quality);
-    assert_int_equal(cells_poorest(&cells, 0.5, 0, poorest), 3);
 }
 
 TEST(distances_to_pieces)
@@ -91,33 +78,6 @@ TEST(sides_end_at_sharp_turns)
     assert_int_equal(count, 12);
     GOOD(boundary_sides(islands_x, &boundary, 90, part, &count, &error));
     assert_int_equal(count, 3);
-}
-
-TEST(rings_grow_and_shrink)
-{
-    const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5};
-    bool items[5] = {false, false, true, false, false};
-    bool nodes[6] = {true};
-    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, 1, true, items, &error));
-    assert_true(!items[0] && items[1] && items[2] && items[3] && !items[4]);
-    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, -1, true, items, &error));
-    assert_true(!items[0] && !items[1] && items[2] && !items[3] && !items[4]);
-    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, 2, false, nodes, &error));
-    assert_true(nodes[0] && nodes[1] && nodes[2] && !nodes[3]);
-    GOOD(choice_grow(5, 2, chain, 6, 0, NULL, -1, false, nodes, &error));
-    assert_true(nodes[0] && nodes[1] && !nodes[2]);
-}
-
-TEST(rings_shrink_from_the_edge)
-{
-    const int32_t chain[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5}, ends[] = {0, 5};
-    bool items[5] = {true, true, true, true, true}, nodes[6] = {true, true, true, true, true, true};
-    GOOD(choice_grow(5, 2, chain, 6, 2, ends, -1, true, items, &error));
-    assert_true(!items[0] && items[1] && items[3] && !items[4]);
-    GOOD(choice_grow(5, 2, chain, 6, 2, ends, -2, false, nodes, &error));
-    assert_true(!nodes[0] && !nodes[1] && nodes[2] && nodes[3] && !nodes[4] && !nodes[5]);
-    GOOD(choice_grow(5, 2, chain, 6, 2, ends, 1, false, nodes, &error));
-    assert_true(!nodes[0] && nodes[1] && nodes[4] && !nodes[5]);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -266,26 +266,6 @@ TEST_IN_EACH_DIM(smoothing_telescopes)
     }
 }
 
-/* The same bits for any number of threads. */
-TEST(smoothing_threads)
-{
-    static const int numbers[] = {1, 2, 5};
-    FREED_BY(smoothed_free) struct smoothed first = {0};
-    int before = omp_get_max_threads();
-    smoothed_build(&first, 2, 20, BASIS_MODIFIED, 0.0);
-    for (int i = 0; i < 3; i++) {
-        FREED_BY(smoothed_free) struct smoothed s = {0};
-        omp_set_num_threads(numbers[i]);
-        smoothed_build(&s, 2, 20, BASIS_MODIFIED, 0.0);
-        int64_t rows = face_row_count(&s.faces);
-        size_t pairs = (size_t)s.edges.ptr[rows];
-        assert_int_equal(pairs, first.edges.ptr[rows]);
-        assert_memory_equal(s.edges.idx, first.edges.idx, pairs * sizeof(int32_t));
-        assert_memory_equal(s.edges.phi, first.edges.phi, pairs * sizeof(double));
-    }
-    omp_set_num_threads(before);
-}
-
 /* Each row is the mean of the values at its points. */
 TEST_IN_EACH_DIM(rows_of_edges)
 {

@@ -249,42 +249,4 @@ TEST(provenance_is_quoted_for_a_shell)
                         "nodes " MTS_VERSION " nodes -u mm 'it'\\''s a file' '' $'line\\x0aend'");
 }
 
-TEST(write_errors)
-{
-    FREED_BY(stream_free) struct stream stream = sample_stream();
-    int full = open("/dev/full", O_WRONLY);
-    assert_true(full >= 0);
-    FAILS(stream_write(&stream, full, true, &error), STATUS_SYSTEM, "No space left");
-    FAILS(stream_write(&stream, -1, false, &error), STATUS_SYSTEM, "");
-    close(full);
-}
-
-/* What each stage makes goes when it, or one before, is run again; what the table lacks goes with its family.
- */
-TEST(stages_of_sections)
-{
-    static const char *const names[] = {
-        "nodes.x", "cells.region",  "points.x", "faces.cell", "support.radius",
-        "nbr.ptr", "facepoint.idx", "nbr.more", "node.phi",   "shape.dphi",
-        "u",       "energy",        "stranger", "u.mean",     "points"};
-    static const enum section_stage stages[] = {
-        MADE_WITH_CLOUD,   MADE_WITH_CLOUD,   MADE_WITH_POINTS,  MADE_WITH_POINTS, MADE_WITH_SUPPORT,
-        MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SUPPORT, MADE_WITH_SHAPES, MADE_WITH_SHAPES,
-        MADE_WITH_RESULTS, MADE_WITH_RESULTS, MADE_ELSEWHERE,    MADE_ELSEWHERE,   MADE_WITH_POINTS};
-    enum { COUNT = sizeof names / sizeof *names };
-    FREED_BY(stream_free) struct stream stream = {0};
-    for (int i = 0; i < COUNT; i++) {
-        assert_int_equal(section_stage(names[i]), stages[i]);
-        GOOD(stream_put(&stream, names[i], TYPE_I4, 1, 1, "", array_new(1, 4), true, &error));
-    }
-    sections_remove(&stream, MADE_WITH_SUPPORT, MADE_WITH_SHAPES);
-    assert_int_equal(stream.section_count, COUNT - 6);
-    assert_non_null(stream_find(&stream, "points.x"));
-    assert_non_null(stream_find(&stream, "u"));
-    assert_null(stream_find(&stream, "nbr.more"));
-    sections_remove(&stream, MADE_WITH_RESULTS, MADE_WITH_RESULTS);
-    assert_int_equal(stream.section_count, COUNT - 8);
-    assert_non_null(stream_find(&stream, "u.mean"));
-}
-
 RUN_TESTS(NULL, NULL)

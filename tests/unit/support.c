@@ -198,58 +198,6 @@ TEST(least_neighbours)
     assert_true(widest == table.lists.widest);
 }
 
-/* The same bytes for any number of threads; also the same error. */
-TEST(threads)
-{
-    static const int numbers[] = {1, 2, 5};
-    FREED_BY(scattered_free) struct scattered cloud = scatter(3, 7, 3000, &places[0], 0.3, 9);
-    struct support_options options = support_defaults(3);
-    struct table tables[3];
-    struct error errors[3];
-    int before = omp_get_max_threads();
-    for (int i = 0; i < 3; i++) {
-        omp_set_num_threads(numbers[i]);
-        GOOD(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &error));
-    }
-    for (int i = 1; i < 3; i++) {
-        size_t pairs = (size_t)tables[0].lists.ptr[3000];
-        assert_memory_equal(tables[0].lists.ptr, tables[i].lists.ptr, 3001 * sizeof(int64_t));
-        assert_memory_equal(tables[0].lists.idx, tables[i].lists.idx, pairs * sizeof(int32_t));
-        assert_memory_equal(tables[0].lists.widen, tables[i].lists.widen, 3000 * sizeof(double));
-        assert_memory_equal(tables[0].phi, tables[i].phi, pairs * sizeof(double));
-        assert_memory_equal(tables[0].dphi, tables[i].dphi, pairs * 3 * sizeof(double));
-    }
-    for (int i = 0; i < 3; i++) {
-        table_free(&tables[i]);
-    }
-    for (int64_t p = 700; p < 3000; p += 700) {
-        cloud.points[p * 3] += 100.0;
-    }
-    for (int i = 0; i < 3; i++) {
-        omp_set_num_threads(numbers[i]);
-        assert_int_equal(tabulate(&options, cloud.count, cloud.x, 3000, cloud.points, &tables[i], &errors[i]),
-                         STATUS_VERDICT);
-        assert_non_null(strstr(errors[i].text, "points.x: row 700 at ("));
-        assert_string_equal(errors[i].text, errors[0].text);
-        table_free(&tables[i]);
-    }
-    omp_set_num_threads(before);
-}
-
-TEST(not_finite)
-{
-    FREED_BY(scattered_free) struct scattered cloud = scatter(2, 8, 10, &places[0], 0.3, 4);
-    struct support_options options = support_defaults(2);
-    struct table table;
-    static const double wrong[] = {NAN, INFINITY};
-    for (int i = 0; i < 2; i++) {
-        cloud.points[9] = wrong[i];
-        FAILS(tabulate(&options, cloud.count, cloud.x, 10, cloud.points, &table, &error), STATUS_INPUT,
-              "points.x: row 4");
-        table_free(&table);
-    }
-}
-
 /* A cloud that is a trap. */
 struct trap {
     const char *name;
@@ -332,20 +280,6 @@ TEST(trap_sphere)
             }
         }
     }
-}
-
-TEST(trap_slab)
-{
-    static struct trap trap = {.name = "slab 4 x 4 x 2", .dim = 3, .count = 32};
-    for (int n = 0; n < 32; n++) {
-        trap.x[3 * n] = n % 4;
-        trap.x[3 * n + 1] = n / 4 % 4;
-        trap.x[3 * n + 2] = n / 16;
-    }
-    assert_int_equal(spring(&trap, BASIS_LINEAR, true), STATUS_OK);
-    assert_int_equal(spring(&trap, BASIS_MODIFIED, true), STATUS_OK);
-    assert_int_equal(spring(&trap, BASIS_QUADRATIC, true), STATUS_VERDICT); /* z^2 = z on two layers */
-    assert_int_equal(spring(&trap, BASIS_QUADRATIC, false), STATUS_VERDICT);
 }
 
 TEST(trap_coplanar)

@@ -39,23 +39,6 @@ TEST(round_trip)
     assert_int_equal(table.block_ptr[1], 3);
 }
 
-TEST(values_that_are_open)
-{
-    static const char text[] = "1 2 - 4\n5 nan NaN 8\n", wrong[] = "1 - 3 4\n";
-    struct table table;
-    write_to(path, text, strlen(text));
-    GOOD(table_read_open(path, 4, 4, 1, 3, &table, &error));
-    assert_true(isnan(table.values[2]) && isnan(table.values[5]) && isnan(table.values[6]));
-    assert_true(table.values[3] == 4 && table.values[7] == 8);
-    table_free(&table);
-    FAILS(table_read(path, 4, 4, &table, &error), STATUS_INPUT, "");
-    table_free(&table);
-    write_to(path, wrong, strlen(wrong));
-    FAILS(table_read_open(path, 4, 4, 2, 3, &table, &error), STATUS_INPUT,
-          ":1: column 2: '-' is not a finite number");
-    table_free(&table);
-}
-
 TEST(blocks)
 {
     static const char text[] = "\n\n1 2\n# not a separator\n3 4\n \t \n\n5 6\n7 8\n9 10\n\n";
@@ -66,23 +49,6 @@ TEST(blocks)
     assert_int_equal(table.rows, 5);
     assert_int_equal(table.block_count, 2);
     assert_memory_equal(table.block_ptr, expected, sizeof expected);
-}
-
-TEST(grows)
-{
-    FREED_BY(table_free) struct table table = {0};
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    for (int i = 0; i < 1000; i++) {
-        fprintf(file, "%d\n%s", i, i % 10 == 9 ? "\n" : "");
-    }
-    assert_int_equal(fclose(file), 0);
-    GOOD(table_read(path, 1, 1, &table, &error));
-    assert_int_equal(table.rows, 1000);
-    assert_int_equal(table.block_count, 100);
-    for (int i = 0; i < 1000; i++) {
-        assert_true(table.values[i] == i);
-    }
 }
 
 /* dim = 0: as a table of 2 to 4 columns, else as a surface. */
@@ -142,19 +108,6 @@ TEST(faults)
     FAILS(table_read(folder, 1, 2, &table, &error), STATUS_INPUT, "is a folder");
     FAILS_WITH(table_read("/nonexistent", 1, 2, &table, &error), STATUS_INPUT,
                "/nonexistent: No such file or directory");
-}
-
-/* Fault 12 as far as reading goes: cut anywhere, a table is refused or holds whole rows. */
-TEST(truncation)
-{
-    static const char text[] = "# E nu\n3000 .49\n3100 .45\n\n2000 .4\n";
-    for (size_t size = 0; size < sizeof text; size++) {
-        FREED_BY(table_free) struct table table = {0};
-        struct error error = {""};
-        write_to(path, text, size);
-        enum status status = table_read(path, 2, 2, &table, &error);
-        assert_true(status == STATUS_OK ? text[size - 1] == '\n' : error.text[0] != '\0');
-    }
 }
 
 TEST(curves)
