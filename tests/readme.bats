@@ -189,7 +189,7 @@ modules() { awk -F '[|`]' -v head="| module of \`$1\` |" 'index($0, head) == 1 {
             [ "$layer" = tools/common ] && { grep -xFf rows found > kept || true; mv kept found; }
             run -1 grep -vxFf above found
         done < rows
-        [ "$(wc -l < above)" -ge 5 ]
+        [ "$(wc -l < above)" -ge 4 ]
     done
 }
 

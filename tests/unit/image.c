@@ -4,7 +4,6 @@
 
 #include "io/image/image.h"
 
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <zlib.h>

@@ -1,10 +1,6 @@
 /* The stream: what is read is what was written, to the last bit; and whatever is damaged is an error. */
 #include "stream_fixture.h"
 
-#include "io/stream/sections.h"
-
-#include <fcntl.h>
-
 TEST(round_trip)
 {
     FREED_BY(stream_free) struct stream sample = sample_stream();
