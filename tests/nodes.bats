@@ -285,6 +285,34 @@ END
     [ "$(volumes touching.mts)" = "2 1" ]
 }
 
+@test "nodes that hang on a facet of another cell are refused by place; between bodies they are noted" {
+    printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 1 0.5 0\n' > hang.msh
+    printf '6 2 0 0\n7 2 0.5 0\n8 2 1 0\n$EndNodes\n$Elements\n3\n' >> hang.msh
+    printf '%s\n' '1 3 2 1 1 1 2 3 4' '2 3 2 2 2 2 6 7 5' '3 3 2 2 2 5 7 8 3' '$EndElements' >> hang.msh
+    refused 2 "nodes on a facet of another cell, without being its corners: 1, the first at (0.01, 0.005) m: " nodes -u cm hang.msh
+    sed 's/^8$/10/; s/^8 2 1 0$/&\n9 1 0 0\n10 1 1 0/; s/2 2 6 7 5/2 9 6 7 5/; s/8 3$/8 10/' hang.msh > apart.msh
+    nodes -u cm apart.msh > apart.mts 2> said
+    grep -q "^nodes: nodes on a facet of another body, without being its corners: 1, the first at (0.01, 0.005) m: " said
+    mts check apart.mts | grep -q '^cells: nodes on a facet of another body'
+    printf '# mts 1\n# nodes.x f8 5 2 enc=text unit=m\n0 0\n1 0\n0 1\n0.5 0.5\n1 1\n\n\n' > hang.mts
+    printf '# cells i4 3 3 enc=text\n0 1 2\n1 4 3\n3 4 2\n\n\n# end 2\n' >> hang.mts
+    run -1 mts check hang.mts
+    [[ "$output" == *"cells: nodes on a facet of another cell, without being its corners: 1, the first at (0.5, 0.5) m: "* ]]
+    # Cubes of 2 and 3 layers; their middles are open by a thousandth of a cell.
+    for at in 1 1.001; do
+        for side in "0 2" "$at 3"; do
+            printf 'Geometry.AutoCoherence = 0;\n'
+            printf 'p = newp; Point(p) = {%s, 0, 0}; l() = Extrude {1, 0, 0} { Point{p}; Layers{%s}; };\n' $side
+            printf 'f() = Extrude {0, 1, 0} { Line{l(1)}; Layers{%s}; };\nExtrude {0, 0, 1} { Surface{f(1)}; Layers{%s}; }\n' "${side#* }" "${side#* }"
+        done > cubes.geo
+        printf 'Mesh 3;\nCoherence Mesh;\nSave "cubes%s.msh";\n' $at >> cubes.geo
+        gmsh -v 1 -0 cubes.geo
+    done
+    refused 2 "nodes on a facet of another cell, without being its corners: 17, the first at (0.01, " nodes -u cm cubes1.msh
+    nodes -u cm cubes1.001.msh > cubes.mts 2> said
+    run ! grep corners said
+}
+
 @test "files of other programs are refused with the command that converts them; STL comes in by gmsh" {
     cube tet
     gmsh -v 1 -3 cube.geo -o cube.vtk

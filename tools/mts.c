@@ -18,10 +18,11 @@ static const char usage[] =
     "  text, binary  the same stream in that form; the numbers stay the same to the last bit\n"
     "  check         whether sections of known names are what they should be: shapes that agree, indices\n"
     "                in range, cells of positive volume, numbers finite, weights positive, neighbour lists\n"
-    "                ascending, shape functions that sum to 1 within 1e-9; a line on standard output for\n"
-    "                each violation, and status 1 if there is one. Told without a verdict: cells of quality\n"
-    "                (radius of the inscribed to that of the circumscribed sphere, 1 for the regular one)\n"
-    "                below .01, the poorest first, and how many connected bodies, if several\n"
+    "                ascending, shape functions that sum to 1 within 1e-9, no node that hangs on a facet of\n"
+    "                its own body; a line on standard output for each violation, and status 1 if there is\n"
+    "                one. Told without a verdict: nodes that hang on a facet of another body, cells of\n"
+    "                quality (radius of the inscribed to that of the circumscribed sphere, 1 for a regular\n"
+    "                one) below .01, the poorest first, and how many connected bodies, if several\n"
     "  recover       the whole sections of a stream that was stopped, cut short or damaged, as a stream;\n"
     "                what is wrong with it on standard error\n"
     "  keep, drop    the stream with only, or without, the sections that match a PATTERN, in which * and ?\n"
@@ -124,10 +125,16 @@ static int print_cells(const struct tool *tool, const struct stream *stream)
     if (report.poor > report.listed) {
         printf("cells: %" PRId64 " more of quality below %g\n", report.poor - report.listed, POOR_QUALITY);
     }
+    bool parts;
+    char hanging[512];
+    tool_check(tool, cell_report_hanging(&cells, &parts, hanging, &error), &error);
+    if (hanging[0] != '\0') {
+        printf("cells: %s\n", hanging);
+    }
     if (report.bodies > 1) {
         printf("cells: %d connected bodies\n", report.bodies);
     }
-    return 0;
+    return parts;
 }
 
 static int check(struct tool *tool)

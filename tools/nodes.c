@@ -12,14 +12,15 @@ static const char usage[] =
     "sets.idx, the physical groups of lower dimension and those between two cells. Groups keep their\n"
     "names, with _ for blanks and commas, and _TAG appended to those that two share; one without a name is\n"
     "group_TAG. Where no physical group is of cells, or none of facets, the elementary tags (references of\n"
-    "MEDIT) are groups, named group_TAG; cells that all have one such tag are the region 'body'. Cells in\n"
-    "no group, where others are in one, are 'unnamed'. More parts of the boundary get names by groups.\n"
+    "MEDIT) are groups, named group_TAG, but not one that all have: such cells are the region 'body'. Cells\n"
+    "in no group, where others are in one, are 'unnamed'. More parts of the boundary get names by groups.\n"
     "\n"
     "Left out, with a note, are nodes and facets of no cell, empty groups, midside nodes of second-order\n"
     "cells, and the second of two equal cells. A cell in two groups belongs to the one of the lower tag.\n"
-    "Bodies that touch but share no nodes stay two, with a note; where a body is thin for its cells, so\n"
-    "that its bending stiffness is wrong, it is noted. Cells without volume or folded, nodes of one body at the same\n"
-    "place, and truncated or inconsistent files are errors. Nothing in a file is executed.\n"
+    "Bodies that touch but share no nodes stay two, with a note; where a body is thin for its cells, its\n"
+    "bending stiffness is wrong, which is noted. Cells without volume or folded, nodes of one body at one\n"
+    "place or on a facet of another cell, and truncated or inconsistent files are errors. Nothing in a\n"
+    "file is run.\n"
     "\n"
     "Geometries are meshed by 'gmsh -3 body.geo -o body.msh' (STEP, too; -2 in the plane).\n"
     "Other meshes: 'gmsh body.mesh -save -o body.msh' (MEDIT and others). VTK, VTU and TetGen's .node by\n"
@@ -113,6 +114,22 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     }
 }
 
+/* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch.
+ */
+static void check_joined(const struct tool *tool, const struct mesh *mesh)
+{
+    struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
+    bool parts;
+    char said[512];
+    TOOL_TRY(tool, cell_report_hanging(&cells, &parts, said, &error));
+    if (parts) {
+        tool_fail(tool, STATUS_INPUT, "%s", said);
+    }
+    if (said[0] != '\0') {
+        tool_note(tool, "%s", said);
+    }
+}
+
 /* Parse the options; exits if they exclude each other. */
 static struct mesh_options parse(const struct tool *tool)
 {
@@ -148,6 +165,7 @@ int main(int argc, char *argv[])
     }
     TOOL_TRY(&tool, mesh_build(&mesh, &msh, &wanted, &error));
     msh_free(&msh);
+    check_joined(&tool, &mesh);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);
     }

@@ -2,6 +2,7 @@
 
 #include "approx/cells/parts.h"
 #include "approx/support/support.h"
+#include "approx/cells/hanging.h"
 #include "approx/cells/thin.h"
 #include "base/lists.h"
 #include "base/memory.h"
@@ -49,6 +50,27 @@ const char *cell_report_box(const struct box *box, char text[128])
     }
     text_append(text, 128, "m");
     return text;
+}
+
+enum status cell_report_hanging(const struct cells *cells, bool *parts, char said[512], struct error *error)
+{
+    struct hanging_nodes joined, apart;
+    char place[96];
+    said[0] = '\0';
+    RETURN_IF_ERROR(cells_find_hanging(cells, &joined, &apart, error));
+    *parts = joined.count > 0;
+    const struct hanging_nodes *found = *parts ? &joined : &apart;
+    point_text(cells->dim, found->place, place);
+    if (found->count > 0) {
+        snprintf(said, 512,
+                 "nodes on a facet of another %s, without being its corners: %lld, the first at %s m: the %s "
+                 "not joined there: mesh both sides alike (in gmsh: BooleanFragments, or Coherence, before "
+                 "meshing)%s",
+                 *parts ? "cell" : "body", (long long)found->count, place,
+                 *parts ? "cells are" : "bodies are",
+                 *parts ? "" : "; bodies that are to touch need a contact in the scene");
+    }
+    return STATUS_OK;
 }
 
 /* This is reported if the bending stiffness is wrong by `bound` along at least `noted_share` of the boundary.

@@ -1,0 +1,168 @@
+#include "approx/cells/hanging.h"
+
+#include "base/box.h"
+#include "base/lists.h"
+#include "base/memory.h"
+#include "base/sets.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A node lies on a facet if it is as near to it as this share of the facet's longest edge, and not as near to
+ * a corner: files may give six digits of coordinates. */
+static const double on_facet = 1e-4;
+
+enum { JOINED = 1, APART = 2 };
+
+/* The nodes of a boundary, sorted along the longest side of its box. */
+struct search {
+    const struct cells *cells;
+    const struct faces *boundary;
+    int axis;
+    int64_t count;
+    struct placed *node;
+    int64_t *face_ptr; /* the boundary faces at each node */
+    int32_t *face_idx;
+};
+
+static enum status search_build(const struct cells *cells, const struct faces *boundary,
+                                struct search *search, struct error *error)
+{
+    int dim = cells->dim;
+    struct box box = box_of(dim, cells->node_count, cells->x);
+    *search = (struct search){.cells = cells, .boundary = boundary};
+    for (int a = 1; a < dim; a++) {
+        bool longer = box.high[a] - box.low[a] > box.high[search->axis] - box.low[search->axis];
+        search->axis = longer ? a : search->axis;
+    }
+    RETURN_IF_ERROR(lists_by_row(boundary->count, dim, boundary->node, cells->node_count, &search->face_ptr,
+                                 &search->face_idx, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&search->node, cells->node_count, error));
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        if (search->face_ptr[n + 1] > search->face_ptr[n]) {
+            search->node[search->count++] = (struct placed){cells->x[n * dim + search->axis], n};
+        }
+    }
+    qsort(search->node, (size_t)search->count, sizeof *search->node, compare_placed);
+    return STATUS_OK;
+}
+
+static void search_free(struct search *search)
+{
+    FREE_ALL(search->node, search->face_ptr, search->face_idx);
+}
+
+/* Whether all nodes but one of a face are among corner[count]. */
+static bool borders(int dim, const int32_t *face, int count, const int32_t *corner)
+{
+    int common = 0;
+    for (int k = 0; k < dim; k++) {
+        for (int l = 0; l < count; l++) {
+            common += face[k] == corner[l];
+        }
+    }
+    return common >= dim - 1;
+}
+
+/* Whether a node is near the facet as a corner of its cell, or of a facet beside it: of a flat one. */
+static bool is_beside(const struct search *search, int64_t facet, int32_t node)
+{
+    int dim = search->cells->dim;
+    const int32_t *corner = search->boundary->node + facet * dim;
+    const int32_t *cell = search->cells->node + (int64_t)search->boundary->cell[2 * facet] * (dim + 1);
+    for (int k = 0; k <= dim; k++) {
+        if (cell[k] == node) {
+            return true;
+        }
+    }
+    for (int64_t i = search->face_ptr[node]; dim == 3 && i < search->face_ptr[node + 1]; i++) {
+        if (borders(dim, search->boundary->node + (int64_t)search->face_idx[i] * dim, dim, corner)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The first of the sorted nodes that is not below `least`. */
+static int64_t first_place(const struct search *search, double least)
+{
+    int64_t begin = 0, end = search->count;
+    while (begin < end) {
+        int64_t middle = begin + (end - begin) / 2;
+        if (search->node[middle].place < least) {
+            begin = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
+    return begin;
+}
+
+/* Mark the nodes that hang on a facet. */
+static void mark_hanging(const struct search *search, int64_t facet, int32_t body[], int8_t mark[])
+{
+    int dim = search->cells->dim;
+    const int32_t *node = search->boundary->node + facet * dim;
+    const double *corner[3];
+    double longest = 0.0, low[3], high[3];
+    for (int k = 0; k < dim; k++) {
+        corner[k] = search->cells->x + (int64_t)node[k] * dim;
+        for (int l = 0; l < k; l++) {
+            longest = fmax(longest, vector_distance2(dim, corner[k], corner[l]));
+        }
+    }
+    double near = on_facet * sqrt(longest);
+    for (int a = 0; a < dim; a++) {
+        low[a] = fmin(fmin(corner[0][a], corner[1][a]), corner[dim - 1][a]) - near;
+        high[a] = fmax(fmax(corner[0][a], corner[1][a]), corner[dim - 1][a]) + near;
+    }
+    for (int64_t i = first_place(search, low[search->axis]);
+         i < search->count && search->node[i].place <= high[search->axis]; i++) {
+        int32_t n = (int32_t)search->node[i].item;
+        const double *x = search->cells->x + (int64_t)n * dim;
+        bool out = false;
+        for (int a = 0; a < dim; a++) {
+            out = out || x[a] < low[a] || x[a] > high[a];
+        }
+        for (int k = 0; k < dim && !out; k++) {
+            out = vector_distance2(dim, corner[k], x) <= near * near;
+        }
+        if (!out && simplex_distance2(dim, dim - 1, corner, x) <= near * near &&
+            !is_beside(search, facet, n)) {
+            mark[n] |= set_first(body, n) == set_first(body, node[0]) ? JOINED : APART;
+        }
+    }
+}
+
+enum status cells_find_hanging(const struct cells *cells, struct hanging_nodes *joined,
+                               struct hanging_nodes *apart, struct error *error)
+{
+    enum status status;
+    int dim = cells->dim;
+    struct faces boundary = {0};
+    struct search search = {0};
+    int32_t *body = NULL;
+    int8_t *mark = NULL;
+    *joined = *apart = (struct hanging_nodes){0};
+    TRY(faces_build(cells, true, &boundary, error));
+    TRY(search_build(cells, &boundary, &search, error));
+    TRY(NEW_ARRAY(&body, cells->node_count, error));
+    TRY(NEW_ARRAY(&mark, cells->node_count, error));
+    set_join_cells(cells->node_count, cells->count, dim + 1, cells->node, body);
+    for (int64_t f = 0; f < boundary.count; f++) {
+        mark_hanging(&search, f, body, mark);
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        struct hanging_nodes *of = (mark[n] & JOINED) != 0 ? joined : apart;
+        if (mark[n] != 0 && of->count++ == 0) {
+            memcpy(of->place, cells->x + n * dim, (size_t)dim * sizeof *of->place);
+        }
+    }
+done:
+    faces_free(&boundary);
+    search_free(&search);
+    FREE_ALL(body, mark);
+    return status;
+}
