@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* A physical group. Where there is none of the dimension of the cells, or of their faces, the entities of
- * that dimension are groups in its place; not a single entity of all cells. */
+ * that dimension are groups in its place; not a single entity of all cells, which tells nothing. */
 struct msh_group {
     int dim;    /* 0 points, 1 curves, 2 surfaces, 3 volumes */
     int tag;    /* as in the file */
@@ -35,6 +35,7 @@ struct msh {
     struct msh_group *groups; /* ascending in (dim, tag) */
     int64_t partitions;       /* number of partitions of the mesh (MSH 4 only); 0: not partitioned */
     int64_t partitions_here;  /* number of these with elements of the highest dimension in this file */
+    bool by_entity[4];        /* of each dimension: the groups are entities */
 };
 
 /* A type of element. */
@@ -97,8 +98,9 @@ struct mesh_options {
  * if there are triangles or quadrangles in a plane z = const. Quadrangles and the cells of more than four
  * nodes are split into simplices so that neighbours conform (every quadrangular face along the diagonal
  * through its lowest node: Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,
- * 1999). Nodes keep their order; those without a kept cell are dropped. A cell in two groups belongs to the
- * one with the lowest tag; a repeated cell counts once; cells in no group are the region 'body' if there is
+ * 1999). Nodes keep their order; those without a kept cell are dropped. Facets of one entity all over the
+ * boundary get no name. A cell in two groups belongs to the one with the lowest tag; a repeated cell counts
+ * once; cells in no group are the region 'body' if there is
  * no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or
  * overlapping cells, coincident nodes of one body, an unknown region, two node sets with one name, and
  * elements that cannot be split at their midside nodes (those without a node in the middle of each

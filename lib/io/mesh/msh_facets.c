@@ -9,7 +9,8 @@
 struct gathering {
     struct mesh_draft *draft;
     struct msh_faces faces;
-    int64_t *group_ptr; /* group_count + 1: elements by group */
+    int64_t boundary_count; /* of the faces */
+    int64_t *group_ptr;     /* group_count + 1: elements by group */
     int64_t *group_idx;
     int32_t *face_stamp;  /* per face: 1 + the last group that contains it */
     int32_t *node_stamp;  /* per node: the same */
@@ -147,7 +148,9 @@ static enum status gather_facets(struct gathering *g, int32_t group)
             RETURN_IF_ERROR(add_face(g, group, pieces[p], &tally));
         }
     }
-    if (tally.boundary > 0) {
+    if (msh->by_entity[mesh->dim - 1] && tally.boundary == g->boundary_count) {
+        mesh->facet_count -= tally.boundary; /* one entity all over the boundary tells nothing */
+    } else if (tally.boundary > 0) {
         RETURN_IF_ERROR(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
     RETURN_IF_ERROR(close_set(g, group));
@@ -238,6 +241,10 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     if (overlap.cell[0] >= 0) {
         status = fail_overlap(draft, &overlap);
         goto done;
+    }
+    for (int64_t f = 0, end; f < g.faces.count; f = end) {
+        end = keyed_end(g.faces.count, g.faces.face, f);
+        g.boundary_count += end == f + 1;
     }
     TRY(sort_by_group(&g));
     TRY(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));

@@ -237,7 +237,7 @@ static void group_by_entity(struct msh_reader *r, bool by_element[])
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int of_element = dim_of(r, e);
         if (!grouped[of_element] && (of_element == dim ? several : of_element == dim - 1)) {
-            by_element[of_element] = true;
+            by_element[of_element] = r->msh->by_entity[of_element] = true;
             r->element_key[e] = r->whole_key[e];
         }
     }
