@@ -114,14 +114,15 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     }
 }
 
-/* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch.
- */
-static void check_joined(const struct tool *tool, const struct mesh *mesh)
+/* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch,
+ * and lips that have names, not numbers of entities. */
+static void check_joined(const struct tool *tool, const struct mesh *mesh, bool by_entity)
 {
     struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
     bool parts;
     char said[512];
-    TOOL_TRY(tool, cell_report_hanging(&cells, &parts, said, &error));
+    TOOL_TRY(tool, cell_report_hanging(&cells, by_entity ? 0 : mesh->facet_count, mesh->facets, &parts, said,
+                                       &error));
     if (parts) {
         tool_fail(tool, STATUS_INPUT, "%s", said);
     }
@@ -164,8 +165,9 @@ int main(int argc, char *argv[])
         return tool_end(&tool);
     }
     TOOL_TRY(&tool, mesh_build(&mesh, &msh, &wanted, &error));
+    bool by_entity = msh.by_entity[mesh.dim - 1];
     msh_free(&msh);
-    check_joined(&tool, &mesh);
+    check_joined(&tool, &mesh, by_entity);
     for (int32_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);
     }

@@ -52,23 +52,24 @@ const char *cell_report_box(const struct box *box, char text[128])
     return text;
 }
 
-enum status cell_report_hanging(const struct cells *cells, bool *parts, char said[512], struct error *error)
+enum status cell_report_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
+                                bool *parts, char said[512], struct error *error)
 {
     struct hanging_nodes joined, apart;
     char place[96];
     said[0] = '\0';
-    RETURN_IF_ERROR(cells_find_hanging(cells, &joined, &apart, error));
+    RETURN_IF_ERROR(cells_find_hanging(cells, named_count, named, &joined, &apart, error));
     *parts = joined.count > 0;
     const struct hanging_nodes *found = *parts ? &joined : &apart;
     point_text(cells->dim, found->place, place);
     if (found->count > 0) {
         snprintf(said, 512,
-                 "nodes on a facet of another %s, without being its corners: %lld, the first at %s m: the %s "
-                 "not joined there: mesh both sides alike (in gmsh: BooleanFragments, or Coherence, before "
-                 "meshing)%s",
-                 *parts ? "cell" : "body", (long long)found->count, place,
-                 *parts ? "cells are" : "bodies are",
-                 *parts ? "" : "; bodies that are to touch need a contact in the scene");
+                 "nodes on a facet of another %s, without being its corners: %lld, the first at %s m: the "
+                 "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
+                 "before meshing); %s",
+                 *parts ? "cell" : "body or lip", (long long)found->count, place,
+                 *parts ? "lips of a slit need names (physical groups)"
+                        : "where they are to touch, the scene needs a contact");
     }
     return STATUS_OK;
 }

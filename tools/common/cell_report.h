@@ -28,9 +28,10 @@ const char *cell_report_describe(const struct cells *cells, const struct poor_ce
 /* "0 0 0 to 0.1 0.1 0.2 m" */
 const char *cell_report_box(const struct box *box, char text[128]);
 
-/* Tell nodes that hang on facets of other cells into said[512]: "nodes on ...", or "". Returns whether the
- * cells are of one body, and part in it. */
-MUST_CHECK enum status cell_report_hanging(const struct cells *cells, bool *parts, char said[512],
+/* Tell nodes that hang on facets of other cells (hanging.h) into said[512]: "nodes on ...", or "". *parts:
+ * whether one body parts there. */
+MUST_CHECK enum status cell_report_hanging(const struct cells *cells, int64_t named_count,
+                                           const int32_t *named, bool *parts, char said[512],
                                            struct error *error);
 
 /* Note if a tenth of the boundary or more is on parts thin for their cells. Exits with a message on failure.

@@ -25,6 +25,7 @@ struct search {
     struct placed *node;
     int64_t *face_ptr; /* the boundary faces at each node */
     int32_t *face_idx;
+    bool *named; /* each boundary face */
 };
 
 static enum status search_build(const struct cells *cells, const struct faces *boundary,
@@ -51,7 +52,30 @@ static enum status search_build(const struct cells *cells, const struct faces *b
 
 static void search_free(struct search *search)
 {
-    FREE_ALL(search->node, search->face_ptr, search->face_idx);
+    FREE_ALL(search->node, search->face_ptr, search->face_idx, search->named);
+}
+
+static enum status mark_named(struct search *search, int64_t count, const int32_t *facet, struct error *error)
+{
+    NEW_SCRATCH(int64_t, found, count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&search->named, search->boundary->count, error));
+    RETURN_IF_ERROR(faces_find(search->boundary, count, facet, found, error));
+    for (int64_t i = 0; i < count; i++) {
+        if (found[i] >= 0) {
+            search->named[found[i]] = true;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Whether a facet is a lip, and the node on another one. */
+static bool is_lip(const struct search *search, int64_t facet, int32_t node)
+{
+    bool other = false;
+    for (int64_t i = search->face_ptr[node]; i < search->face_ptr[node + 1]; i++) {
+        other = other || search->named[search->face_idx[i]];
+    }
+    return other && search->named[facet];
 }
 
 /* Whether all nodes but one of a face are among corner[count]. */
@@ -131,13 +155,14 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
         }
         if (!out && simplex_distance2(dim, dim - 1, corner, x) <= near * near &&
             !is_beside(search, facet, n)) {
-            mark[n] |= set_first(body, n) == set_first(body, node[0]) ? JOINED : APART;
+            bool one_body = set_first(body, n) == set_first(body, node[0]);
+            mark[n] |= one_body && !is_lip(search, facet, n) ? JOINED : APART;
         }
     }
 }
 
-enum status cells_find_hanging(const struct cells *cells, struct hanging_nodes *joined,
-                               struct hanging_nodes *apart, struct error *error)
+enum status cells_find_hanging(const struct cells *cells, int64_t named_count, const int32_t *named,
+                               struct hanging_nodes *joined, struct hanging_nodes *apart, struct error *error)
 {
     enum status status;
     int dim = cells->dim;
@@ -148,6 +173,7 @@ enum status cells_find_hanging(const struct cells *cells, struct hanging_nodes *
     *joined = *apart = (struct hanging_nodes){0};
     TRY(faces_build(cells, true, &boundary, error));
     TRY(search_build(cells, &boundary, &search, error));
+    TRY(mark_named(&search, named_count, named, error));
     TRY(NEW_ARRAY(&body, cells->node_count, error));
     TRY(NEW_ARRAY(&mark, cells->node_count, error));
     set_join_cells(cells->node_count, cells->count, dim + 1, cells->node, body);
