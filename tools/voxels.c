@@ -72,6 +72,7 @@ static const char usage[] =
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Errors of volume above this share are reported, and a share of the body outside of the cells with sizes. */
 static const double reported_share = 0.01;
@@ -264,6 +265,14 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     tool_write(tool, &stream);
 }
 
+/* Progress on a terminal: the step that begins; NULL: none. */
+static void show_step(void *context, const char *step)
+{
+    if (*(const bool *)context) {
+        fprintf(stderr, "\r%78s\r%s%s", "", step != NULL ? "voxels: " : "", step != NULL ? step : "");
+    }
+}
+
 static void check_options(const struct tool *tool)
 {
     if (!tool_given(tool, "spacing")) {
@@ -300,10 +309,13 @@ int main(int argc, char *argv[])
             image.keep[l] = l == surface.inner;
         }
     }
+    bool shown = isatty(STDERR_FILENO);
     struct label_cells_options label_cells_options = {.spacing = spacing,
                                                       .keep = image.keep,
                                                       .whole = image.region,
-                                                      .largest = tool_given(&tool, "largest")};
+                                                      .largest = tool_given(&tool, "largest"),
+                                                      .begin = show_step,
+                                                      .context = &shown};
     SCRATCH bool *fine = NULL;
     if (tool_given(&tool, "fine")) {
         fine =
@@ -316,6 +328,7 @@ int main(int argc, char *argv[])
     label_cells_options.size = sizes.size;
     struct error error;
     enum status status = label_cells_make(&image.labels, &label_cells_options, &result, &error);
+    show_step(&shown, NULL);
     const char *length = tool_value(&tool, "spacing");
     if (status == STATUS_INPUT && !isalpha((unsigned char)length[strlen(length) - 1])) {
         tool_fail(&tool, status, "%s -h %s is %s m: give a unit, as -h %smm", error.text, length, length,

@@ -31,7 +31,7 @@ static double tetrahedron_quality(double volume, const double *const x[4])
         vector_subtract(3, v, u, s);
         vector_subtract(3, w, u, t);
         vector_cross(s, t, normal);
-        surface += hypot(hypot(normal[0], normal[1]), normal[2]) / 2;
+        surface += vector_length(3, normal) / 2;
     }
     double product = p * (p - a) * (p - b) * (p - c);
     return 54 * volume * fabs(volume) / (surface * sqrt(fmax(product, 0)));

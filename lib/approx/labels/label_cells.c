@@ -55,6 +55,13 @@ void simplex_angles(int dim, const double *const x[], double angles[2])
     }
 }
 
+void label_cells_begin(const struct label_cells_options *options, const char *step)
+{
+    if (options->begin != NULL) {
+        options->begin(options->context, step);
+    }
+}
+
 enum status label_cells_make(const struct labels *labels, const struct label_cells_options *options,
                              struct label_cells *mesh, struct error *error)
 {
@@ -63,6 +70,7 @@ enum status label_cells_make(const struct labels *labels, const struct label_cel
     struct label_cells_kept kept = {0};
     enum status status;
     *mesh = (struct label_cells){.dim = labels->dim};
+    label_cells_begin(options, "cutting the lattice");
     TRY(lattice_make(labels, options, &lattice, error));
     TRY(lattice_cut(&lattice, error));
     TRY(lattice_cells(&lattice, mesh, &between, error));

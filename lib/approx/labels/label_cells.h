@@ -26,6 +26,8 @@ struct label_cells_options {
     const int32_t *whole; /* labels->count: the label of which each is a part; volumes of wholes are
                              preserved. NULL: no parts */
     bool largest;         /* keep only the largest of several connected bodies */
+    void (*begin)(void *context, const char *step); /* called at the beginning of each step; NULL: not */
+    void *context;
 };
 
 /* Bounds of the angles of cells, degrees, which label_cells_make meets if it can. */

@@ -49,26 +49,26 @@ double shaping_score(const struct shaping *shaping, int64_t cell)
     return label_cells_score(shaping->mesh, cell);
 }
 
-double star_score(const struct shaping *shaping, int64_t node)
+double star_score(const struct shaping *shaping, int64_t node, double least)
 {
     const struct label_cells_star *star = &shaping->star;
-    double least = INFINITY;
-    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        least = fmin(least, shaping_score(shaping, star->cell[i]));
+    double poorest = INFINITY;
+    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1] && poorest >= least; i++) {
+        poorest = fmin(poorest, shaping_score(shaping, star->cell[i]));
     }
-    return least;
+    return poorest;
 }
 
 void star_move(const struct shaping *shaping, int64_t node, const double target[])
 {
     int dim = shaping->mesh->dim;
     double *x = shaping->mesh->x + node * dim, before[3] = {0};
-    double score = fmin(star_score(shaping, node), goal);
+    double score = fmin(star_score(shaping, node, -INFINITY), goal);
     memcpy(before, x, (size_t)dim * sizeof *x);
     double share = 1;
     for (int halving = 0; halving < 4; halving++, share /= 2) {
         vector_between(dim, before, target, share, x);
-        if (star_score(shaping, node) >= score) {
+        if (star_score(shaping, node, score) >= score) {
             return;
         }
     }
@@ -76,6 +76,31 @@ void star_move(const struct shaping *shaping, int64_t node, const double target[
 }
 
 /* ---- onto the interfaces ---- */
+
+/* The place that was found for a node when it was at `from`. */
+struct found_place {
+    double from[3], place[3];
+    bool known, found;
+};
+typedef bool place_finder(const struct shaping *shaping, int64_t node, double x[]);
+
+/* place[3] of a node by `find`, which depends on the node's position alone: searched for again only where the
+ * node has moved. Where there is none, it is the node's position. */
+static bool find_place(const struct shaping *shaping, place_finder *find, int64_t node,
+                       struct found_place *last, double place[3])
+{
+    int dim = shaping->mesh->dim;
+    double x[3] = {0};
+    memcpy(x, shaping->mesh->x + node * dim, (size_t)dim * sizeof *x);
+    if (!last->known || memcmp(x, last->from, sizeof x) != 0) {
+        memcpy(last->from, x, sizeof x);
+        memcpy(last->place, x, sizeof x);
+        last->known = true;
+        last->found = find(shaping, node, last->place);
+    }
+    memcpy(place, last->found ? last->place : x, sizeof x);
+    return last->found;
+}
 
 /* The number of kept labels among those that meet at a node. */
 static int kept_labels(const struct shaping *shaping, int64_t node)
@@ -97,6 +122,18 @@ static bool meets(const struct label_cells_star *star, int64_t node, uint16_t la
     return false;
 }
 
+/* The places of all nodes on interfaces at their present positions. */
+static void find_places(const struct shaping *shaping, place_finder *find, struct found_place *found)
+{
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int64_t n = 0; n < shaping->mesh->node_count; n++) {
+        double place[3];
+        if (shaping->star.labels[n] >= 2) {
+            (void)find_place(shaping, find, n, &found[n], place);
+        }
+    }
+}
+
 static void move_there(const struct shaping *shaping, double voxel, int64_t node, const double target[])
 {
     int dim = shaping->mesh->dim;
@@ -109,39 +146,41 @@ static void move_there(const struct shaping *shaping, double voxel, int64_t node
     }
 }
 
-/* Move nodes on the rim of a part, where three labels meet, and nodes that are off their interface, to their
- * places. In a gap between labels that no cell fills, the label there counts, too. */
-static void fit(const struct shaping *shaping)
+/* Move x to the place of a node: on the rim of a part, where three labels meet, or on its interface. In a gap
+ * between labels that no cell fills, the label there counts, too. False if there is none near. */
+static bool line_place(const struct shaping *shaping, int64_t node, double x[])
 {
     const struct labels *labels = &shaping->labels;
-    const struct label_cells *mesh = shaping->mesh;
     const struct label_cells_star *star = &shaping->star;
-    const bool *keep = shaping->keep;
-    int dim = labels->dim;
-    double voxel = labels_voxel(labels);
-    for (int64_t n = 0; n < mesh->node_count; n++) {
+    uint16_t label[LABEL_CELLS_MOST_LABELS + 1];
+    int count = star->labels[node];
+    memcpy(label, star->label[node], sizeof star->label[node]);
+    if ((shaping->rim[node][0] != 0 && rim_project(shaping, shaping->rim[node], x)) ||
+        line_project(labels, shaping->keep, 0, count, label, x)) {
+        return true;
+    }
+    const double *here = shaping->mesh->x + node * labels->dim;
+    label[count] = (uint16_t)labels_at(labels, here);
+    memcpy(x, here, (size_t)labels->dim * sizeof *x);
+    return !meets(star, node, label[count]) && interface_project(labels, count + 1, label, x);
+}
+
+/* Move the nodes on interfaces to their places. */
+static void fit(const struct shaping *shaping, struct found_place *line, struct found_place *surface)
+{
+    double voxel = labels_voxel(&shaping->labels);
+    find_places(shaping, line_place, line);
+    for (int64_t n = 0; n < shaping->mesh->node_count; n++) {
         double target[3] = {0};
-        uint16_t label[LABEL_CELLS_MOST_LABELS + 1];
-        int count = star->labels[n];
-        const uint16_t *rim = shaping->rim[n];
-        if (count < 2) {
+        if (shaping->star.labels[n] < 2) {
             continue;
         }
-        memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
-        memcpy(label, star->label[n], sizeof star->label[n]);
-        if (!(rim[0] != 0 && rim_project(shaping, rim, target)) &&
-            !line_project(labels, keep, 0, count, label, target)) {
-            label[count] = (uint16_t)labels_at(labels, mesh->x + n * dim);
-            if (meets(star, n, label[count]) || !interface_project(labels, count + 1, label, target)) {
-                memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
-            }
-        }
-        if (!(rim[0] != 0 && star_make_room(shaping, goal, n, target))) {
+        (void)find_place(shaping, line_place, n, &line[n], target);
+        if (!(shaping->rim[n][0] != 0 && star_make_room(shaping, goal, n, target))) {
             move_there(shaping, voxel, n, target);
         }
         /* If the line on which labels meet cannot be reached, use the surface or the interface. */
-        memcpy(target, mesh->x + n * dim, (size_t)dim * sizeof *target);
-        if (node_project(shaping, n, target)) {
+        if (find_place(shaping, node_project, n, &surface[n], target)) {
             move_there(shaping, voxel, n, target);
         }
     }
@@ -210,7 +249,7 @@ static double distance(const struct shaping *shaping, int64_t node)
 
 /* target[]: the place of a node that is still off its rim or interface; false if it is near, or there is no
  * such place. */
-static bool find_astray(const struct shaping *shaping, int64_t node, double target[3])
+static bool astray_place(const struct shaping *shaping, int64_t node, double target[])
 {
     int dim = shaping->mesh->dim;
     double most = last_slack * labels_voxel(&shaping->labels);
@@ -228,13 +267,14 @@ static bool find_astray(const struct shaping *shaping, int64_t node, double targ
 }
 
 /* Move nodes that are still off their rim or interface as near to it as the bounds of the angles allow. */
-static void settle(const struct shaping *shaping)
+static void settle(const struct shaping *shaping, struct found_place *astray)
 {
     struct label_cells *mesh = shaping->mesh;
     int dim = mesh->dim;
+    find_places(shaping, astray_place, astray);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double *x = mesh->x + n * dim, from[3] = {0}, target[3] = {0};
-        if (!find_astray(shaping, n, target)) {
+        if (!find_place(shaping, astray_place, n, &astray[n], target)) {
             continue;
         }
         memcpy(from, x, (size_t)dim * sizeof *x);
@@ -251,11 +291,16 @@ static void settle(const struct shaping *shaping)
 static void measure(const struct shaping *shaping)
 {
     struct label_cells *mesh = shaping->mesh;
+    int64_t astray = 0;
+    double farthest = 0;
+#pragma omp parallel for schedule(dynamic, 64) reduction(+ : astray) reduction(max : farthest)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double off = shaping->star.labels[n] > 1 ? distance(shaping, n) : 0;
-        mesh->astray += off > LABEL_CELLS_MOST_ASTRAY * labels_voxel(&shaping->labels);
-        mesh->farthest = off < INFINITY ? fmax(mesh->farthest, off) : mesh->farthest;
+        astray += off > LABEL_CELLS_MOST_ASTRAY * labels_voxel(&shaping->labels);
+        farthest = off < INFINITY ? fmax(farthest, off) : farthest;
     }
+    mesh->astray = astray;
+    mesh->farthest = farthest;
 }
 
 enum status label_cells_improve(const struct labels *parts, const struct label_cells_options *options,
@@ -269,17 +314,24 @@ enum status label_cells_improve(const struct labels *parts, const struct label_c
                               .kept = kept,
                               .mesh = mesh,
                               .reach = options->spacing};
+    struct found_place *found[3] = {NULL};
     TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
     TRY(label_cells_rims(options, &shaping, &shaping.rim, error));
     TRY(star_make(mesh, kept->wanted, options->whole, &shaping.star, error));
+    for (int k = 0; k < 3; k++) {
+        TRY(NEW_ARRAY(&found[k], mesh->node_count, error));
+    }
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        fit(&shaping);
+        label_cells_begin(options, "moving nodes onto interfaces");
+        fit(&shaping, found[0], found[1]);
         label_cells_repair(&shaping, least_score, 0);
     }
     separate(&shaping);
     for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
-        settle(&shaping);
+        label_cells_begin(options, "moving nodes that are far from interfaces");
+        settle(&shaping, found[2]);
     }
+    label_cells_begin(options, "correcting volumes");
     TRY(label_cells_volumes(&shaping, options, error));
     label_cells_repair(&shaping, last_score, last_slack * labels_voxel(parts));
     measure(&shaping);
@@ -287,7 +339,7 @@ done:
     if (shaping.labels.label != parts->label) {
         free((void *)shaping.labels.label);
     }
-    free(shaping.rim);
+    FREE_ALL(shaping.rim, found[0], found[1], found[2]);
     star_free(&shaping.star);
     return status;
 }

@@ -186,10 +186,10 @@ MUST_CHECK enum status label_cells_rims(const struct label_cells_options *option
                                         const struct shaping *shaping, uint16_t (**rim)[3],
                                         struct error *error);
 
-/* The poorest score of the cells at a node, and the score of a cell: at least 1 if its angles are within the
- * bounds and its quality (approx/cells/quality.h) is not poor, negative if it is inverted. Cells around the
- * body must only not be inverted. */
-double star_score(const struct shaping *shaping, int64_t node);
+/* The poorest score of the cells at a node, or one below `least`, and the score of a cell: at least 1 if its
+ * angles are within the bounds and its quality (approx/cells/quality.h) is not poor, negative if it is
+ * inverted. Cells around the body must only not be inverted. */
+double star_score(const struct shaping *shaping, int64_t node, double least);
 double shaping_score(const struct shaping *shaping, int64_t cell);
 
 /* Move a node to `target`, where the cells at it alone would score less than before and than `least`, by also
@@ -230,6 +230,9 @@ void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, d
 /* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay within
  * `slack`, m, of these. */
 void label_cells_repair(const struct shaping *shaping, double least, double slack);
+
+/* Name the step that begins, for options->begin. */
+void label_cells_begin(const struct label_cells_options *options, const char *step);
 
 /* Move nodes where labels meet onto the interfaces; separate nodes at one place (apart[]); improve poor
  * cells; and correct the volumes of labels. */

@@ -3,6 +3,7 @@
 #include "base/dense.h"
 #include "base/vector.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -83,23 +84,69 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
 /* Largest distance of a search for an interface, voxels. */
 static const double most_voxels = 6.0;
 
+/* By how much the largest share at x exceeds those of the labels beyond: 0 or less if x lies in one. */
+static double margin(const struct labels *labels, const double x[], const struct interface_beyond *beyond)
+{
+    struct label_mix mix;
+    int best = 0;
+    double largest = 0;
+    labels_mix(labels, x, &mix);
+    for (int i = 0; i < mix.count; i++) {
+        bool more = mix.share[i] > mix.share[best];
+        best = more || (mix.share[i] == mix.share[best] && mix.label[i] < mix.label[best]) ? i : best;
+        largest = is_beyond(beyond, mix.label[i]) ? fmax(largest, mix.share[i]) : largest;
+    }
+    return is_beyond(beyond, mix.label[best]) ? -1 : mix.share[best] - largest;
+}
+
+/* A direction of a search, m; the most by which the margin falls in a step along it; and the next step at
+ * which there may be a label beyond. */
+struct ray {
+    double step[3], fall;
+    int next;
+};
+
+/* The rays from x in steps of a length, m. Along an axis of the voxels a share falls, and another one grows,
+ * by at most .75 a voxel, the sum of the positive slopes of the splines. */
+static void make_rays(const struct labels *labels, double length, double here, struct ray *ray)
+{
+    for (int r = 0; r < label_cells_directions(labels->dim); r++) {
+        double norm = label_cells_direction(labels->dim, r, ray[r].step), world[3] = {0};
+        for (int d = 0; d < labels->dim; d++) {
+            ray[r].step[d] *= norm > 0 ? length / norm : 0;
+            world[labels->dim == 3 ? d : labels->axis[d]] = ray[r].step[d];
+        }
+        ray[r].fall = 0;
+        for (int e = 0; e < 3; e++) {
+            ray[r].fall += 1.5 * fabs(vector_dot(3, labels->to_voxel[e], world));
+        }
+        ray[r].next = norm > 0 ? (int)fmax(1, here / ray[r].fall) : here > 0 ? INT_MAX : 1;
+    }
+}
+
 /* The least distance, in steps of a tenth of a voxel, at which there is a label beyond in some direction, and
  * place[]; infinity if there is none within `reach`. */
 static double search_beyond(const struct labels *labels, const double x[],
                             const struct interface_beyond *beyond, double reach, double place[3])
 {
     int dim = labels->dim;
-    double voxel = labels_voxel(labels);
-    int steps = (int)ceil(reach / (0.1 * voxel) - 1e-6);
+    double length = 0.1 * labels_voxel(labels);
+    int steps = (int)ceil(reach / length - 1e-6);
+    struct ray ray[27];
+    make_rays(labels, length, margin(labels, x, beyond), ray);
     for (int step = 1; step <= steps; step++) {
-        for (int direction = 0; direction < label_cells_directions(dim); direction++) {
-            double norm = label_cells_direction(dim, direction, place);
+        for (int r = 0; r < label_cells_directions(dim); r++) {
+            if (ray[r].next > step) {
+                continue;
+            }
             for (int d = 0; d < dim; d++) {
-                place[d] = x[d] + (norm > 0 ? 0.1 * step * voxel * place[d] / norm : 0);
+                place[d] = x[d] + step * ray[r].step[d];
             }
-            if (is_beyond(beyond, labels_at(labels, place))) {
-                return 0.1 * step * voxel;
+            double there = margin(labels, place, beyond);
+            if (there < 0) {
+                return step * length;
             }
+            ray[r].next = step + (int)fmax(1, there / ray[r].fall);
         }
     }
     return INFINITY;
@@ -149,7 +196,7 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
     }
     /* Instead of the place where all meet, the nearest interface of two of them. */
     uint16_t pair[2] = {(uint16_t)labels_at(labels, x), 0};
-    double best[3] = {0}, least = INFINITY;
+    double best[3] = {0}, least = INFINITY, reach = most_voxels * labels_voxel(labels);
     for (int i = 0; i < star->labels[node]; i++) {
         const struct interface_beyond region = {star->label[node][i], shaping->keep, true};
         double place[3] = {0};
@@ -157,7 +204,7 @@ bool node_project(const struct shaping *shaping, int64_t node, double x[])
         pair[1] = star->label[node][i];
         if (pair[1] != pair[0] &&
             (interface_project(labels, 2, pair, place) ||
-             search_change(labels, &region, most_voxels * labels_voxel(labels), place)) &&
+             search_change(labels, &region, fmin(reach, least), place)) &&
             vector_distance(labels->dim, place, x) < least) {
             least = vector_distance(labels->dim, place, x);
             memcpy(best, place, sizeof best);
@@ -258,7 +305,10 @@ bool line_project(const struct labels *labels, const bool *keep, double reach, i
     for (int i = 0; i < count; i++) {
         boundary = boundary || !keep[label[i]];
     }
-    for (int round = 0; round < 4; round++) {
+    double moved = INFINITY;
+    for (int round = 0; round < 4 && moved > 1e-3 * labels_voxel(labels); round++) {
+        double before[3] = {0};
+        memcpy(before, y, sizeof before);
         for (int i = 0; i < count; i++) {
             const struct interface_beyond region = {label[i], keep, true};
             if (keep[label[i]] && labels_at(labels, y) != label[i] &&
@@ -269,6 +319,7 @@ bool line_project(const struct labels *labels, const bool *keep, double reach, i
         if (boundary && !project_to_surface(labels, keep, reach, y)) {
             return false;
         }
+        moved = vector_distance(labels->dim, before, y);
     }
     if (!interface_project(labels, count, label, y)) {
         return false;

@@ -43,17 +43,18 @@ static bool keep_to_interface(const struct shaping *shaping, int64_t node, doubl
 }
 
 /* Try steps of decreasing length in all directions, along the axes and between them; nodes of interfaces stay
- * within the slack. Takes the best step of each length if it improves the poorest cell at the node. */
-static bool search(const struct shaping *shaping, double slack, int64_t node)
+ * within the slack. Takes the first step after which the poorest cell at the node scores `least`, else the
+ * best of each length that improves it. */
+static bool search(const struct shaping *shaping, double least, double slack, int64_t node)
 {
     int dim = shaping->mesh->dim;
     double *x = shaping->mesh->x + node * dim, length = 0.25 * edge_length(shaping, node);
-    double score = star_score(shaping, node);
+    double score = star_score(shaping, node, -INFINITY);
     bool improved = false;
-    for (int step = 0; step < STEPS; step++, length /= 2) {
+    for (int step = 0; step < STEPS && score < least; step++, length /= 2) {
         double here[3] = {0}, best[3] = {0}, best_score = score;
         memcpy(here, x, (size_t)dim * sizeof *x);
-        for (int direction = 0; direction < label_cells_directions(dim); direction++) {
+        for (int direction = 0; direction < label_cells_directions(dim) && best_score < least; direction++) {
             double place[3], norm = label_cells_direction(dim, direction, place);
             for (int d = 0; d < dim; d++) {
                 place[d] = here[d] + (norm > 0 ? length / norm * place[d] : 0);
@@ -62,7 +63,7 @@ static bool search(const struct shaping *shaping, double slack, int64_t node)
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
-            double fresh = star_score(shaping, node);
+            double fresh = star_score(shaping, node, best_score);
             if (fresh > best_score) {
                 best_score = fresh;
                 memcpy(best, place, sizeof best);
@@ -84,7 +85,8 @@ void label_cells_repair(const struct shaping *shaping, double least, double slac
         for (int64_t c = 0; c < mesh->cell_count; c++) {
             for (int k = 0; k <= mesh->dim && shaping_score(shaping, c) < least; k++) {
                 int64_t node = mesh->cell[c * (mesh->dim + 1) + k];
-                improved = (shaping->star.labels[node] > 0 && search(shaping, slack, node)) || improved;
+                improved =
+                    (shaping->star.labels[node] > 0 && search(shaping, least, slack, node)) || improved;
             }
         }
     }
@@ -124,14 +126,14 @@ static void find_room(const struct shaping *shaping, int64_t node, struct room *
     }
 }
 
-/* The poorest score of the cells at the node and at those around it. */
-static double room_score(const struct shaping *shaping, int64_t node, const struct room *room)
+/* The poorest score of the cells at the node and at those around it, or one below `least`. */
+static double room_score(const struct shaping *shaping, int64_t node, const struct room *room, double least)
 {
-    double least = star_score(shaping, node);
-    for (int r = 0; r < room->count; r++) {
-        least = fmin(least, star_score(shaping, room->node[r]));
+    double poorest = star_score(shaping, node, least);
+    for (int r = 0; r < room->count && poorest >= least; r++) {
+        poorest = fmin(poorest, star_score(shaping, room->node[r], least));
     }
-    return least;
+    return poorest;
 }
 
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[])
@@ -141,16 +143,18 @@ bool star_make_room(const struct shaping *shaping, double least, int64_t node, c
     double *x = mesh->x + node * dim, before[3] = {0};
     struct room room;
     find_room(shaping, node, &room);
-    double wanted = fmin(least, room_score(shaping, node, &room));
+    double wanted = fmin(least, room_score(shaping, node, &room, -INFINITY));
     memcpy(before, x, (size_t)dim * sizeof *x);
     memcpy(x, target, (size_t)dim * sizeof *x);
-    for (int sweep = 0; sweep < ROOM_SWEEPS; sweep++) {
+    bool improved = true;
+    for (int sweep = 0; sweep < ROOM_SWEEPS && improved; sweep++) {
+        improved = false;
         for (int r = 0; r < room.count; r++) {
-            if (star_score(shaping, room.node[r]) < wanted) {
-                (void)search(shaping, 0, room.node[r]);
+            if (star_score(shaping, room.node[r], wanted) < wanted) {
+                improved = search(shaping, wanted, 0, room.node[r]) || improved;
             }
         }
-        if (room_score(shaping, node, &room) >= wanted) {
+        if (room_score(shaping, node, &room, wanted) >= wanted) {
             return true;
         }
     }

@@ -174,6 +174,7 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
     TRY(NEW_ARRAY(&volumes.movable, mesh->node_count, error));
     TRY(NEW_ARRAY(&volumes.place, mesh->node_count * mesh->dim, error));
     memcpy(volumes.place, mesh->x, (size_t)(mesh->node_count * mesh->dim) * sizeof(double));
+#pragma omp parallel for schedule(dynamic, 64)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         const double *x = mesh->x + n * mesh->dim;
         double *place = volumes.place + n * mesh->dim;

@@ -5,10 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-/* The place of a point in the grid, and the weights of the voxels about it along each axis. */
+/* The labels and weights of the voxels about a point: rows of four along the first axis, those along the
+ * second axis first. */
 struct stencil {
-    int64_t first[3];
-    int count[3]; /* 4; 1 along an axis of one voxel */
+    int count[3];     /* 4; 1 along an axis of one voxel, of which a row then has four copies */
+    uint64_t row[16]; /* count[2] * count[1]: 16 bits for each label, the first voxel in the lowest ones */
     double weight[3][4], slope[3][4];
 };
 
@@ -34,24 +35,55 @@ void labels_to_voxel(const struct labels *labels, const double x[], double voxel
     }
 }
 
+/* The labels of four voxels along the first axis. */
+static uint64_t row_at(const struct labels *labels, int64_t first, int64_t y, int64_t z)
+{
+    const int64_t *size = labels->size;
+    uint64_t row = 0;
+    if (y < 0 || y >= size[1] || z < 0 || z >= size[2]) {
+        return 0;
+    }
+    const uint16_t *line = labels->label + (z * size[1] + y) * size[0];
+    if (first >= 0 && first + 4 <= size[0]) {
+        const uint16_t *l = line + first;
+        return (uint64_t)l[3] << 48 | (uint64_t)l[2] << 32 | (uint64_t)l[1] << 16 | l[0];
+    }
+    for (int i = 0; i < 4; i++) {
+        int64_t at = size[0] == 1 ? 0 : first + i;
+        row |= at >= 0 && at < size[0] ? (uint64_t)line[at] << 16 * i : 0;
+    }
+    return row;
+}
+
+static void read_rows(const struct labels *labels, const int64_t first[3], struct stencil *stencil)
+{
+    uint64_t *row = stencil->row;
+    for (int k = 0; k < stencil->count[2]; k++) {
+        for (int j = 0; j < stencil->count[1]; j++) {
+            *row++ = row_at(labels, first[0], first[1] + j, first[2] + k);
+        }
+    }
+}
+
 static void stencil_at(const struct labels *labels, const double x[], struct stencil *stencil)
 {
     double voxel[3];
+    int64_t first[3] = {0};
     labels_to_voxel(labels, x, voxel);
     for (int d = 0; d < 3; d++) {
         double v = voxel[d];
         double *w = stencil->weight[d], *s = stencil->slope[d];
         if (labels->size[d] == 1) {
+            memset(w, 0, 4 * sizeof *w);
+            memset(s, 0, 4 * sizeof *s);
             *w = 1;
-            *s = 0;
-            stencil->first[d] = 0;
             stencil->count[d] = 1;
             continue;
         }
         /* Far from the grid all is outside; keep the index within bounds. */
         v = fmin(fmax(v, -4), (double)labels->size[d] + 4);
         double base = floor(v), t = v - base, r = 1 - t;
-        stencil->first[d] = (int64_t)base - 1;
+        first[d] = (int64_t)base - 1;
         stencil->count[d] = 4;
         w[0] = r * r * r / 6;
         w[1] = 2.0 / 3 - t * t + t * t * t / 2;
@@ -62,43 +94,58 @@ static void stencil_at(const struct labels *labels, const double x[], struct ste
         s[2] = 2 * r - 1.5 * r * r;
         s[3] = t * t / 2;
     }
+    read_rows(labels, first, stencil);
 }
 
-/* The label of a voxel of the stencil. */
-static uint16_t voxel(const struct labels *labels, const struct stencil *stencil, int i, int j, int k)
+/* The voxels of a row with this label: a bit for each. */
+static unsigned same_in_row(uint64_t row, uint16_t label)
 {
-    int64_t at[3] = {stencil->first[0] + i, stencil->first[1] + j, stencil->first[2] + k};
-    for (int d = 0; d < 3; d++) {
-        if (at[d] < 0 || at[d] >= labels->size[d]) {
-            return 0;
-        }
+    const uint64_t ones = 0x0001000100010001, low = 0x7fff * ones;
+    uint64_t other = row ^ label * ones; /* 0 where they are equal; then the highest bits of these: */
+    uint64_t equal = ~(((other & low) + low) | other | low) >> 15;
+    return (unsigned)(equal * ((uint64_t)1 << 48 | (uint64_t)1 << 33 | 1 << 18 | 1 << 3) >> 48) & 15;
+}
+
+/* The sums of all subsets of four numbers. */
+static void sum_subsets(const double w[4], double sum[16])
+{
+    sum[0] = 0;
+    for (unsigned set = 1; set < 16; set++) {
+        unsigned first = set & -set, rest = set ^ first;
+        int at = first == 1 ? 0 : first == 2 ? 1 : first == 4 ? 2 : 3;
+        sum[set] = sum[rest] + w[at];
     }
-    return labels->label[(at[2] * labels->size[1] + at[1]) * labels->size[0] + at[0]];
 }
 
 void labels_mix(const struct labels *labels, const double x[], struct label_mix *mix)
 {
     struct stencil stencil;
-    int last = 0;
+    double sum[16], weight[16];
+    unsigned left[16]; /* voxels of each row that are not in the mix */
     stencil_at(labels, x, &stencil);
-    mix->count = 0;
+    sum_subsets(stencil.weight[0], sum);
+    int rows = 0;
     for (int k = 0; k < stencil.count[2]; k++) {
         for (int j = 0; j < stencil.count[1]; j++) {
-            double weight = stencil.weight[2][k] * stencil.weight[1][j];
-            for (int i = 0; i < stencil.count[0]; i++) {
-                uint16_t label = voxel(labels, &stencil, i, j, k);
-                if (mix->count == 0 || mix->label[last] != label) {
-                    for (last = 0; last < mix->count && mix->label[last] != label; last++) {
-                    }
-                    if (last == mix->count) {
-                        mix->label[last] = label;
-                        mix->share[last] = 0;
-                        mix->count++;
-                    }
-                }
-                mix->share[last] += weight * stencil.weight[0][i];
-            }
+            weight[rows] = stencil.weight[2][k] * stencil.weight[1][j];
+            left[rows++] = 15;
         }
+    }
+    mix->count = 0;
+    for (int first = 0; first < rows;) {
+        if (left[first] == 0) {
+            first++;
+            continue;
+        }
+        uint16_t label = (uint16_t)(stencil.row[first] >> 16 * __builtin_ctz(left[first]));
+        double share = 0;
+        for (int r = first; r < rows; r++) {
+            unsigned same = same_in_row(stencil.row[r], label);
+            left[r] &= ~same;
+            share += weight[r] * sum[same];
+        }
+        mix->label[mix->count] = label;
+        mix->share[mix->count++] = share;
     }
 }
 
@@ -145,19 +192,18 @@ double labels_difference(const struct labels *labels, const double x[], int32_t 
     struct stencil stencil;
     double value = 0, slope[3] = {0}, world[3];
     stencil_at(labels, x, &stencil);
-    for (int k = 0; k < stencil.count[2]; k++) {
-        for (int j = 0; j < stencil.count[1]; j++) {
-            for (int i = 0; i < stencil.count[0]; i++) {
-                uint16_t label = voxel(labels, &stencil, i, j, k);
-                double sign = label == a ? 1 : label == b ? -1 : 0;
-                const double *const w[3] = {&stencil.weight[0][i], &stencil.weight[1][j],
-                                            &stencil.weight[2][k]};
-                const double *const s[3] = {&stencil.slope[0][i], &stencil.slope[1][j], &stencil.slope[2][k]};
-                value += sign * *w[0] * *w[1] * *w[2];
-                slope[0] += sign * *s[0] * *w[1] * *w[2];
-                slope[1] += sign * *w[0] * *s[1] * *w[2];
-                slope[2] += sign * *w[0] * *w[1] * *s[2];
-            }
+    double sum[16], rise[16];
+    sum_subsets(stencil.weight[0], sum);
+    sum_subsets(stencil.slope[0], rise);
+    for (int k = 0, r = 0; k < stencil.count[2]; k++) {
+        for (int j = 0; j < stencil.count[1]; j++, r++) {
+            unsigned with_a = same_in_row(stencil.row[r], (uint16_t)a),
+                     with_b = same_in_row(stencil.row[r], (uint16_t)b);
+            double more = sum[with_a] - sum[with_b], steeper = rise[with_a] - rise[with_b];
+            value += more * stencil.weight[1][j] * stencil.weight[2][k];
+            slope[0] += steeper * stencil.weight[1][j] * stencil.weight[2][k];
+            slope[1] += more * stencil.slope[1][j] * stencil.weight[2][k];
+            slope[2] += more * stencil.weight[1][j] * stencil.slope[2][k];
         }
     }
     for (int d = 0; d < 3; d++) {
@@ -220,7 +266,8 @@ double labels_voxel(const struct labels *labels)
     double inverse[3][3], least = INFINITY;
     invert(labels, inverse);
     for (int e = 0; e < 3; e++) {
-        double length = hypot(hypot(inverse[0][e], inverse[1][e]), inverse[2][e]);
+        const double column[3] = {inverse[0][e], inverse[1][e], inverse[2][e]};
+        double length = vector_length(3, column);
         if (labels->size[e] > 1) {
             least = fmin(least, length);
         }
