@@ -1,7 +1,7 @@
 static const char usage[] =
     "warp - move an image by a displacement field, or write the field as an image\n"
     "\n"
-    "usage: warp [-i METHOD] [--like GRID] [--fill V] [--vacated V] [--inverse] [--frame K] [-v]\n"
+    "usage: warp [-i METHOD] [--like GRID] [--fill VALUES] [--vacated VALUES] [--inverse] [--frame K] [-v]\n"
     "            [-o FILE] IMAGE [FILE]\n"
     "       warp --field [--inverse] [--frame K] [-v] [-o FILE] GRID [FILE]\n"
     "\n"
@@ -32,8 +32,10 @@ static const char usage[] =
     "  -i, --interpolation METHOD\n"
     "                     nearest (for labels), linear (default) or cubic (Keys 1981)\n"
     "      --like GRID    write on the grid of this image, not that of IMAGE\n"
-    "      --fill V       the value of all voxels outside of the moved body\n"
-    "      --vacated V    the value of voxels where the body was and is no more\n"
+    "      --fill VALUES  the value of all voxels outside of the moved body, V, or by their label in IMAGE,\n"
+    "                     LABEL=V,...; a V in this list is for all other labels\n"
+    "      --vacated VALUES  the same for voxels where the body was and is no more; labels without a value\n"
+    "                     have that of --fill\n"
     "      --field        write the displacement field\n"
     "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X);\n"
     "                     with --field that displacement, u at X, along the same axes\n"
@@ -46,6 +48,7 @@ static const char usage[] =
     "Examples:\n"
     "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"
     "  warp -i nearest --vacated 0 -o moved.nii.gz labels.nii.gz u.dat\n"
+    "  warp -i nearest --vacated 1=2 --fill 3=0 labels.nii.gz u.dat > resected.nii.gz\n"
     "  warp --field T1.nii.gz u.dat > field.nii.gz\n"
     "  plastimatch warp --input T1.nii.gz --xf field.nii.gz --output-img predicted.nii.gz\n";
 
@@ -63,19 +66,54 @@ static const char usage[] =
 
 static const double tolerance = 1e-4; /* of positions, in voxels */
 
+/* Parse "V" or "LABEL=V,..." of an option. */
+static void parse_values(const struct tool *tool, const char *option, struct warp_values *values)
+{
+    char what[16];
+    snprintf(what, sizeof what, "--%s", option);
+    const char *text = tool_given(tool, option) ? tool_value(tool, option) : NULL;
+    SCRATCH char *copy = text != NULL ? tool_memory(tool, strdup(text)) : NULL;
+    for (char *rest = copy; rest != NULL;) {
+        char *item = strsep(&rest, ","), *equals = strchr(item, '=');
+        int64_t label = 0;
+        double value;
+        if (equals != NULL) {
+            *equals = '\0';
+            TOOL_TRY(tool, parse_integer(item, what, 0, INT32_MAX, &label, &error));
+        }
+        TOOL_TRY(tool,
+                 parse_double(equals != NULL ? equals + 1 : item, what, -DBL_MAX, DBL_MAX, &value, &error));
+        bool repeated = equals == NULL && values->others;
+        for (int i = 0; i < values->count && equals != NULL; i++) {
+            repeated = repeated || values->label[i] == (double)label;
+        }
+        if (repeated) {
+            tool_fail(tool, STATUS_INPUT, "%s %s: two values for %s", what, text,
+                      equals != NULL ? item : "all other labels");
+        }
+        if (equals == NULL) {
+            values->others = true;
+            values->other = value;
+        } else if (values->count == WARP_MOST_LABELS) {
+            tool_fail(tool, STATUS_INPUT, "%s: more than %d labels", what, WARP_MOST_LABELS);
+        } else {
+            values->label[values->count] = (double)label;
+            values->value[values->count++] = value;
+        }
+    }
+}
+
 static void parse(const struct tool *tool, struct warp_request *request)
 {
     static const char *const of_images[] = {"interpolation", "like", "fill", "vacated", NULL};
     const char *of_image = tool_first_given(tool, of_images);
     *request = (struct warp_request){.method = tool_image_method(tool),
-                                     .fills = tool_given(tool, "fill"),
-                                     .fill = tool_number(tool, "fill", -DBL_MAX, DBL_MAX, 0),
-                                     .marks_vacated = tool_given(tool, "vacated"),
-                                     .vacated = tool_number(tool, "vacated", -DBL_MAX, DBL_MAX, 0),
                                      .field = tool_given(tool, "field"),
                                      .inverse = tool_given(tool, "inverse"),
                                      .verbose = tool_given(tool, "verbose"),
                                      .section = "u"};
+    parse_values(tool, "fill", &request->fill);
+    parse_values(tool, "vacated", &request->vacated);
     if (request->field && of_image != NULL) {
         tool_fail(tool, STATUS_INPUT, "--%s is for images, not for --field", of_image);
     }
@@ -118,11 +156,11 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     }
     if (report->beyond > 0) {
         tool_note(tool, "%lld voxels show places outside of the image: %s there", (long long)report->beyond,
-                  request->fills ? "the value of --fill" : "0");
+                  request->fill.others ? "the value of --fill" : "0");
     }
-    if (report->vacated > 0 && !request->marks_vacated && !request->fills) {
+    if (report->left > 0) {
         tool_note(tool, "%lld voxels that the body left keep their old value: see --vacated",
-                  (long long)report->vacated);
+                  (long long)report->left);
     }
     if (!request->verbose) {
         return;
@@ -137,7 +175,7 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     if (report->doubly > 0) {
         tool_note(tool, "%lld voxels lie in two parts of the moved body", (long long)report->doubly);
     }
-    if (request->marks_vacated) {
+    if (tool_given(tool, "vacated")) {
         tool_note(tool, "%lld voxels were left by the body", (long long)report->vacated);
     }
     if (!request->inverse) {
@@ -149,14 +187,38 @@ static void print_report(const struct tool *tool, const struct warp_request *req
     }
 }
 
-/* Exit if the image's type cannot represent the value of an option. */
+/* Exit if the image's type cannot represent a value of an option. */
 static void check_value(const struct tool *tool, const struct image *image, const char *option, double value)
 {
     double least, most;
     image_range(image, &least, &most);
-    if (tool_given(tool, option) && !(value >= least && value <= most)) {
+    if (!(value >= least && value <= most)) {
         tool_fail(tool, STATUS_INPUT, "--%s %g: values of %s are from %g to %g", option, value,
                   tool->operands[0], least, most);
+    }
+}
+
+/* Exit for values that the image cannot have, and for labels that it has not. */
+static void check_values(const struct tool *tool, const struct image *image, const char *option,
+                         const struct warp_values *values)
+{
+    if (values->others) {
+        check_value(tool, image, option, values->other);
+    }
+    if (values->count > 0 && image->components > 1) {
+        tool_fail(tool, STATUS_INPUT, "--%s: %s has %zu values at each voxel, not labels", option,
+                  tool->operands[0], image->components);
+    }
+    for (int i = 0; i < values->count; i++) {
+        bool found = false;
+        check_value(tool, image, option, values->value[i]);
+        for (size_t v = 0; v < image_voxels(image) && !found; v++) {
+            found = image_whole(image, image->values[v]) == values->label[i];
+        }
+        if (!found) {
+            tool_fail(tool, STATUS_INPUT, "--%s: no voxel of %s has the label %.0f", option,
+                      tool->operands[0], values->label[i]);
+        }
     }
 }
 
@@ -252,8 +314,8 @@ int main(int argc, char *argv[])
     tool_begin(&tool, usage, 1, 2, argc, argv);
     parse(&tool, &request);
     tool_read_image(&tool, tool.operands[0], &image);
-    check_value(&tool, &image, "fill", request.fill);
-    check_value(&tool, &image, "vacated", request.vacated);
+    check_values(&tool, &image, "fill", &request.fill);
+    check_values(&tool, &image, "vacated", &request.vacated);
     if (tool_given(&tool, "like")) {
         tool_read_image(&tool, tool_value(&tool, "like"), &like);
     }
@@ -266,6 +328,7 @@ int main(int argc, char *argv[])
     const double *unseen = request.inverse ? motion.moved : cells.x;
     int64_t ignored;
     SCRATCH int32_t *owner = find_seen(&tool, grid, &cells, seen, &report.doubly), *other = NULL;
+    note_image_outside(&tool, &image, &cells, unseen);
     if (!request.field) {
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
         note_not_finite(&tool, &image, tool.operands[0]);

@@ -161,21 +161,41 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
                   "no voxel of the image (%s) lies in the body (%s): another space, or unit?",
                   box_text(&box, grid_text), box_text(&body, body_text));
     }
-    SCRATCH double *place = nodes_in_voxels(tool, grid, cells, x);
+}
+
+/* The number of nodes more than half a voxel outside of an image, when axes of the world are turned. */
+static int64_t nodes_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                             const double *x, unsigned turned)
+{
+    TOOL_SCRATCH(tool, double, y, cells->node_count * cells->dim);
+    for (int64_t i = 0; i < cells->node_count * cells->dim; i++) {
+        y[i] = turned >> i % cells->dim & 1 ? -x[i] : x[i];
+    }
+    SCRATCH double *place = nodes_in_voxels(tool, image, cells, y);
     int64_t outside = 0;
     for (int64_t n = 0; n < cells->node_count; n++) {
         bool within = true;
         for (int i = 0; i < cells->dim; i++) {
             double at = place[n * cells->dim + i];
-            within = within && at >= -1 && at <= (double)grid->size[i];
+            within = within && at >= -1 && at <= (double)image->size[i];
         }
         outside += within ? 0 : 1;
     }
+    return outside;
+}
+
+void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                        const double *x)
+{
+    int64_t outside = nodes_outside(tool, image, cells, x, 0), least = outside;
+    for (unsigned turned = 1; turned < 1U << cells->dim && outside > 0; turned++) {
+        int64_t count = nodes_outside(tool, image, cells, x, turned);
+        least = count < least ? count : least;
+    }
     if (outside > 0) {
-        tool_note(tool,
-                  "%lld of %lld nodes of the body lie more than half a voxel outside of the image: is an "
-                  "axis turned?",
-                  (long long)outside, (long long)cells->node_count);
+        tool_note(tool, "%lld of %lld nodes of the body lie more than half a voxel outside of the image: %s",
+                  (long long)outside, (long long)cells->node_count,
+                  2 * least < outside ? "is an axis turned?" : "it shows a part of the body");
     }
 }
 

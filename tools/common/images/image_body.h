@@ -29,6 +29,11 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
 void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
                          const double *x, int64_t inside);
 
+/* Note that the body, in the state that the image shows, lies partly outside of it; with a question if most
+ * of this would not with an axis turned. */
+void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                        const double *x);
+
 /* Volume of a voxel, m3, or its area in the plane of the body, m2. */
 double voxel_volume(const struct image *image, int dim);
 

@@ -6,17 +6,27 @@
 #include "approx/field/motion.h"
 #include "io/image/image_sample.h"
 
+/* Values for voxels outside of the moved body, by their label in the image. */
+enum { WARP_MOST_LABELS = 256 };
+struct warp_values {
+    int count;
+    double label[WARP_MOST_LABELS], value[WARP_MOST_LABELS];
+    bool others; /* all other voxels have the value: */
+    double other;
+};
+
 /* The options of a run. */
 struct warp_request {
     enum image_method method;
-    bool fills, marks_vacated, field, inverse, verbose;
-    double fill, vacated;
+    bool field, inverse, verbose;
+    struct warp_values fill, vacated;
     char section[32]; /* u, u.frame.K */
 };
 
 /* The outcome: numbers of voxels, and largest values. */
 struct warp_report {
     int64_t moved, vacated, beyond; /* in the moved body; uncovered; with a place outside of the image */
+    int64_t left;                   /* uncovered, with their old value */
     int64_t doubly, inexact;        /* in two cells; whose place was not found */
     double farthest;                /* displacement, m */
     double inconsistency;           /* |place(X) - x|, m */
