@@ -118,6 +118,17 @@ closed_cube() {
     refused 1 'closed.scene: contacts penetrate by ' mtled closed.scene closed.mts
 }
 
+@test "a law that is not strongly elliptic in the whole body is a verdict, at a corner a note" {
+    svk='s/^nu = 0.4.*/nu = 0.49\nmodel = st-venant-kirchhoff/'
+    cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > cube.mts 2> note
+    { head3; printf '[displacement a]\nfacets = xmin, ymin, zmin\nnormal = 0\n[displacement b]\nfacets = xmax, ymax\nnormal = -0.015\n'; } | sed "$svk" > biaxial.scene
+    refused 1 'biaxial.scene: at the whole load, the material law is not strongly elliptic in ' mtled biaxial.scene cube.mts
+    cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.1 | shapefn > block.mts 2> note
+    pressed_block | sed "$svk; s/-0.005/-0.02/" > clamped.scene
+    mtled clamped.scene block.mts 2> said > u.dat
+    grep -q '^mtled: clamped.scene: at the whole load, the material law is not strongly elliptic in [0-9.]* % of the body, as at (' said
+}
+
 @test "sections that ask for nearly the same at a node: reported with both values; in round-off of each other: not" {
     cloud -d 3 -k regular -n 4 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     { head3; printf '[displacement top]\nfacets = zmax\ncomponents = 0, 0, -0.005\n[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n'; } > base.scene

@@ -172,6 +172,14 @@ void body_gradient(struct body *body, double *gradient);
  * caller's order: det F, or of smoothed cells that of smoothed_cells.h. */
 void body_volume_ratio(struct body *body, double *ratio);
 
+/* The share of the volume whose law is not strongly elliptic at F of the last evaluation (ellipticity.h), and
+ * a point there, -1: none; caller's index. */
+struct inelliptic {
+    double share;
+    int64_t point;
+};
+struct inelliptic body_inelliptic(struct body *body);
+
 /* stiffness[node_count], N/m (2D: N/m2): bounds the diagonal of the stiffness at the last evaluation's F (of
  * smoothed cells about, far strained ones may exceed it), as sum_q w W''(y (x) grad phi), the second
  * derivative of the energy along the rank-one change of F that is stiffest, y = F^-T grad phi; at rest sum_q

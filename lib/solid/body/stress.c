@@ -2,6 +2,7 @@
 
 #include "solid/body/nodal_volume.h"
 #include "base/vector.h"
+#include "solid/material/ellipticity.h"
 
 #include <string.h>
 
@@ -172,4 +173,23 @@ void body_volume_ratio(struct body *body, double *ratio)
 {
     body_share_collect(body);
     body_visit(body, 0, body->block_count, put_volume_ratio, ratio);
+}
+
+static void add_inelliptic(const struct body *body, int64_t q, const double F[9], double J, void *sum)
+{
+    struct inelliptic *found = sum;
+    (void)J;
+    if (!material_is_elliptic(&body->materials[body->material[q]], body->dim, F)) {
+        found->share += body->weight[q];
+        found->point = found->point < 0 ? body->order[q] : found->point;
+    }
+}
+
+struct inelliptic body_inelliptic(struct body *body)
+{
+    struct inelliptic found = {0.0, -1};
+    body_share_collect(body);
+    body_visit(body, 0, body->block_count, add_inelliptic, &found);
+    found.share /= body_volume(body);
+    return found;
 }

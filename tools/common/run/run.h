@@ -138,6 +138,10 @@ void run_start(struct run *run);
  * results, and return true: the scene is computed again. */
 bool run_again(struct run *run);
 
+/* For an equilibrium at this share of the load, which was evaluated last: exits with a verdict where the
+ * material law is not strongly elliptic in a large part of the body. In the final state notes a small one. */
+void run_stability_elliptic(struct run *run, double load, bool final);
+
 /* Add that contact to the scene. */
 void run_touch_itself(struct run *run);
 

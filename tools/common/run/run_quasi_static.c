@@ -25,6 +25,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
                           ? "contacts, whose points go from facet to facet, admit no"
                           : "round-off admits no");
         }
+        run_stability_elliptic(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
         run_contacts_judge(run, report->penetration_allowed, 0.0);

@@ -240,6 +240,7 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
     run_put_field(run, &(struct moment){number, time}, u);
     run_folds_check(run, u, time, true);
     run_stability_check(run, time);
+    run_stability_elliptic(run, time, false);
     run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
     put_state(run, &(struct moment){number, time});
     run_frames_write(run, number);

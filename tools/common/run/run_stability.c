@@ -22,6 +22,10 @@ static const double growth = 4.0, near_error = 0.1, least_share = 1e-6;
  * changes by less than this share of its largest over a cell there: it falls off over three cells or more. */
 static const double crease_stretch = 0.65, most_change = 1.0 / 3.0;
 
+/* A result is refused if the law is not strongly elliptic in more than this share of the body. It is a few
+ * percent if it is so at singular corners only, and half if the body has become irregular. */
+static const double most_inelliptic = 0.1;
+
 static int64_t parameter_count(const struct run *run)
 {
     return run->model->system.node_count * run->model->system.dim;
@@ -96,6 +100,30 @@ void run_stability_check(struct run *run, double load)
         stability->negative = true;
         stability->since = stability->left ? stability->since : load;
         stability->node = found->node;
+    }
+}
+
+void run_stability_elliptic(struct run *run, double load, bool final)
+{
+    static const char text[] =
+        "%s: %s the material law is not strongly elliptic in %.2g %% of the body, as at "
+        "%s: what it does there depends on the mesh: use another model, as "
+        "neo-hookean, or a smaller load";
+    struct inelliptic found = body_inelliptic(&run->model->system.body);
+    char place[96], when[48] = "at the whole load,";
+    if (found.point < 0) {
+        return;
+    }
+    point_text(run->scene->dim, run->model->assembly.x + found.point * run->scene->dim, place);
+    if (load < 1.0) {
+        snprintf(when, sizeof when, "at %.4g of the load,", load);
+    }
+    if (found.share > most_inelliptic) {
+        run->last_good = -1.0; /* all frames have been given */
+        run_fail(run, STATUS_VERDICT, text, run->scene->path, when, 100.0 * found.share, place);
+    }
+    if (final) {
+        tool_note(run->tool, text, run->scene->path, when, 100.0 * found.share, place);
     }
 }
 
