@@ -265,7 +265,7 @@ buckled() {
     }
     buckled 5 0.495 1e-8 'folds = allowed'
     mv cube.mts table.mts
-    outlasts buckled.scene state.stability.negative buckles
+    outlasts buckled.scene state.stability.looks buckles
     cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > table.mts 2> note
     crushed 'folds = allowed' | sed 's/tolerance = 1e-3/tolerance = 1e-6/' > fold.scene
     outlasts fold.scene state.folds.now.seen folds
