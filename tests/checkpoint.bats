@@ -127,8 +127,3 @@ SCENE
     [[ $stderr == *"no checkpoint: run.ckpt.new: cannot write: File too large"* ]]
     cmp run.ckpt kept
 }
-
-# bats test_tags=thorough
-@test "killed at random moments, also while a checkpoint is written: one of two is whole" {
-    bash "$BATS_TEST_DIRNAME/kills.sh" 10
-}

@@ -192,7 +192,7 @@ buckled() {
 }
 
 @test "a body that buckles is told, with its place, be it before or after; one that is stable is not" {
-    # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5.
+    # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5, with 6 nodes a side of .53 and .51.
     buckled 5 0.495 1e-5 ''
     refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
     [[ $stderr == *" at (0.1, 0.1, "*": press less, hold it there, or allow it ([output] folds = allowed)" ]]
@@ -203,6 +203,8 @@ buckled() {
     run --separate-stderr mtled -o u.dat buckled.scene cube.mts
     [ "$status" -eq 0 ]
     [[ $stderr == "mtled: buckled.scene: the body folds at the whole load: it buckles"* && $(wc -l <<< "$stderr") -eq 1 ]]
+    buckled 6 0.51 1e-5 ''
+    refused 1 'buckled.scene: the body folds at the whole load: ' mtled buckled.scene cube.mts
     buckled 5 0.51 1e-5 ''
     mtled buckled.scene cube.mts > u.dat 2> said
     [ ! -s said ]
