@@ -58,6 +58,7 @@ setup() {
         }' craniotomy -
 }
 
+# bats test_tags=thorough
 @test "the tables of the whole brain are those that its geometry gives" {
     mkdir -p made
     cp "$EXAMPLE"/{*.geo,*.msh.gz,make-tables.sh} made

@@ -100,12 +100,9 @@ closed_cube() {
 
 @test "a body that contacts close in has its whole bulk modulus at the edges of what is clamped, as contacts take no part of it" {
     closed_cube
-    for case in '0.49 0.001' '0.4999 0.00005'; do
-        read -r nu push <<< "$case"
-        closed "$nu" "$push" > closed.scene
-        mtled closed.scene closed.mts > u.dat 2> said
-        missing "$nu" "$push" | awk '{ print; exit !($1 < 2e-3 && $1 > -2e-3) }'
-    done
+    closed 0.4999 0.00005 > closed.scene
+    mtled closed.scene closed.mts > u.dat 2> said
+    missing 0.4999 0.00005 | awk '{ print; exit !($1 < 2e-3 && $1 > -2e-3) }'
 }
 
 @test "nearer to incompressibility, and pushed by little, a part of the force is missing, which is told, and refused above 1 %" {

@@ -46,6 +46,15 @@ up_to_date() {
     up_to_date pipelines/README.md
 }
 
+@test "no figure is typed by hand: fractions stand in code, tables made from files, and marked figures only" {
+    for text in README.md pipelines/README.md; do
+        sed -e '/^```/,/^```/d; /^<!-- stud/,/^<!-- end -->$/d; /^## References/,/^## /d; /^    /d' \
+            -e 's/<!-- figure: [^>]*-->[^<]*<!-- end -->//g; s/`[^`]*`//g; s/\]([^)]*)//g' "$top/$text" > prose
+        [ "$(wc -l < prose)" -gt 30 ]
+        run -1 grep -nE '[0-9]*[.][0-9]' prose
+    done
+}
+
 @test "a figure whose file, column or row is not there, or whose row is not the only one, is an error" {
     mkdir results
     printf 'case\tscheme\tmean\na\tdefault, fine\t0.25\na\tmixed\t0.5\n' > results/table.tsv

@@ -2,12 +2,17 @@
 
 load common.bash
 
-setup() {
-    enter
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || return
     nifti smooth scan.nii.gz
     cloud -d 3 -k jittered -n 5 --box 0,0.06,0,0.06,0,0.06 --jitter 0.12 > cube.mts
     cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.2 > square.mts
     nifti step step.nii 0 100
+}
+
+setup() {
+    enter
+    cp "$BATS_FILE_TMPDIR"/{scan.nii.gz,cube.mts,square.mts,step.nii} .
 }
 
 # The test image, at the places in columns 1 to 3.
