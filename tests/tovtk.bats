@@ -14,13 +14,16 @@ two_triangles() {
 1 1
 0 0.1
 
+
 # cells i4 2 3 enc=text
 0 1 2
 0 2 3
 
+
 # cells.region i4 2 1 enc=text names=grey<&"matter,white
 1
 0
+
 
 # sets.idx i4 4 1 enc=text
 0
@@ -28,15 +31,18 @@ two_triangles() {
 2
 3
 
+
 # u f8 4 2 enc=text unit=m cols=x,y
 0 0
 0 0
 0 0.25
 0 -0.1
 
+
 # stress f8 2 3 enc=text unit=Pa cols=xx,yy,xy
 1 2 3
 4 5 6
+
 
 # u.frame.1 f8 4 2 enc=text unit=m time=0.5
 0 0
@@ -44,11 +50,13 @@ two_triangles() {
 0 0.125
 0 -0.05
 
+
 # u.frame.2 f8 4 2 enc=text unit=m time=1
 0 0
 0 0
 0 0.25
 0 -0.1
+
 
 # end 8
 END
@@ -142,13 +150,16 @@ squeezed_cube() {
 0 0 1
 1 1 1
 
+
 # cells i4 2 4 enc=text
 0 1 2 3
 1 2 3 4
 
+
 # stress f8 2 6 enc=text unit=Pa cols=xx,yy,zz,xy,xz,yz
 0 0 0 0 100 0
 30 30 30 0 0 40
+
 
 # end 3
 END

@@ -96,9 +96,10 @@ setup_file() {
 }
 
 @test "types: integers with scaling, colours, NIfTI-2, big-endian, micrometres" {
+    nifti smooth scan.nii.gz coarse
     with_u cube.mts 'print 0, 0, 0' > still.dat
     for what in scaled rgb second big um; do
-        nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" "$what.nii" $what
+        nifti change scan.nii.gz "$what.nii" $what
         warp -o same.nii "$what.nii" still.dat
         [ $what = big ] || nifti same "$what.nii" same.nii 1e-9
         warp -o moved.nii "$what.nii" u.dat
@@ -106,9 +107,9 @@ setup_file() {
     done
     warp -o a.nii big.nii u.dat
     warp -o b.nii um.nii u.dat
-    warp -o c.nii "$BATS_FILE_TMPDIR/scan.nii.gz" u.dat
-    [ "$(nifti value a.nii 30 31 32)" = "$(nifti value c.nii 30 31 32)" ]
-    awk -v a="$(nifti value b.nii 30 31 32)" -v b="$(nifti value c.nii 30 31 32)" 'BEGIN { d = a - b; exit !(d * d < 1e-8) }'
+    warp -o c.nii scan.nii.gz u.dat
+    [ "$(nifti value a.nii 15 16 17)" = "$(nifti value c.nii 15 16 17)" ]
+    awk -v a="$(nifti value b.nii 15 16 17)" -v b="$(nifti value c.nii 15 16 17)" 'BEGIN { d = a - b; exit !(d * d < 1e-8) }'
 }
 
 @test "same bytes: any number of threads, file or pipe, compressed or not" {
