@@ -259,6 +259,7 @@ for name, expected in ("run-0001.vtu", [10, -2, 0.25]), ("run-0002.vtu", [30, -6
 END
     done
     tovtk -t stream 2> note > final.vtu
+    grep -qx 'tovtk: only the final state is written: name a .pvd file for all 2 frames' note
     run -1 grep -q reactions final.vtu
 }
 
