@@ -320,6 +320,38 @@ rim() {
     refused 2 "these labels do not touch" voxels -h 5mm --surface 'label_1|label_1' two.nii.gz
     refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
     refused 2 "--surface goes without -t" voxels -h 5mm -t --surface label_1 two.nii.gz
+
+    cat > slide.scene << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = label_1
+E = 3000
+nu = 0.45
+rho = 1000
+[displacement held]
+facets = held
+components = 0, 0, 0.001
+[contact skull]
+facets = label_1|outside
+rigid = gap.tsv
+unit = m
+side = back
+END
+    # A body with a furrow narrower than twice the gap moves freely in it, where the surface is told to be nearer.
+    /usr/bin/python3 - << 'END'
+import nibabel as nib, numpy as np
+x, y, z = np.mgrid[:44, :40, :30]
+label = (x > 5) & (x < 38) & (y > 5) & (y < 34) & (z > 5) & (z < 24) & ~((abs(x - 22) < 4) & (z > 11))
+image = nib.Nifti1Image(label.astype(np.uint8), np.eye(4))
+image.header.set_xyzt_units("mm")
+nib.save(image, "furrow.nii")
+END
+    voxels -h 4mm --surface label_1 --gap 6mm furrow.nii > gap.tsv 2> said
+    grep -qE "^voxels: --gap: [0-9]+ nodes are moved by less, the first at \([0-9., ]+\) mm: " said
+    voxels -h 4mm furrow.nii | groups -f held=low:z,20% > body.mts 2> said
+    shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
 }
 
 @test "labels rounded by a scaling or to single precision are whole; others are refused with their digits" {

@@ -45,7 +45,7 @@ static const char usage[] =
     "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
     "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
     "                          only where that lies beyond it\n"
-    "      --gap LENGTH        move it outward by LENGTH\n"
+    "      --gap LENGTH        move it outward by LENGTH; less, with a note, where it would cross itself\n"
     "  -l, --labels TABLE      names of labels\n"
     "      --part NAME=PLACE ...  name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
     "                          voxels of a mask image; the later of two that overlap\n"

@@ -158,6 +158,7 @@ static void check_closed(const struct shape *shape, const struct rigid_surface *
     NEAR_TO(fabs(contact.gap), contact.distance, 0.0);
     if (expected > 1e-9) {
         NEAR_TO(contact.gap > 0.0 ? 0.0 : 1.0, winding(shape, x), 1e-6);
+        assert_true(rigid_is_behind(surface, x) == (contact.gap < 0.0));
     }
     NEAR_TO(vector_length(dim, contact.normal), 1.0, 1e-14);
     for (int a = 0; a < dim; a++) {
@@ -234,6 +235,24 @@ TEST(concave_corners)
         double x[2] = {uniform(&random, -0.5, 2.5), uniform(&random, -0.5, 2.5)};
         bool inside = x[0] > 0 && x[1] > 0 && x[0] < 2 && x[1] < 2 && !(x[0] > 1 && x[1] > 1);
         assert_true((rigid_closest(&surface, x, INFINITY).gap < 0.0) == inside);
+    }
+}
+
+/* Two squares that overlap: in the first one beside an edge of the second, the closest facet faces the point. */
+TEST(crossing_curves)
+{
+    static const double x[2] = {0.95, 1}, beside[2] = {-0.05, 1};
+    struct shape shape = {.dim = 2};
+    for (int i = 0; i < 8; i++) {
+        double low = i / 4, from[2] = {low + 2 * (i % 4 == 1 || i % 4 == 2), 2 * (i % 4 > 1)},
+               to[2] = {low + 2 * (i % 4 < 2), 2 * (i % 4 == 1 || i % 4 == 2)};
+        add_facet(&shape, from, to, NULL);
+    }
+    for (int flip = 0; flip < 2; flip++) {
+        FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, flip != 0);
+        assert_true((rigid_closest(&surface, x, INFINITY).gap > 0) == (flip == 0));
+        assert_true(rigid_is_behind(&surface, x) == (flip == 0));
+        assert_true(rigid_is_behind(&surface, beside) == (flip != 0));
     }
 }
 

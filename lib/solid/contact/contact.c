@@ -54,16 +54,29 @@ static enum status check_side(const struct contact *contact, struct error *error
     if (worst < 0) {
         return STATUS_OK;
     }
-    if (deepest > round_off * contact_most_depth(contact, worst)) {
+    const double *place = contact->rest + worst * contact->dim;
+    int32_t node = contact->points->node[worst];
+    char at[96] = "";
+    for (int a = 0; a < contact->dim; a++) {
+        text_append(at, sizeof at, "%s%.4g", a > 0 ? ", " : "", place[a]);
+    }
+    bool apart = deepest > round_off * contact_most_depth(contact, worst);
+    if (apart && !rigid_is_behind(&contact->surface, place)) {
         return fail(error, STATUS_INPUT,
-                    "contact: node %d starts %.3g m behind the rigid surface: state its other "
+                    "contact: node %d at (%s) m lies on its side of the rigid surface, but %.3g m behind the "
+                    "closest facet: the surface passes through or touches itself there: mend it",
+                    node, at, deepest);
+    }
+    if (apart) {
+        return fail(error, STATUS_INPUT,
+                    "contact: node %d at (%s) m starts %.3g m behind the rigid surface: state its other "
                     "side, or leave the node's facets out",
-                    contact->points->node[worst], deepest);
+                    node, at, deepest);
     }
     return fail(error, STATUS_INPUT,
-                "contact: node %d faces away from the surface that it starts on, as a body "
+                "contact: node %d at (%s) m faces away from the surface that it starts on, as a body "
                 "behind the rigid surface: state its other side, or leave the node's facets out",
-                contact->points->node[worst]);
+                node, at);
 }
 
 enum status contact_allocate(struct contact *contact, double stiffness, struct error *error)

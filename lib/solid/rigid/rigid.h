@@ -70,3 +70,8 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
 /* The same among the facets that the filter admits. */
 struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
                                          const struct rigid_filter *filter);
+
+/* Whether x lies behind the surface, not on the side that the normals point to. For a closed surface by its
+ * winding number about x, which edges of four facets, and facets that pass through each other, do not deceive
+ * (Jacobson, Kavan and Sorkine-Hornung, ACM Trans. Graph. 32 (2013), 33); else by the closest point. */
+bool rigid_is_behind(const struct rigid_surface *surface, const double *x);
