@@ -1,5 +1,5 @@
-/* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii), plain or compressed by gzip, of either byte
- * order. */
+/* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii, or pairs .hdr and .img), plain or compressed by
+ * gzip, of either byte order. */
 #pragma once
 
 #include "base/status.h"
@@ -60,13 +60,13 @@ MUST_CHECK enum status image_new(struct image *image, const size_t size[3], size
                                  struct error *error);
 
 /* Read a NIfTI file, compressed or not, from an open descriptor, which stays open; messages begin with
- * `name`. The space is that of sform if the file has one, else of qform, else voxel sizes along axes of
- * unknown direction, with a note. Without a unit of length it is mm, with a note. An image of one slice needs
- * no size across. STATUS_INPUT for a file that is not a NIfTI file of one volume (known formats are named,
- * with the remedy), for types other than enum image_datatype, for a truncated or damaged file, and for a
- * header that contradicts itself or the length of the data; STATUS_SYSTEM for read failures and memory. Time
- * and memory are proportional to the data in the file, whatever its header says. On failure the image is
- * empty. */
+ * `name`. The data of a header NAME.hdr are those of the file NAME.img. The space is that of sform if the
+ * file has one, else of qform, else voxel sizes along axes of unknown direction, with a note. Without a unit
+ * of length it is mm, with a note. An image of one slice needs no size across. STATUS_INPUT for a file that
+ * is not a NIfTI file of one volume (known formats are named, with the remedy), for types other than enum
+ * image_datatype, for a truncated or damaged file, and for a header that contradicts itself or the length of
+ * the data; STATUS_SYSTEM for read failures and memory. Time and memory are proportional to the data in the
+ * file, whatever its header says. On failure the image is empty. */
 MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
                                        struct error *error);
 

@@ -12,6 +12,7 @@ enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
 struct nifti {
     int version;
     bool swapped;
+    bool pair; /* the data are in a file of their own */
     double dim[8];
     int datatype, bits, intent;
     double pixdim[8], offset, slope, inter;

@@ -4,7 +4,10 @@
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
+#include "io/files/descriptor.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,19 +34,17 @@ static enum status fail_foreign(const unsigned char *bytes, size_t size, struct 
         }
     }
     return size == 0 ? fail(error, STATUS_INPUT, "is empty")
-                     : fail(error, STATUS_INPUT, "is no NIfTI image: save it as .nii or .nii.gz");
+                     : fail(error, STATUS_INPUT,
+                            "is no NIfTI image: save it as .nii or .nii.gz; of a pair give the .hdr file");
 }
 
-static enum status check_magic(const unsigned char *bytes, int version, struct error *error)
+/* *pair: the data are in a file of their own. */
+static enum status check_magic(const unsigned char *bytes, int version, bool *pair, struct error *error)
 {
     const char *magic = (const char *)bytes + (version == 1 ? 344 : 4);
-    if (memcmp(magic, version == 1 ? "n+1" : "n+2", 4) == 0) {
+    *pair = memcmp(magic, version == 1 ? pair_magic : "ni2", 4) == 0;
+    if (*pair || memcmp(magic, version == 1 ? "n+1" : "n+2", 4) == 0) {
         return STATUS_OK;
-    }
-    if (memcmp(magic, version == 1 ? pair_magic : "ni2", 4) == 0) {
-        return fail(error, STATUS_INPUT,
-                    "is a header whose data are in a file of their own (.hdr, .img): save the "
-                    "image as one .nii file");
     }
     return version == 1 ? fail(error, STATUS_INPUT,
                                "is an ANALYZE 7.5 header, which knows no orientation: convert it to NIfTI")
@@ -70,8 +71,10 @@ static enum status read_header(struct image_source *source, struct nifti *header
     if (got < size) {
         return fail(error, STATUS_INPUT, "cut short: %zu bytes of a header of %zu", got, size);
     }
-    RETURN_IF_ERROR(check_magic(bytes, version, error));
+    bool pair;
+    RETURN_IF_ERROR(check_magic(bytes, version, &pair, error));
     nifti_decode(bytes, version, swapped, header, image);
+    header->pair = pair;
     return STATUS_OK;
 }
 
@@ -117,7 +120,7 @@ static enum status check_sizes(const struct nifti *header, const struct nifti_ty
 static enum status check_header(const struct nifti *header, const struct nifti_type **type,
                                 struct image *image, size_t *count, struct error *error)
 {
-    double least = header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
+    double least = header->pair ? 0 : header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
     *type = nifti_type(header->datatype);
     if (*type == NULL) {
         return fail(
@@ -153,6 +156,7 @@ static enum status skip_extensions(struct image_source *source, const struct nif
                                    unsigned char *scratch, size_t room, struct error *error)
 {
     int64_t offset = header->offset > 0     ? (int64_t)header->offset
+                     : header->pair         ? 0
                      : header->version == 1 ? NIFTI1_HEADER + 4
                                             : NIFTI2_HEADER + 4;
     while (source->taken < offset) {
@@ -227,15 +231,11 @@ static enum status interleave(struct image *image, struct error *error)
     return STATUS_OK;
 }
 
-static enum status read_source(struct image_source *source, struct image *image, struct error *error)
+static enum status read_data(struct image_source *source, const struct nifti *header,
+                             const struct nifti_type *type, size_t count, struct image *image,
+                             struct error *error)
 {
-    struct nifti header;
-    const struct nifti_type *type;
-    size_t count = 0;
-    RETURN_IF_ERROR(read_header(source, &header, image, error));
-    RETURN_IF_ERROR(check_header(&header, &type, image, &count, error));
-    RETURN_IF_ERROR(nifti_space(&header, image, error));
-    RETURN_IF_ERROR(read_values(source, &header, type, count, image, error));
+    RETURN_IF_ERROR(read_values(source, header, type, count, image, error));
     RETURN_IF_ERROR(check_exact(type, count, image->values, error));
     if (image->components > (size_t)type->components) {
         RETURN_IF_ERROR(interleave(image, error));
@@ -246,13 +246,54 @@ static enum status read_source(struct image_source *source, struct image *image,
     return STATUS_OK;
 }
 
+/* Read the data of the header NAME.hdr from NAME.img, those of NAME.hdr.gz from NAME.img.gz. */
+static enum status read_partner(const char *name, const struct nifti *header, const struct nifti_type *type,
+                                size_t count, struct image *image, struct error *error)
+{
+    size_t length = strlen(name),
+           end = length > 3 && strcmp(name + length - 3, ".gz") == 0 ? length - 3 : length;
+    struct image_source source;
+    if (end < 4 || strncmp(name + end - 4, ".hdr", 4) != 0) {
+        return fail(error, STATUS_INPUT,
+                    "is a header whose data are in a file of their own: give its name, which ends in .hdr");
+    }
+    SCRATCH char *partner = strdup(name);
+    if (partner == NULL) {
+        return fail_memory(error, "the name of a file");
+    }
+    memcpy(partner + end - 4, ".img", 4);
+    FREED_BY(descriptor_close) int descriptor = open(partner, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        return fail(error, STATUS_INPUT, "its data, %s: %s", partner, strerror(errno));
+    }
+    enum status status = image_source_open(&source, descriptor, error);
+    if (status == STATUS_OK) {
+        status = read_data(&source, header, type, count, image, error);
+    }
+    image_source_close(&source);
+    return fail_in(error, status, "its data, %s", partner);
+}
+
+static enum status read_source(struct image_source *source, const char *name, struct image *image,
+                               struct error *error)
+{
+    struct nifti header;
+    const struct nifti_type *type;
+    size_t count = 0;
+    RETURN_IF_ERROR(read_header(source, &header, image, error));
+    RETURN_IF_ERROR(check_header(&header, &type, image, &count, error));
+    RETURN_IF_ERROR(nifti_space(&header, image, error));
+    return header.pair ? read_partner(name, &header, type, count, image, error)
+                       : read_data(source, &header, type, count, image, error);
+}
+
 enum status image_read_from(struct image *image, int descriptor, const char *name, struct error *error)
 {
     struct image_source source;
     *image = (struct image){0};
     enum status status = image_source_open(&source, descriptor, error);
     if (status == STATUS_OK) {
-        status = read_source(&source, image, error);
+        status = read_source(&source, name, image, error);
     }
     image_source_close(&source);
     if (status != STATUS_OK) {
