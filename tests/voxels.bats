@@ -354,6 +354,38 @@ END
     shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
 }
 
+@test "images and masks on one grid are joined, later ones on top; another grid is refused" {
+    phantom two > two.nii.gz
+    phantom sphere 1 2 > sphere.nii.gz
+    /usr/bin/python3 - << 'END'
+import nibabel as nib, numpy as np
+image = nib.load("two.nii.gz")
+value = np.asarray(image.dataobj)
+def save(name, value):
+    nib.save(nib.Nifti1Image(value, None, image.header), name)
+save("low.nii", value * (value == 1))
+save("mask.nii", 7 * (value == 2).astype(np.int16))
+save("whole.nii", value + (value == 2))
+END
+    cmp <(voxels -h 6mm low.nii 3=mask.nii | mts print cells.region) <(voxels -h 6mm whole.nii | mts print cells.region)
+    refused 2 "sphere.nii.gz: another grid than that of the first image: resample it" voxels -h 6mm low.nii sphere.nii.gz
+}
+
+@test "pairs of .hdr and .img are read; what a pair does not prove is refused" {
+    phantom two > two.nii.gz
+    voxels -h 6mm two.nii.gz > one.mts
+    /usr/bin/python3 -c 'import nibabel as nib; nib.save(nib.Nifti1Pair.from_image(nib.load("two.nii.gz")), "two.img")'
+    cmp <(mts print nodes.x one.mts) <(voxels -h 6mm two.hdr | mts print nodes.x)
+    gzip -k two.hdr two.img
+    cmp <(mts print nodes.x one.mts) <(voxels -h 6mm two.hdr.gz | mts print nodes.x)
+    refused 2 "two.img: is no NIfTI image: save it as .nii or .nii.gz; of a pair give the .hdr file" voxels -h 6mm two.img
+    refused 2 "standard input: is a header whose data are in a file of their own" voxels -h 6mm - < two.hdr
+    printf x >> two.img
+    refused 2 "two.hdr: its data, two.img: more data than " voxels -h 6mm two.hdr
+    rm two.img
+    refused 2 "two.hdr: its data, two.img: No such file" voxels -h 6mm two.hdr
+}
+
 @test "labels rounded by a scaling or to single precision are whole; others are refused with their digits" {
     /usr/bin/python3 - << 'END'
 import nibabel as nib, numpy as np

@@ -3,34 +3,34 @@ static const char usage[] =
     "\n"
     "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
     "              [--part NAME=PLACE]... [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE]\n"
-    "              [IMAGE]\n"
+    "              [[LABEL=]IMAGE ...]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
-    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [IMAGE]\n"
+    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "\n"
-    "Reads a label image (NIfTI-1 or -2, plain or gzip; - or nothing: standard input) and writes what\n"
-    "nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up), cells,\n"
-    "cells.region with the labels' names, facets of the boundary in groups A|B of the region A and what\n"
-    "lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces between\n"
-    "regions.\n"
+    "Reads a label image (NIfTI: .nii, .nii.gz, .hdr of a pair; - or nothing: standard input) and writes\n"
+    "what nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up),\n"
+    "cells, cells.region with the labels' names, facets of the boundary in groups A|B of the region A and\n"
+    "what lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces.\n"
+    "Of several images on one grid later ones lie on top where they are not 0. 3=MASK: voxels of MASK\n"
+    "that are not 0 have the label 3.\n"
     "\n"
     "A body-centred cubic lattice of cubes of LENGTH (2D: equilateral triangles) is cut where labels meet\n"
     "(isosurface stuffing, Labelle and Shewchuk 2007): where the shares of two labels, smoothed by cubic\n"
     "B-splines, are equal. Nodes of interfaces are moved by at most .55 voxels to keep the volume of each\n"
-    "label. Angles of cells are between 8 and 165 degrees.\n"
+    "label. Cells have angles from 8 to 165 degrees.\n"
     "\n"
-    "Parts of a label thinner than LENGTH may be lost, narrower gaps filled, and bodies about a single\n"
-    "lattice point left out, all with a note: --fine keeps more. Bodies that share only a node or an edge\n"
-    "are cut apart; where parts of one body do, the gap is filled, as are the tips of crevices.\n"
+    "Parts thinner than LENGTH may be lost, narrower gaps filled, and bodies about one lattice point left\n"
+    "out, with a note: --fine keeps more. Bodies that share only a node or an edge are cut apart; where\n"
+    "parts of one body do, the gap is filled, as are the tips of crevices.\n"
     "\n"
-    "A part of the boundary gets a name by --part, with nodes on its rim; others, of whole facets, by\n"
-    "groups.\n"
+    "Parts of the boundary get names by --part, with nodes on their rim, or by groups, of whole facets.\n"
     "\n"
-    "A slice (an image of one, or chosen by -s) makes a body in the plane: x and y of the stream are then\n"
-    "the two world axes in the slice, in their order.\n"
+    "A slice (an image of one, or chosen by -s) makes a body in the plane: x and y are the two world axes\n"
+    "in the slice, in their order.\n"
     "\n"
     "The table has rows LABELS NAME: LABELS is a number, a range 3-5, a list 1,3-5, or * for all others but\n"
     "0. Labels of one name are one region. A NAME - makes labels part of the outside; a third word - leaves\n"
-    "cells out, and NAME stands in the names of the walls around. Text behind # is a comment. Without a\n"
+    "cells out, and NAME stands in the names of the walls around. # begins a comment. Without a\n"
     "table all labels but 0 are regions label_1, label_2, ...\n"
     "\n"
     "--surface writes a table for [contact] of a scene instead (unit = m): the triangles of the surface of\n"
@@ -38,14 +38,13 @@ static const char usage[] =
     "side = back (2D: left).\n"
     "\n"
     "Options:\n"
-    "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm; without one in m (required; -h at the end\n"
-    "                          of the line prints this text)\n"
+    "  -h, --spacing LENGTH    of the lattice, with a unit: 6mm (required; a last -h is --help)\n"
     "      --fine LENGTH[:NAME,...]  spacing at all interfaces, with names at those of these labels only:\n"
     "                          that of -h is halved until it is no larger\n"
     "      --sizes FILE        lengths of edges, by sizefield -b: the spacing is halved where they ask so\n"
     "      --surface NAME[|NAME]  write the surface of the first label; with a second name (or outside)\n"
     "                          only where that lies beyond it\n"
-    "      --gap LENGTH        move it outward by LENGTH; less, with a note, where it would cross itself\n"
+    "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
     "  -l, --labels TABLE      names of labels\n"
     "      --part NAME=PLACE ...  name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
     "                          voxels of a mask image; the later of two that overlap\n"
@@ -53,7 +52,7 @@ static const char usage[] =
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
     "                          number of metres\n"
-    "  -v, --verbose           report on standard error: volumes in voxels and cells, nodes, angles\n"
+    "  -v, --verbose           report volumes, nodes and angles\n"
     "  -t, --text              write text instead of binary\n"
     "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
@@ -61,7 +60,7 @@ static const char usage[] =
     "  voxels labels.nii.gz -h 6mm | shapefn | mtled craniotomy.scene > u.dat\n"
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
-    "  sizefield -b u.dat | voxels -h 6mm --sizes - labels.nii.gz > finer.mts\n"
+    "  voxels -h 4mm brain.nii.gz 2=tumour_mask.nii.gz > body.mts\n"
     "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
 
 #include "cell_report.h"
@@ -294,13 +293,13 @@ int main(int argc, char *argv[])
     if (argc > 1 && strcmp(argv[argc - 1], "-h") == 0) {
         argv[argc - 1] = help;
     }
-    tool_begin(&tool, usage, 0, 1, argc, argv);
+    tool_begin(&tool, usage, 0, argc, argc, argv);
     check_options(&tool);
     double spacing = tool_length(&tool, "spacing", 0);
     struct label_image_options wanted = {.table = tool_value(&tool, "labels"),
                                          .unit = tool_length_unit(&tool, "unit", 0),
                                          .slice = tool_value(&tool, "slice")};
-    label_image_read(&tool, tool.operands[0], &wanted, &image);
+    label_image_read(&tool, tool.operands, &wanted, &image);
     label_parts_make(&tool, &image);
     struct label_surface_options surface = {.gap = tool_length(&tool, "gap", 0)};
     if (tool_given(&tool, "surface")) {

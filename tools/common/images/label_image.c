@@ -2,6 +2,7 @@
 
 #include "base/box.h"
 #include "base/lists.h"
+#include "base/vector.h"
 #include "images/images.h"
 
 #include <math.h>
@@ -62,11 +63,7 @@ static void collect_values(const struct tool *tool, const struct image *image, s
     int64_t count = (int64_t)image_voxels(image);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
-        double value = image_whole(image, image->values[i]);
-        if (!(value >= 0 && value <= INT32_MAX)) {
-            fail_value(tool, image, i);
-        }
-        int64_t label = (int64_t)value;
+        int64_t label = (int64_t)image->values[i];
         at = place_of(values, label, at);
         if (at == values->count || values->value[at] != label) {
             if (values->count == MOST_VALUES) {
@@ -156,7 +153,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     label_values(tool, values, image, table);
     int32_t at = 0;
     for (int64_t i = 0; i < count; i++) {
-        at = place_of(values, (int64_t)image_whole(source, source->values[i]), at);
+        at = place_of(values, (int64_t)source->values[i], at);
         image->voxel[i] = values->label[at];
     }
     image->labels.label = image->voxel;
@@ -302,7 +299,65 @@ static void note_border(const struct tool *tool, const struct label_image *image
     }
 }
 
-void label_image_read(const struct tool *tool, const char *file, const struct label_image_options *options,
+/* Read "FILE" or "LABEL=FILE", with whole values. */
+static void read_layer(const struct tool *tool, const char *text, struct image *image)
+{
+    int64_t label = 0;
+    size_t digits = strspn(text, "0123456789");
+    bool mask = digits > 0 && text[digits] == '=';
+    if (mask) {
+        SCRATCH char *number = tool_memory(tool, strndup(text, digits));
+        TOOL_TRY(tool, parse_integer(number, text, 1, INT32_MAX, &label, &error));
+    }
+    tool_read_image(tool, mask ? text + digits + 1 : text, image);
+    if (image->components > 1) {
+        tool_fail(tool, STATUS_INPUT, "%s: %zu values at each voxel: not a label image", text,
+                  image->components);
+    }
+    for (size_t v = 0; v < image_voxels(image); v++) {
+        double value = image_whole(image, image->values[v]);
+        if (!(value >= 0 && value <= INT32_MAX)) {
+            fail_value(tool, image, (int64_t)v);
+        }
+        image->values[v] = mask && value > 0 ? (double)label : value;
+    }
+    image->slope = 1;
+    image->inter = 0;
+}
+
+/* Exit unless the voxels of two images have the same places, to a hundredth of a voxel. */
+static void check_grid(const struct tool *tool, const struct image *first, const struct image *image,
+                       const char *name)
+{
+    bool same = memcmp(first->size, image->size, sizeof first->size) == 0;
+    for (int corner = 0; corner < 8 && same; corner++) {
+        double voxel[3], here[3], there[3];
+        for (int d = 0; d < 3; d++) {
+            voxel[d] = corner >> d & 1 ? (double)first->size[d] : 0;
+        }
+        image_world(first, voxel, here);
+        image_world(image, voxel, there);
+        same = vector_distance(3, here, there) <= 0.01 * image_step(first, 0);
+    }
+    if (!same) {
+        tool_fail(tool, STATUS_INPUT, "%s: another grid than that of the first image: resample it", name);
+    }
+}
+
+static void read_layers(const struct tool *tool, char *const *files, struct image *image)
+{
+    read_layer(tool, files[0] == NULL ? "-" : files[0], image);
+    for (int f = 1; files[0] != NULL && files[f] != NULL; f++) {
+        FREED_BY(image_free) struct image layer = {0};
+        read_layer(tool, files[f], &layer);
+        check_grid(tool, image, &layer, files[f]);
+        for (size_t v = 0; v < image_voxels(image); v++) {
+            image->values[v] = layer.values[v] > 0 ? layer.values[v] : image->values[v];
+        }
+    }
+}
+
+void label_image_read(const struct tool *tool, char *const *files, const struct label_image_options *options,
                       struct label_image *image)
 {
     FREED_BY(image_free) struct image source = {0};
@@ -310,10 +365,7 @@ void label_image_read(const struct tool *tool, const char *file, const struct la
     if (options->table != NULL) {
         TOOL_TRY(tool, label_table_read(options->table, &image->table, &error));
     }
-    tool_read_image(tool, file == NULL ? "-" : file, &source);
-    if (source.components > 1) {
-        tool_fail(tool, STATUS_INPUT, "%zu values at each voxel: not a label image", source.components);
-    }
+    read_layers(tool, files, &source);
     for (int i = 0; i < 12 && options->unit > 0; i++) {
         source.to_world[i / 4][i % 4] *= options->unit / source.unit;
     }

@@ -31,11 +31,12 @@ struct label_image {
     double voxel_volume;
 };
 
-/* Read a label image; "-" and NULL: standard input. Exits on failure: errors of image_read_from and
- * label_table_read, values that are not integers, several values at a voxel, a label that is not in the
- * table, a name without a voxel, a slice that is not perpendicular to a world axis, and a body of impossible
- * size. */
-void label_image_read(const struct tool *tool, const char *file, const struct label_image_options *options,
+/* Read label images, files[] with NULL behind the last one; "-" and none: standard input. Those behind the
+ * first one lie on top where they are not 0. "3=FILE": voxels of FILE that are not 0 have the label 3. Exits
+ * on failure: another grid than that of the first; errors of image_read_from and label_table_read, values
+ * that are not integers, several values at a voxel, a label that is not in the table, a name without a voxel,
+ * a slice that is not perpendicular to a world axis, and a body of impossible size. */
+void label_image_read(const struct tool *tool, char *const *files, const struct label_image_options *options,
                       struct label_image *image);
 void label_image_free(struct label_image *image);
 
