@@ -109,6 +109,18 @@ END
     refused 1 "does not come to rest: it may have passed a limit load" mtled 320.scene table.mts
 }
 
+@test "a push of 1e-12 m: no note but of round-off; a pressure that no body bears is reported soon" {
+    cloud -d 2 -k regular -n 41,5 --box 0,0.1,0,0.004 | shapefn > strip.mts 2> note
+    { block quasi-static | sed 's/^nu = .*/nu = 0.49/'; printf '[displacement %s]\nfacets = %s\ncomponents = %s\n' low xmin '0, 0' high xmax '-1e-12, 0'; } > tiny.scene
+    run -0 --separate-stderr mtled tiny.scene strip.mts
+    [[ $stderr == *"round-off admits no less" && $(wc -l <<< "$stderr") -eq 1 ]]
+    # While the body snapped the rate of the load fell to nothing: 70 000 steps.
+    cloud -d 2 -k jittered -n 9 --jitter .15 --seed 11 --box 0,.1,0,.1 | shapefn > square.mts 2> note
+    { block quasi-static | sed 's/^nu = .*/nu = 0.49/' && held_below && printf '[pressure top]\nfacets = ymax\nvalue = 3000\n[solver]\nmax_steps = 20000\n'; } > pressure.scene
+    run -1 --separate-stderr mtled pressure.scene square.mts
+    [[ $stderr != *"not converged after"* ]]
+}
+
 @test "energy drift: the fastest node; the frames before it" {
     # Not so far that a cell inverts first, as with .1.
     scene dynamic 0.49 'components = 0.055, 0.055' 'end_time = 0.5\ntime_step_margin = 0.97' > run.scene

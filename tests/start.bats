@@ -45,6 +45,18 @@ sooner() {
     same_state cube.scene 2e-5 && sooner
 }
 
+@test "from the field of a coarser cloud, and of quite another load: the same state, and nothing has buckled" {
+    clouds 3 4 6
+    pressed_cube zmin zmax "0.02, 0, -0.015" | sed 's/^nu = .*/nu = 0.49/; s/components = 0, 0, 0.02/components = 0.02/' > sheared.scene
+    same_state sheared.scene 1e-5 && sooner
+    [ "$(grep -c '^mtled' warm.said)" -eq 0 ]
+    sed 's/-0.015/0.06/' sheared.scene > pulled.scene
+    mtled -q -o coarse.dat pulled.scene coarse.mts
+    mtled -s coarse.dat -o warm.dat sheared.scene fine.mts 2> warm.said
+    [ ! -s warm.said ]
+    fieldcmp --tol-max 1e-6 cold.dat warm.dat
+}
+
 @test "a contact: the same state, to what it may penetrate" {
     clouds 2 12 23
     { block quasi-static && printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.01\n[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\n'; } > floor.scene

@@ -17,12 +17,15 @@ static const double most_moved = 1.4, most_raised = 1.25;
 /* The rate of loading is reduced when a node moves by more than this share of the body's size in a step, a
  * little more than prescribed motions do. */
 static const double most_move_per_step = 1.0 / 320.0;
+/* And not further than to this share: while the body snaps to another state the load is practically held, and
+ * goes on soon after. */
+static const double least_rate = 1e-3;
 /* First guess of the lowest eigenvalue, by the result of FIRST_ITERATIONS, which is up to about seven times
  * too large. */
 static const double first_share = 0.15;
 static const double first_share_of_largest =
-    1e-4;                                 /* the same by the largest eigenvalue, if that result is negative */
-static const int64_t most_backtracks = 8; /* from inverted points */
+    1e-4; /* the same by the largest eigenvalue, if that result is negative and the run is from rest */
+static const int64_t most_backtracks = 8;                        /* from inverted points */
 static const double most_stiffening = 1.1, most_softening = 0.5; /* of a node since its mass was set */
 /* A mode is slow if its frequency is below the largest one by this factor. It is alone if the cosine between
  * increment and velocity has exceeded this value at so many checks in a row. */
@@ -58,9 +61,9 @@ int64_t relaxation_choose_ramp(const struct relaxation *r)
 
 void relaxation_control_load(struct relaxation *r)
 {
-    double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size,
-           factor = fmax(0.3, allowed / r->moved);
-    r->load_rate = fmin(r->top_rate, fmin(factor, 1.2) * r->load_rate);
+    double allowed = CHECK_INTERVAL * most_move_per_step * r->body_size;
+    r->load_rate *= fmin(1.2, allowed / r->moved);
+    r->load_rate = fmin(r->top_rate, fmax(least_rate * r->top_rate, r->load_rate));
 }
 
 /* Set the time step by the largest frequency at u. */
@@ -143,8 +146,10 @@ enum status relaxation_measure_preconditioner(struct relaxation *r, struct error
     }
     r->frequency = sqrt(fmax(spectrum.largest, 0.0));
     update_time_step(r, r->residual_at, 1); /* contacts that may close are not in the spectrum */
-    relaxation_damp_at_most(r, spectrum.lowest > 0.0 ? first_share * spectrum.lowest
-                                                     : first_share_of_largest * spectrum.largest);
+    /* A given start may be far from equilibrium: with hardly any damping it would be thrown farther off. */
+    bool by_lowest = spectrum.lowest > 0.0 || r->system->rows.start != NULL;
+    relaxation_damp_at_most(r, by_lowest ? first_share * fabs(spectrum.lowest)
+                                         : first_share_of_largest * spectrum.largest);
     r->measured_frequency = r->frequency;
     r->measured_move = r->largest_move;
     return STATUS_OK;

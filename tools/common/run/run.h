@@ -114,6 +114,7 @@ struct run {
     const char *start_file; /* result from whose field the run starts; NULL: none */
     struct side start;      /* that result */
     double *u;              /* parameters, node_count * dim, m */
+    double error;           /* quasi-static: the estimated error of u, m */
     double last_good;       /* the time of the state u, as in struct progress; negative: none */
     int64_t evaluations;    /* of forces */
     double read_seconds, prepare_seconds, solve_seconds, write_seconds;

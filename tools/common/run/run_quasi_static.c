@@ -80,10 +80,10 @@ static double error_left(const struct relaxation_report *report)
     return report->error * report->move + report->penetration;
 }
 
-static void put_error(const struct run *run, const struct relaxation_report *report)
+static void put_error(const struct run *run)
 {
     double *error = run_new_values(run, 1);
-    *error = error_left(report);
+    *error = run->error;
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
@@ -113,6 +113,7 @@ void run_quasi_static(struct run *run)
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);
     run->last_good = report.load;
+    run->error = error_left(&report);
     run->evaluations = report.force_evaluations;
     run_folds_check(run, run->u, report.load, true);
     run_stability_check(run, report.load);
@@ -123,7 +124,7 @@ void run_quasi_static(struct run *run)
         }
         return;
     }
-    put_error(run, &report);
+    put_error(run);
     if (run->verbose) {
         fprintf(stderr,
                 "points\t%lld\nmerged cells\t%lld\npairs\t%lld\nsteps\t%lld\nloading steps\t%lld\nforce "
@@ -131,8 +132,7 @@ void run_quasi_static(struct run *run)
                 (long long)body->point_count, (long long)body->cells.merged_count,
                 (long long)body->pair_count, (long long)report.steps, (long long)report.loading_steps,
                 (long long)report.force_evaluations);
-        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n",
-                error_left(&report));
+        fprintf(stderr, "iteration error, m\t%.3g\ndiscretisation error, m\tsee fielderr\n", run->error);
         fprintf(stderr, "estimated error\t%.3g\nfrequency ratio\t%.5g\nleast J\t%.4g\n", report.error,
                 report.largest_frequency / report.lowest_frequency, report.least_jacobian);
         run_report_springs(run);

@@ -218,12 +218,12 @@ bool run_stability_describe(const struct run *run, char *text, size_t size)
     const struct run_stability *stability = &run->stability;
     const struct solid_system *system = &run->model->system;
     char place[96], when[48];
-    int64_t node;
+    int64_t node = 0;
     text[0] = '\0';
     snprintf(when, sizeof when, stability->since < 1.0 ? "from %.4g of the load on" : "at the whole load",
              stability->since);
     double moved = stability->left ? moved_since(run, &node) : 0.0;
-    if (stability->left && moved > growth * stability->least) {
+    if (moved > run->error) { /* else it is the same state */
         bool stands = !stability->negative && is_of_shape(run, node);
         point_text(system->dim, system->X + node * system->dim, place);
         snprintf(text, size,
