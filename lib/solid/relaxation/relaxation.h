@@ -57,6 +57,7 @@ struct relaxation_report {
     double lowest_frequency;
     double penetration, penetration_allowed; /* of contacts, m: see contact_miss */
     double load;            /* share of the load at u, 0..1; RELAXATION_INVERTED: u is an earlier state */
+    int64_t worst_node;     /* the farthest from equilibrium at the last estimate, the caller's index */
     int64_t inverted_point; /* the caller's index, RELAXATION_INVERTED */
     double least_jacobian;
 };

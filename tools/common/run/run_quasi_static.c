@@ -33,6 +33,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
         run_sliding_judge(run);
         return;
     }
+    point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
     if (report->outcome == RELAXATION_STALLED) {
         const char *remedy =
             run_folds_touch_in_part(run) ? "" /* it is named with the fold */
@@ -44,9 +45,10 @@ static void judge(struct run *run, const struct relaxation_report *report)
                   "help"
                 : ": it hardly resists some motion, as a slender body that has buckled may turn: a larger "
                   "tolerance, or supports against that motion may help";
-        run_fail(run, STATUS_VERDICT,
-                 "%s: step %lld%s: the estimated error stays at %.2g of the displacement%s", scene->path,
-                 (long long)report->steps, load, report->error, remedy);
+        run_fail(
+            run, STATUS_VERDICT,
+            "%s: step %lld%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
+            scene->path, (long long)report->steps, load, report->error, place, remedy);
     }
     if (report->outcome == RELAXATION_STOPPED) {
         run_checkpoint_stop(run, report->steps);
@@ -68,9 +70,9 @@ static void judge(struct run *run, const struct relaxation_report *report)
                  scene->path, (long long)report->steps, load, report->move, beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
-             "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement: "
-             "allow more (max_steps), or hold the body against rigid motion",
-             scene->path, (long long)report->steps, load, report->error);
+             "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement, "
+             "most of all at %s: allow more (max_steps), or hold the body against rigid motion",
+             scene->path, (long long)report->steps, load, report->error, place);
 }
 
 /* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
