@@ -31,6 +31,7 @@ struct dynamics_options {
 
 /* Largest admissible error of the energy balance, relative to the largest energy. */
 #define DYNAMICS_MOST_DRIFT 0.05
+#define DYNAMICS_NOTED_DRIFT 0.01 /* the share above which it is noted */
 
 /* A step below this share of the first one counts as a collapse. */
 #define DYNAMICS_LEAST_STEP 1e-3
