@@ -48,8 +48,11 @@ SCENE
     rod 31,3,3
     mv rod.mts table.mts
     mtled rod.scene table.mts > whole.dat
-    begin_and_end TERM rod.scene state.slow.count
-    [ $status -eq 143 ]
+    for _ in 1 2 3 4 5; do # by the time that it ends, it may be without one again
+        begin_and_end TERM rod.scene state.slow.count
+        [ $status -eq 143 ]
+        [ "$(mts print state.slow.count run.ckpt)" -eq 0 ] || break
+    done
     [ "$(mts print state.slow.count run.ckpt)" -gt 0 ]
     mtled -q -c run.ckpt -o out.dat rod.scene table.mts
     cmp <(bare whole.dat) <(bare out.dat)

@@ -138,7 +138,7 @@ begin_and_end() {
             [ -n "$(jobs -rp)" ] || break
             if [ -z "${3:-}" ]; then
                 [ ! -e run.ckpt.old ] || break
-            elif [ "$(mts print "$3" run.ckpt 2> note || echo 0)" != 0 ]; then
+            elif [ "$(mts print "$3" run.ckpt 2> note || echo 0)" -gt 0 ] 2> note; then
                 break
             fi
             sleep 0.02

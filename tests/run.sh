@@ -35,8 +35,8 @@ export -f run
 
 rm -rf "$logs" "$BUILD/check.result"
 mkdir -p "$logs"
-slow=(mpi deny faults plates fielderr conditions checkpoint touching voxels warp pipelines make install nodes hard)
-slow=("${slow[@]/%/.bats}")
+slow=(mpi deny touching faults warp conditions voxels nodes fielderr plates hard make python pipelines numbers install)
+slow=("${slow[@]/%/.bats}" unit/label_cells)
 mapfile -t units < <(cd tests && printf '%s\n' unit/*.c | sed 's/\.c$//')
 mapfile -t suites < <(cd tests && printf '%s\n' *.bats)
 printf '%s\n' "${slow[@]}" "${suites[@]}" "${units[@]}" | awk '!seen[$0]++' | xargs -P "$(nproc)" -I NAME bash -c 'run NAME'

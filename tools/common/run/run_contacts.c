@@ -7,6 +7,7 @@
 #include "solid/contact/contact_patch.h"
 #include "solid/system/energy.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -190,6 +191,9 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
         worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
     }
     miss = system_contact_miss(system);
+    if (miss <= DBL_EPSILON * run->model->assembly.extent) { /* as at the start, where nothing has moved */
+        return;
+    }
     if (!run->model->assembly.in_time && miss > run->scene->solver.tolerance * motion) {
         missing = system_missing_work(system) / (2.0 * energy_internal(system, run->u));
     }
