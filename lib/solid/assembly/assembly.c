@@ -30,14 +30,14 @@ static enum status list_vertices(const struct assembly *input, int32_t **vertex,
     return STATUS_OK;
 }
 
-static enum status build_body(const struct assembly *input, struct solid_system *system, struct error *error)
+static enum status build_body(struct assembly *input, struct solid_system *system, struct error *error)
 {
-    const struct material_list *materials = &input->materials;
+    struct material_list *materials = &input->materials;
     SCRATCH int32_t *vertex = NULL;
     SCRATCH double *coordinate = NULL;
-    SCRATCH bool *at_junction = NULL, *at_edge = NULL;
+    SCRATCH bool *at_edge = NULL;
     if (input->smoothed && assembly_holds_averages(input)) {
-        RETURN_IF_ERROR(assembly_junction_cells(input, &at_junction, error));
+        RETURN_IF_ERROR(assembly_soften_junctions(input, materials, error));
         RETURN_IF_ERROR(assembly_edge_nodes(input, &at_edge, error));
     }
     if (!input->pointwise_volume) {
@@ -52,7 +52,6 @@ static enum status build_body(const struct assembly *input, struct solid_system 
                                             .node_ptr = input->node_lists.ptr,
                                             .node_idx = input->node_lists.idx,
                                             .node_phi = input->node_phi,
-                                            .at_junction = at_junction,
                                             .copied = input->copied,
                                             .context = input->context};
     struct body_input body = {.dim = input->cells.dim,

@@ -67,7 +67,7 @@ struct assembly {
         *cell_side; /* of each cell: its side of the interfaces at which supports stop; NULL: none */
     const struct ranks *ranks; /* processes that compute the body together; NULL: one */
 
-    struct material_list materials; /* the caller's to free */
+    struct material_list materials; /* the caller's to free; assembly adds softer ones, once */
     bool pointwise_volume;          /* no nodal volumes */
 
     struct load_curve *curves; /* curve_count; taken over by the system */
@@ -100,7 +100,7 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
- * contacts. */
+ * contacts, and the reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -109,13 +109,11 @@ MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct s
                                           struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
+MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
+                                                 struct error *error);
 
-/* (*at_junction)[cells.count], to be freed: cells that have a node at a junction of prescribed and free
- * boundary within a smooth side, and no prescribed face. */
-MUST_CHECK enum status assembly_junction_cells(const struct assembly *input, bool **at_junction,
-                                               struct error *error);
-/* (*at_edge)[node_count], to be freed: the nodes at such junctions, at edges between clamped and free sides,
- * and at re-entrant edges (2D: corners); NULL: none. */
+/* (*at_edge)[node_count], to be freed: the nodes at edges between clamped and free sides, and at re-entrant
+ * edges (2D: corners); NULL: none. */
 MUST_CHECK enum status assembly_edge_nodes(const struct assembly *input, bool **at_edge, struct error *error);
 
 bool assembly_has_gravity(const struct assembly *input);

@@ -56,15 +56,13 @@ static enum status set_face_gradients(struct body *body, struct error *error)
 }
 
 /* The volume by which the variance of the gradient counts in each cell: its own, or in a cell that others are
- * merged with that of the group, and in those none. Cells at junctions do not count. */
-static enum status set_variance_weights(const struct smoothed_cells_input *input, struct body *body,
-                                        struct error *error)
+ * merged with that of the group, and in those none. */
+static enum status set_variance_weights(struct body *body, struct error *error)
 {
     double **weight = &body->cells.variance_weight;
     RETURN_IF_ERROR(NEW_ARRAY(weight, body->point_count + BODY_POINT_PADDING, error));
     for (int64_t q = 0; q < body->point_count; q++) {
-        bool left_out = input->at_junction != NULL && input->at_junction[body->order[q]];
-        (*weight)[smoothed_cells_group(body, q)] += left_out ? 0.0 : body->weight[q];
+        (*weight)[smoothed_cells_group(body, q)] += body->weight[q];
     }
     return STATUS_OK;
 }
@@ -75,7 +73,7 @@ enum status smoothed_cells_build(const struct smoothed_cells_input *input, struc
     struct smoothed_cells *smoothed = &body->cells;
     int64_t entries = body->point_count * body->dim * body->dim + BODY_POINT_PADDING;
     RETURN_IF_ERROR(set_linear_gradients(input, body->dim, body->point_count, body->order, smoothed, error));
-    RETURN_IF_ERROR(set_variance_weights(input, body, error));
+    RETURN_IF_ERROR(set_variance_weights(body, error));
     RETURN_IF_ERROR(NEW_ARRAY_UNTOUCHED(&smoothed->interpolant, entries, error));
     RETURN_IF_ERROR(smoothed_rows_build(input, body, error));
     RETURN_IF_ERROR(set_face_gradients(body, error));

@@ -37,7 +37,6 @@ struct smoothed_cells_input {
     const int64_t *node_ptr; /* node_count + 1: values of the shape functions at the nodes */
     const int32_t *node_idx;
     const double *node_phi;
-    const bool *at_junction;    /* of each cell: the variance of its gradient has no energy; NULL: none */
     void (*copied)(void *context); /* called when edge_ptr, edge_idx and edge_phi are no longer needed, and
                                       their memory has been released (memory_give_back); or NULL. Several
                                       processes need them until the body is freed, and it is not called */
