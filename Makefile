@@ -90,7 +90,7 @@ MPI_PROGRAM := $(BUILD)/bin/mtled-mpi
 mpi: $(MPI_PROGRAM)
 has-mpi:
 	@[ -n "$(HAS_MPI)" ] || { echo 'make: no MPI here: make deps installs it' >&2; false; }
-$(BUILD)/tools/mpi/%.o: CC = mpicc
+$(BUILD)/tools/mpi/%.o: override CC = mpicc
 $(BUILD)/tools/mpi/process.o: | has-mpi
 $(MPI_PROGRAM): $(BUILD)/tools/mtled.o $(BUILD)/tools/mpi/process.o $(filter-out %/process.o,$(COMMON_OBJECTS)) $(LIBRARY)
 	@mkdir -p $(@D)
