@@ -274,29 +274,6 @@ END
     done
 }
 
-@test "a text stream in Python: every section as mts prints it; half a stream and binary are refused" {
-    make_patch
-    mtled patch.scene square.dat > u.dat 2> note
-    read_stream() { PYTHONPATH=$BATS_TEST_DIRNAME/../examples PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "$1" 2>&1; }
-    /usr/bin/python3 "$BATS_TEST_DIRNAME/../examples/stream.py" u.dat > shapes ||
-        { echo "is python3-numpy installed? (make deps)"; false; }
-    mts list u.dat | awk 'BEGIN { long["f8"] = "float64"; long["i4"] = "int32"; long["i8"] = "int64" }
-        { print $1, long[$2], $3, $4 }' | cmp - shapes
-    for name in nodes.x cells u facets.set; do
-        read_stream "from stream import read
-for row in read('u.dat')['$name'].tolist(): print(*row)" > rows
-        mts print $name u.dat > expected
-        paste -d ' ' rows expected | awk '{ for (i = 1; i <= NF / 2; i++) if ($i != $(i + NF / 2)) exit failed = 1 } END { exit failed || !NR }'
-    done
-    sed '$d' u.dat > half
-    run -1 read_stream "import stream; stream.read('half')"
-    [[ ${lines[-1]} == "ValueError: half: not a whole text stream"* ]]
-    head -c 900 u.dat > half
-    run -1 read_stream "import stream; stream.read('half')"
-    mts binary u.dat > binary
-    run -1 read_stream "import stream; stream.read('binary')"
-}
-
 @test "foreign: meshes are as poor as they are meant to be; a row for each, whatever comes of it" {
     for name in jittered-1 voxels-hex; do bash "$pipelines/foreign/mesh.sh" $name $name.msh; done
     # between LEAST MOST MESH: its least quality

@@ -80,3 +80,9 @@ mesh.write("u.msh", file_format="gmsh22", binary=False)'
     cmp <(mts print cells u.dat) <(mts print cells back.mts)
     [[ "$(mts list back.mts)" == *ymax* ]]
 }
+
+@test "the parameter study of the examples: forces that grow, a picture" {
+    /usr/bin/python3 "$top/examples/block/study.py" study.png > said
+    awk '{ if (!($5 > last)) exit bad = 1; last = $5 } END { exit bad || NR != 5 }' said
+    [ "$(head -c 4 study.png | tail -c 3)" = PNG ]
+}
