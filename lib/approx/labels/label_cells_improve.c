@@ -92,7 +92,7 @@ static bool find_place(const struct shaping *shaping, place_finder *find, int64_
     int dim = shaping->mesh->dim;
     double x[3] = {0};
     memcpy(x, shaping->mesh->x + node * dim, (size_t)dim * sizeof *x);
-    if (!last->known || memcmp(x, last->from, sizeof x) != 0) {
+    if (!last->known || vector_distance2(3, x, last->from) > 0.0) {
         memcpy(last->from, x, sizeof x);
         memcpy(last->place, x, sizeof x);
         last->known = true;
