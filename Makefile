@@ -57,7 +57,7 @@ MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/ma
 # Programs that the command-line tests use.
 TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/filled $(BUILD)/tests/helper/deny.so
 
-.PHONY: all lib man deps check check-all clean always
+.PHONY: all lib man deps check check-all tested clean always
 all: $(PROGRAMS) $(MAN_PAGES)
 man: $(MAN_PAGES)
 lib: $(LIBRARY)
@@ -132,7 +132,10 @@ endif
 deps:
 	@bash pipelines/deps.sh
 
-check check-all: all $(if $(HAS_MPI),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
+# By a make of its own: after deps it finds what was installed, and builds on all cores.
+tested: all $(if $(HAS_MPI),mpi) $(UNIT_TESTS) $(FUZZ_TARGETS) $(TEST_HELPERS)
+check check-all:
+	@$(MAKE) --no-print-directory -j$$(nproc) tested
 	@BUILD="$(abspath $(BUILD))" $(if $(SAN)$(COVERAGE),LIMIT=3600) bash tests/run.sh $(if $(filter %-all,$@),all)
 
 clean:
