@@ -8,6 +8,7 @@ set -u -o pipefail
 cd "$(dirname "$0")/.." || exit 3
 : "${BUILD:=$PWD/build}" "${LIMIT:=600}"
 export BUILD LIMIT PATH="$BUILD/bin:$PATH" CMOCKA_MESSAGE_OUTPUT=TAP ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1}
+cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc) # nproc counts no more than these
 # One thread each, but for the tests of threads; idle threads sleep.
 export OMP_NUM_THREADS=1 OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export logs=$BUILD/check tags='!thorough'
@@ -39,7 +40,7 @@ slow=(mpi deny touching faults warp conditions voxels nodes fielderr plates hard
 slow=("${slow[@]/%/.bats}" unit/label_cells)
 mapfile -t units < <(cd tests && printf '%s\n' unit/*.c | sed 's/\.c$//')
 mapfile -t suites < <(cd tests && printf '%s\n' *.bats)
-printf '%s\n' "${slow[@]}" "${suites[@]}" "${units[@]}" | awk '!seen[$0]++' | xargs -P "$(nproc)" -I NAME bash -c 'run NAME'
+printf '%s\n' "${slow[@]}" "${suites[@]}" "${units[@]}" | awk '!seen[$0]++' | xargs -P "$cores" -I NAME bash -c 'run NAME'
 
 for name in "${units[@]}" "${suites[@]}"; do
     echo "# $name"
