@@ -29,6 +29,15 @@ void box_add(struct box *box, int64_t count, const double *x)
     }
 }
 
+bool box_meets(const struct box *one, const struct box *other)
+{
+    bool meet = true;
+    for (int a = 0; a < one->dim; a++) {
+        meet = meet && one->low[a] <= other->high[a] && other->low[a] <= one->high[a];
+    }
+    return meet;
+}
+
 double box_side(const struct box *box)
 {
     double side = 0.0;

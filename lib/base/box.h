@@ -1,6 +1,7 @@
 /* The box around points, along the axes. */
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct box {
@@ -13,6 +14,9 @@ struct box box_of(int dim, int64_t count, const double *x);
 
 /* The box of the nodes node[count] of x. */
 struct box box_of_nodes(int dim, const double *x, const int32_t *node, int64_t count);
+
+/* Whether two boxes overlap or touch. */
+bool box_meets(const struct box *one, const struct box *other);
 
 /* Extend the box to contain these points. */
 void box_add(struct box *box, int64_t count, const double *x);

@@ -20,8 +20,7 @@
  * model admits this, a real plate would not. */
 #pragma once
 
-#include "base/box.h"
-#include "base/lists.h"
+#include "approx/cells/crossing.h"
 #include "base/ranks.h"
 #include "base/status.h"
 
@@ -87,12 +86,6 @@ struct fold_body {
     double middle[3];
 };
 
-/* The box around a facet, sorted by its low end along the first axis. */
-struct fold_box {
-    struct placed facet;
-    struct box box;
-};
-
 struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
     const bool
@@ -118,10 +111,10 @@ struct folds {
         at_rest; /* FOLD_CREASE, FOLD_CROSSING or FOLD_WITHIN: bodies, or parts of one, interpenetrate at
                     rest. Then the last two kinds are not searched for, nor FOLD_CREASE if it is that */
     /* Of the search. */
-    const bool *stopped;    /* see folds_find */
-    double *y;              /* node_count * dim: positions */
-    double largest;         /* of their coordinates, m */
-    struct fold_box *boxes; /* facet_count, ascending */
+    const bool *stopped;     /* see folds_find */
+    double *y;               /* node_count * dim: positions */
+    double largest;          /* of their coordinates, m */
+    struct facet_box *boxes; /* facet_count, ascending */
     double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
                          * vectors, of its corners, their number */
     struct fold *found; /* of several processes: the folds found by each */

@@ -9,53 +9,6 @@ static const double round_off = 1e-12;
 /* See are_deep; contact_most_depth. */
 static const double held_share = 0.5;
 
-/* Whether the segment p q crosses facet f in the interior of both. */
-static bool pierces(const struct folds *folds, int32_t p, int32_t q, int64_t f)
-{
-    int dim = folds->input.dim;
-    const int32_t *node = folds->input.facet + f * dim;
-    const double *x = fold_position(folds, p), *y = fold_position(folds, q),
-                 *a = fold_position(folds, node[0]), *b = fold_position(folds, node[1]);
-    const double *c = fold_position(folds, node[dim - 1]); /* 2D: b, not used */
-    double before = dim == 2 ? fold_volume(2, a, b, x, NULL) : fold_volume(3, a, b, c, x);
-    double after = dim == 2 ? fold_volume(2, a, b, y, NULL) : fold_volume(3, a, b, c, y);
-    double side[3];
-    double size = vector_distance(dim, x, y) + vector_distance(dim, x, a) + vector_distance(dim, a, b);
-    double least = round_off * folds->largest * (dim == 2 ? size : size * size);
-    if (!(fmin(before, after) < -least && fmax(before, after) > least)) {
-        return false;
-    }
-    if (dim == 2) {
-        side[0] = fold_volume(2, x, y, a, NULL);
-        side[1] = -fold_volume(2, x, y, b, NULL);
-        side[2] = side[0];
-    } else {
-        side[0] = fold_volume(3, x, y, a, b);
-        side[1] = fold_volume(3, x, y, b, c);
-        side[2] = fold_volume(3, x, y, c, a);
-    }
-    return (side[0] > least && side[1] > least && side[2] > least) ||
-           (side[0] < -least && side[1] < -least && side[2] < -least);
-}
-
-/* Whether an edge of facet f (2D: the facet) without a node of facet g crosses g. */
-static bool goes_through(const struct folds *folds, int64_t f, int64_t g)
-{
-    int dim = folds->input.dim;
-    const int32_t *edge = folds->input.facet + f * dim, *node = folds->input.facet + g * dim;
-    for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
-        int32_t p = edge[k], q = edge[(k + 1) % dim];
-        bool apart = true;
-        for (int i = 0; i < dim; i++) {
-            apart = apart && node[i] != p && node[i] != q;
-        }
-        if (apart && pierces(folds, p, q, g)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* The depth of facet g behind the plane of facet f; *width receives the length of f (3D: root of twice the
  * area). */
 static double reach_behind(const struct folds *folds, int64_t f, int64_t g, double *width)
@@ -125,37 +78,29 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     return depth > (in_contact ? held_share : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
 }
 
-/* Whether two boxes overlap along all axes but the first. */
-static bool boxes_meet(const struct box *one, const struct box *other)
-{
-    bool meet = true;
-    for (int i = 1; i < one->dim; i++) {
-        meet = meet && one->low[i] <= other->high[i] && other->low[i] <= one->high[i];
-    }
-    return meet;
-}
-
 void folds_sort_boxes(struct folds *folds)
 {
-    int dim = folds->input.dim;
-    for (int64_t f = 0; f < folds->input.facet_count; f++) {
-        struct box box = box_of_nodes(dim, folds->y, folds->input.facet + f * dim, dim);
-        folds->boxes[f] = (struct fold_box){{box.low[0], f}, box};
+    int64_t count = folds->input.facet_count;
+    for (int64_t f = 0; f < count; f++) {
+        folds->boxes[f].facet.item = f;
     }
-    qsort(folds->boxes, (size_t)folds->input.facet_count, sizeof *folds->boxes, compare_placed);
+    facet_boxes_sort(folds->input.dim, folds->y, folds->input.facet, count, folds->boxes);
 }
 
 struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t end)
 {
     struct fold fold = FOLD_NOTHING;
+    int dim = folds->input.dim;
+    const int32_t *facet = folds->input.facet;
     int64_t count = folds->input.facet_count;
-    const struct fold_box *boxes = folds->boxes;
+    const struct facet_box *boxes = folds->boxes;
     for (int64_t i = begin; i < end; i++) {
         int64_t f = boxes[i].facet.item;
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
             int64_t g = boxes[k].facet.item;
-            if (!boxes_meet(&boxes[i].box, &boxes[k].box) ||
-                !(goes_through(folds, f, g) || goes_through(folds, g, f)) || !are_deep(folds, f, g)) {
+            if (!box_meets(&boxes[i].box, &boxes[k].box) ||
+                !facets_cross(dim, folds->y, facet + f * dim, facet + g * dim, round_off * folds->largest) ||
+                !are_deep(folds, f, g)) {
                 continue;
             }
             if (fold.count++ == 0) {

@@ -69,19 +69,19 @@ static bool is_flattened(const struct folds *folds, const int32_t *node)
     return all && any;
 }
 
-/* fold_volume of a cell. */
+/* simplex_determinant of a cell. */
 static double cell_size(const struct folds *folds, const int32_t *node)
 {
     int dim = folds->input.dim;
-    return fold_volume(dim, fold_position(folds, node[0]), fold_position(folds, node[1]),
-                       fold_position(folds, node[2]), fold_position(folds, node[dim]));
+    return simplex_determinant(dim, fold_position(folds, node[0]), fold_position(folds, node[1]),
+                               fold_position(folds, node[2]), fold_position(folds, node[dim]));
 }
 
 /* The least height of a cell divided by its longest edge, at positions y. */
 static double flatness(int dim, const double *y, const int32_t *node)
 {
     const double *corner[4];
-    double longest2 = 0.0, largest2 = 0.0, whole = dim == 2 ? 1.0 : 2.0; /* see fold_volume */
+    double longest2 = 0.0, largest2 = 0.0, whole = dim == 2 ? 1.0 : 2.0; /* see simplex_determinant */
     for (int k = 0; k <= dim; k++) {
         int32_t side[3] = {0, 0, 0};
         double area[3];
@@ -95,7 +95,7 @@ static double flatness(int dim, const double *y, const int32_t *node)
             longest2 = fmax(longest2, vector_distance2(dim, corner[k], y + (int64_t)node[m] * dim));
         }
     }
-    return fabs(fold_volume(dim, corner[0], corner[1], corner[2], corner[dim])) /
+    return fabs(simplex_determinant(dim, corner[0], corner[1], corner[2], corner[dim])) /
            (whole * sqrt(longest2 * largest2));
 }
 

@@ -38,19 +38,6 @@ static inline double fold_facet_cosine(const struct fold_input *input, const dou
     return fold_cosine(input->dim, one, other);
 }
 
-/* Area (2D: twice) or volume (3D: six times) of the simplex of these corners. */
-static inline double fold_volume(int dim, const double *a, const double *b, const double *c, const double *d)
-{
-    double u[3] = {0.0}, v[3] = {0.0}, w[3] = {0.0};
-    vector_subtract(dim, b, a, u);
-    vector_subtract(dim, c, a, v);
-    if (dim == 2) {
-        return determinant2(u, v);
-    }
-    vector_subtract(dim, d, a, w);
-    return determinant3(u, v, w);
-}
-
 /* Find the parts and bodies of the cells. */
 MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
 

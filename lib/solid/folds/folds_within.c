@@ -54,11 +54,11 @@ static bool contains(const struct folds *folds, int64_t cell, const double *poin
     for (int k = 0; k < corners; k++) {
         vertex[k] = folds->y + (int64_t)folds->input.cell[cell * corners + k] * dim;
     }
-    double whole = fold_volume(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+    double whole = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
     for (int k = 0; k < corners; k++) {
         const double *kept = vertex[k];
         vertex[k] = point;
-        double part = fold_volume(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
+        double part = simplex_determinant(dim, vertex[0], vertex[1], vertex[2], vertex[3]);
         vertex[k] = kept;
         if (!(part / whole > least)) {
             return false;

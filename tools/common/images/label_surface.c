@@ -2,7 +2,7 @@
 
 #include "output.h"
 
-#include "base/box.h"
+#include "approx/cells/crossing.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -73,100 +73,28 @@ static void move_outward(const struct label_cells *mesh, const struct label_surf
 
 /* ---- crossings ---- */
 
-/* A chosen facet: where it begins and ends along x when moved. */
-struct span {
-    double low, high;
-    int64_t facet;
-};
-
-static int compare_spans(const void *left, const void *right)
-{
-    const struct span *a = left, *b = right;
-    return a->low != b->low ? (a->low < b->low ? -1 : 1) : (a->facet > b->facet) - (a->facet < b->facet);
-}
-
-/* Six times the volume of a tetrahedron (2D: twice the area of the triangle a, b, d). */
-static double size_of(int dim, const double *a, const double *b, const double *c, const double *d)
-{
-    double u[3], v[3], w[3], cross[3];
-    vector_subtract(dim, b, a, u);
-    vector_subtract(dim, d, a, w);
-    if (dim == 2) {
-        return u[0] * w[1] - u[1] * w[0];
-    }
-    vector_subtract(dim, c, a, v);
-    vector_cross(u, v, cross);
-    return vector_dot(3, cross, w);
-}
-
-/* Whether an edge of facet f (2D: the facet) without a node of facet g crosses g. */
-static bool goes_through(const struct label_cells *mesh, const double *place, int64_t f, int64_t g)
-{
-    int dim = mesh->dim;
-    const int32_t *edge = mesh->facet + f * dim, *node = mesh->facet + g * dim;
-    const double *a = place + node[0] * dim, *b = place + node[1] * dim, *c = place + node[dim - 1] * dim;
-    for (int k = 0; k < (dim == 2 ? 1 : 3); k++) {
-        const int32_t end[2] = {edge[k], edge[(k + 1) % dim]};
-        const double *p = place + end[0] * dim, *q = place + end[1] * dim;
-        bool apart = true;
-        for (int i = 0; i < 2 * dim; i++) {
-            apart = apart && node[i % dim] != end[i / dim];
-        }
-        if (!apart || !(size_of(dim, a, b, c, p) * size_of(dim, a, b, c, q) < 0)) {
-            continue;
-        }
-        double first = size_of(dim, p, q, a, b), second = size_of(dim, p, q, b, c),
-               third = size_of(dim, p, q, c, a);
-        if (dim == 2 ? size_of(2, p, q, NULL, a) * size_of(2, p, q, NULL, b) < 0
-                     : (first > 0 && second > 0 && third > 0) || (first < 0 && second < 0 && third < 0)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Whether the boxes around two moved facets overlap. */
-static bool boxes_meet(const struct label_cells *mesh, const double *place, int64_t f, int64_t g)
-{
-    int dim = mesh->dim;
-    struct box one = box_of_nodes(dim, place, mesh->facet + f * dim, dim);
-    struct box other = box_of_nodes(dim, place, mesh->facet + g * dim, dim);
-    bool meet = true;
-    for (int d = 0; d < dim; d++) {
-        meet = meet && one.low[d] <= other.high[d] && other.low[d] <= one.high[d];
-    }
-    return meet;
-}
-
 /* crosses[node_count]: nodes of moved facets that cross another one, or have turned over. False: none. */
 static bool find_crossings(const struct label_cells *mesh, const double *place, int64_t count,
-                           struct span *span, bool *crosses)
+                           struct facet_box *boxes, bool *crosses)
 {
     int dim = mesh->dim;
     bool any = false;
     memset(crosses, 0, (size_t)mesh->node_count * sizeof *crosses);
-    for (int64_t s = 0; s < count; s++) {
-        const int32_t *node = mesh->facet + span[s].facet * dim;
-        struct box box = box_of_nodes(dim, place, node, dim);
-        span[s].low = box.low[0];
-        span[s].high = box.high[0];
-    }
-    qsort(span, (size_t)count, sizeof *span, compare_spans);
-    for (int64_t s = 0; s < count; s++) {
-        int64_t f = span[s].facet;
+    facet_boxes_sort(dim, place, mesh->facet, count, boxes);
+    for (int64_t i = 0; i < count; i++) {
+        const int32_t *f = mesh->facet + boxes[i].facet.item * dim;
         double before[3], after[3];
-        face_area_vector(dim, mesh->x, mesh->facet + f * dim, before);
-        face_area_vector(dim, place, mesh->facet + f * dim, after);
+        face_area_vector(dim, mesh->x, f, before);
+        face_area_vector(dim, place, f, after);
         bool turned = !(vector_dot(dim, before, after) > 0);
         for (int k = 0; k < dim && turned; k++) {
-            crosses[mesh->facet[f * dim + k]] = any = true;
+            crosses[f[k]] = any = true;
         }
-        for (int64_t t = s + 1; t < count && span[t].low <= span[s].high; t++) {
-            int64_t g = span[t].facet;
-            bool through = boxes_meet(mesh, place, f, g) &&
-                           (goes_through(mesh, place, f, g) || goes_through(mesh, place, g, f));
-            for (int k = 0; k < 2 * dim && through; k++) {
-                crosses[mesh->facet[(k < dim ? f : g) * dim + k % dim]] = any = true;
+        for (int64_t j = i + 1; j < count && boxes[j].facet.place <= boxes[i].box.high[0]; j++) {
+            const int32_t *g = mesh->facet + boxes[j].facet.item * dim;
+            bool through = box_meets(&boxes[i].box, &boxes[j].box) && facets_cross(dim, place, f, g, 0);
+            for (int k = 0; k < dim && through; k++) {
+                crosses[f[k]] = crosses[g[k]] = any = true;
             }
         }
     }
@@ -179,16 +107,16 @@ static void uncross(const struct tool *tool, const struct label_cells *mesh,
 {
     int dim = mesh->dim;
     int64_t count = 0, nodes = 0, first = -1;
-    TOOL_SCRATCH(tool, struct span, span, mesh->facet_count);
+    TOOL_SCRATCH(tool, struct facet_box, boxes, mesh->facet_count);
     TOOL_SCRATCH(tool, bool, crosses, mesh->node_count);
     TOOL_SCRATCH(tool, int, halvings, mesh->node_count);
     for (int64_t f = 0; f < mesh->facet_count; f++) {
         if (is_chosen(mesh, options, f)) {
-            span[count++].facet = f;
+            boxes[count++].facet.item = f;
         }
     }
     for (int round = 0;
-         round < MOST_HALVINGS && options->gap > 0 && find_crossings(mesh, place, count, span, crosses);
+         round < MOST_HALVINGS && options->gap > 0 && find_crossings(mesh, place, count, boxes, crosses);
          round++) {
         for (int64_t n = 0; n < mesh->node_count; n++) {
             halvings[n] += crosses[n];
