@@ -1,6 +1,6 @@
 # make foreign: meshes as other programs make them (voxels, slivers, surfaces meshed anew, bodies with a gap, slender ones), held at one end and pushed by 12 %, as a new user would
 #
-# None has named parts of the boundary: groups makes them. A row for each mesh, whatever comes of it; at the end the share
+# None has named parts of the boundary: tag makes them. A row for each mesh, whatever comes of it; at the end the share
 # that ran by default within 3 000 steps. Lips and bodies that the push presses into each other are pulled by as much in a row of
 # their own. FOREIGN_SECONDS bounds each run. Times are of one thread.
 FOREIGN := $(OUT)/foreign
@@ -9,7 +9,7 @@ FOREIGN_MESHES := cylinder graded ring second-order cup slit cavity stl-volume v
     delaunay-3 squeezed jittered-1 jittered-2 jittered-3 gap-beside gap-behind coincident brain rod taper pin tube arch portal ladder channel cruciform fins \
     comb
 FOREIGN_PULLED := slit gap-beside coincident
-FOREIGN_TOOLS := $(addprefix $(BUILD)/bin/,nodes groups shapefn mtled mts)
+FOREIGN_TOOLS := $(addprefix $(BUILD)/bin/,nodes tag shapefn mtled mts)
 
 .PHONY: foreign
 foreign: $(FOREIGN)/foreign.tsv

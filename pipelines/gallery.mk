@@ -5,7 +5,7 @@ GALLERY := $(OUT)/gallery
 LIVER := examples/liver
 PHANTOM := examples/phantom
 PHANTOM_SIZES := 3.5 2.5 1.8
-GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes groups ipoints support shapefn mtled mts)
+GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 .PHONY: gallery liver phantom indentation
@@ -28,7 +28,7 @@ $(GALLERY)/liver.msh: $(LIVER)/liver.geo $(GALLERY)/liver_surface.stl
 	gmsh -3 -nt 1 -v 2 $(@:.msh=.geo) -o $@
 
 $(GALLERY)/liver.dat: $(GALLERY)/liver.msh $(LIVER)/liver.scene $(GALLERY_PROGRAMS)
-	(nodes -u mm $< | groups -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' | \
+	(nodes -u mm $< | tag -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' | \
 	    shapefn | mtled -v $(LIVER)/liver.scene) > $@ $(GALLERY_LOG)
 
 GALLERY_BODY3D := awk -f pipelines/stream.awk -f pipelines/plot/body3d.awk
@@ -67,7 +67,7 @@ indentation: $(GALLERY)/indentation.tsv $(GALLERY)/indentation.png
 $(GALLERY)/indentation.dat: examples/indentation/tissue.geo examples/indentation/indentation.scene examples/indentation/probe.tsv $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)
 	gmsh -3 -nt 1 -v 2 $< -o $(@:.dat=.msh)
-	(nodes -u mm $(@:.dat=.msh) | groups -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' | shapefn | \
+	(nodes -u mm $(@:.dat=.msh) | tag -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' | shapefn | \
 	    mtled -v examples/indentation/indentation.scene) > $@ $(GALLERY_LOG)
 
 $(GALLERY)/indentation.tsv: $(GALLERY)/indentation.dat pipelines/gallery/hertz.awk

@@ -1,6 +1,6 @@
-# Not a study: `make install PREFIX=/usr/local` installs programs, man pages and completions (install-programs), and the
-# library with its headers and a file for pkg-config (install-library); `make deb` builds the package $(DEB) of the
-# former. DESTDIR goes before PREFIX where a tree is to be moved later.
+# Not a study: `make install PREFIX=/usr/local` installs programs, man pages, completions and the Python package
+# (install-programs), and the library with its headers and a file for pkg-config (install-library); `make deb` builds the
+# package $(DEB) of the former. DESTDIR goes before PREFIX where a tree is to be moved later.
 
 VERSION := $(shell sed -n 's/^.define MTS_VERSION "\(.*\)"/\1/p' lib/io/stream/stream.h)
 # Without those that are for their own room: the name or the text says so.
@@ -8,6 +8,8 @@ HEADERS := $(filter-out %_private.h,$(shell grep -LiE '(private to|inside of) li
 COMPLETIONS := $(TOOLS:%=$(BUILD)/completions/%)
 DEB = $(BUILD)/mtled_$(VERSION)_$(shell dpkg --print-architecture).deb
 INTO = $(DESTDIR)$(PREFIX)
+# Where Debian's Python looks: one folder for all versions below /usr, one for each elsewhere.
+PYTHON_SITE ?= $(PREFIX)/lib/python$(if $(filter /usr,$(PREFIX)),3,$(shell python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])'))/dist-packages
 
 .PHONY: install install-programs install-library deb
 all: $(COMPLETIONS)
@@ -19,11 +21,8 @@ install-programs: all
 	install -m 644 $(filter %.1,$(MAN_PAGES)) $(INTO)/share/man/man1
 	install -m 644 $(filter %.5,$(MAN_PAGES)) $(INTO)/share/man/man5
 	install -m 644 $(COMPLETIONS) $(INTO)/share/bash-completion/completions
-	# The system has a program groups already.
-	mv $(INTO)/bin/groups $(INTO)/bin/mtled-groups
-	mv $(INTO)/share/man/man1/groups.1 $(INTO)/share/man/man1/mtled-groups.1
-	sed 's/\bgroups$$/mtled-groups/' $(INTO)/share/bash-completion/completions/groups > $(INTO)/share/bash-completion/completions/mtled-groups
-	rm $(INTO)/share/bash-completion/completions/groups
+	install -d $(DESTDIR)$(PYTHON_SITE)/mtled
+	install -m 644 $(wildcard tools/python/mtled/*.py) $(DESTDIR)$(PYTHON_SITE)/mtled
 
 install-library: $(LIBRARY)
 	install -d $(INTO)/lib/pkgconfig $(sort $(dir $(HEADERS:lib/%=$(INTO)/include/mtled/%)))

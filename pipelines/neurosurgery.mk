@@ -17,7 +17,7 @@ NEURO_TRUE_SPACING ?= 7mm
 NEURO_LOAD_SPACING ?= 12mm
 NEURO_RANDOM := awk -f $(NEURO_SCRIPTS)/random.awk
 NEURO_TIMED := bash $(NEURO_SCRIPTS)/timed.sh
-NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled interp sample warp mts)
+NEURO_PROGRAMS := $(addprefix $(BUILD)/bin/,voxels tag shapefn mtled interp sample warp mts)
 NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 # What differs: the names of the labels, the part of the surface that is seen, names of others, labels that landmarks lie in, the true scene, what is predicted: from what is
@@ -80,7 +80,7 @@ $(NEURO)/skull.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/brain.tsv $(NEURO_PROGRAMS)
 	voxels $< -h 5mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
 
 $(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO)/$(NEURO_TRUTH).scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
-	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) | shapefn | \
+	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | tag $(NEURO_GROUPS) | shapefn | \
 	    mtled -v $(NEURO)/$(NEURO_TRUTH).scene) > $@ $(NEURO_LOG)
 
 ifeq ($(NEURO_SCENARIO),electrodes)
@@ -107,7 +107,7 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 $(NEURO)/predicted.body.mts $(NEURO)/coarse.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(if $(filter coarse.%,$(@F)),$(NEURO_LOAD_SPACING),$(NEURO_SPACING)) \
-	    -l $(NEURO_NAMES) $(NEURO_PART) | groups $(NEURO_GROUPS) > $@"
+	    -l $(NEURO_NAMES) $(NEURO_PART) | tag $(NEURO_GROUPS) > $@"
 
 $(NEURO)/%.table.mts: $(NEURO)/%.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"
@@ -167,7 +167,7 @@ $(NEURO)/volumes.tsv: $(patsubst %,$(NEURO)/%.labels.nii.gz,$(NEURO_PREDICTIONS)
 	awk -f $(NEURO_SCRIPTS)/volumes.awk -v titles='$(NEURO_COLUMNS)' $(NEURO_INPUT)/labels.tsv $(patsubst %,$(NEURO)/%.labels.log,$(NEURO_PREDICTIONS) true) > $@
 
 $(NEURO)/seconds.tsv: $(NEURO)/$(NEURO_FOUND).scan.nii.gz
-	(printf 'stage\tseconds\n'; printf '%s\t%s\n' 'voxels and groups' "$$(cat $(NEURO)/predicted.body.seconds)" \
+	(printf 'stage\tseconds\n'; printf '%s\t%s\n' 'voxels and tag' "$$(cat $(NEURO)/predicted.body.seconds)" \
 	    shapefn "$$(cat $(NEURO)/predicted.table.seconds)" 'identify.sh (load_found)' "$$(cat $(NEURO)/found.seconds)" \
 	    mtled "$$(cat $(NEURO)/$(NEURO_FOUND).u.seconds)" warp "$$(cat $(NEURO)/$(NEURO_FOUND).scan.seconds)") > $@
 

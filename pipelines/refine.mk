@@ -12,5 +12,5 @@ REFINE_OUT = $(OUT)/refine/$(basename $(notdir $(SCENE)))
 .PHONY: refine
 refine: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 refine: export REFINE_GROUPS = $(GROUPS)
-refine: $(addprefix $(BUILD)/bin/,nodes voxels groups ipoints support shapefn mtled mts fielderr sizefield)
+refine: $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts fielderr sizefield)
 	@bash pipelines/refine/refine.sh '$(SCENE)' '$(GEO)' '$(TOL)' '$(REFINE_OUT)'

@@ -10,7 +10,7 @@ VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped coli
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
 VOXELS_PHANTOM := $(BUILD)/tests/helper/phantom
 VOXELS_FILLED := $(BUILD)/tests/helper/filled
-VOXELS_TOOLS := $(addprefix $(BUILD)/bin/,voxels groups shapefn mtled mts)
+VOXELS_TOOLS := $(addprefix $(BUILD)/bin/,voxels tag shapefn mtled mts)
 
 # What voxels is told, where it is not a spacing of 5 mm.
 voxels.options = -h 5mm

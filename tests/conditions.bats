@@ -189,7 +189,7 @@ END
 
 # A strip of 4 m by 2 m, its bottom held, pushed at 1 m of its top by 1 mm: strip N M, nodes along and across, on a jittered lattice
 strip() {
-    cloud -d 2 -k jittered -n "$1,$2" --box -2,2,0,2 --jitter 0.2 --seed 3 | groups -f patch=box:-0.51,1.99,0.51,2.01 2> note | shapefn 2> note
+    cloud -d 2 -k jittered -n "$1,$2" --box -2,2,0,2 --jitter 0.2 --seed 3 | tag -f patch=box:-0.51,1.99,0.51,2.01 2> note | shapefn 2> note
 }
 
 # punch [LINES OF solver]: on the strip
@@ -356,7 +356,7 @@ END
 
 # With 4 facets the force is 1.4 times that of mixed elements on the same mesh, with 14 within 10 %.
 @test "a patch of less than three facets across is reported, where forces are asked for" {
-    cloud -d 3 -k regular -n 7 --box 0,0.06,0,0.06,0,0.06 | groups -u mm -f narrow=box:20,20,60,40,40,60 -f wide=box:10,10,60,50,50,60 |
+    cloud -d 3 -k regular -n 7 --box 0,0.06,0,0.06,0,0.06 | tag -u mm -f narrow=box:20,20,60,40,40,60 -f wide=box:10,10,60,50,50,60 |
         shapefn > cube.mts 2> note
     { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement push]\nfacets = narrow\ncomponents = 0, 0, -0.001\n'; } > push.scene
     run --separate-stderr mtled push.scene cube.mts

@@ -89,7 +89,7 @@ lid() {
         printf 'SetFactory("OpenCASCADE");Disk(1)={0,0,0,.05};Rectangle(4)={0,-1,0,1,2};\n' > disc.geo
         printf 'BooleanIntersection(5)={Surface{1};Delete;}{Surface{4};Delete;};Physical Surface("body")={5};\n' >> disc.geo
         gmsh -v 1 -2 -clmin "${size}e-3" -clmax "${size}e-3" disc.geo -o disc.msh
-        nodes -u m disc.msh 2> note | groups -f sx=plane:0,0,1,0 -f 'out=all without sx' | shapefn > disc.mts 2> note
+        nodes -u m disc.msh 2> note | tag -f sx=plane:0,0,1,0 -f 'out=all without sx' | shapefn > disc.mts 2> note
         awk -v R="$cup" 'BEGIN { for (i = 0; i < 400; i++) { t = -3.24159265358979 + 3.34159265358979 * i / 399; printf "%.12g %.12g\n", R * cos(t), R - 50 + R * sin(t) } }' > cup.tsv
         { block quasi-static 'gravity = 0, -9.81' | sed 's|^nu = .*|nu = 0.49|'; printf '[displacement sx]\nfacets = sx\nnormal = 0\n'
             printf '[contact cup]\nfacets = out\nrigid = cup.tsv\nunit = mm\nside = left\n[output]\nreactions = yes\n[solver]\nmax_steps = 1000\n'; } > cup.scene
@@ -143,7 +143,7 @@ lid() {
     printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n' > disc.geo
     gmsh -v 1 -2 disc.geo -o disc.msh
     nodes -u mm disc.msh 2> said > disc.mts
-    groups -f skin=all < disc.mts > named.mts
+    tag -f skin=all < disc.mts > named.mts
     printf -- '-200 129.289\n0 -70.711\n200 129.289\n' > groove.tsv
     { block quasi-static 'gravity = 0, -9.81'
         printf '[contact groove]\nfacets = *\nrigid = groove.tsv\nunit = mm\nside = left\n[output]\nreactions = yes\n'; } > whole.scene

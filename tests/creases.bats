@@ -102,7 +102,7 @@ bowl() {
 @test "a ball that sinks into a bowl of few random facets moves as in one of many" {
     printf 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 50};\nMesh.MeshSizeMax = 13;\nPhysical Volume("body") = {1};\n' > ball.geo
     gmsh -v 1 -3 -nt 1 ball.geo -o ball.msh
-    nodes -u mm ball.msh 2> note | groups -u mm -f 'cap=high:z,12%' -f 'low=low:z,60%' | shapefn > ball.mts 2> note
+    nodes -u mm ball.msh 2> note | tag -u mm -f 'cap=high:z,12%' -f 'low=low:z,60%' | shapefn > ball.mts 2> note
     { block quasi-static | sed 's/dim = 2/dim = 3/'
         printf '[displacement cap]\nfacets = cap\ncomponents = 0, 0, -0.012\n[contact bowl]\nfacets = low\nrigid = bowl.tsv\nunit = mm\nside = back\n'
         printf '[output]\nreactions = yes\n[solver]\ntolerance = 1e-3\n'; } > ball.scene

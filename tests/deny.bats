@@ -25,7 +25,7 @@ setup_file() {
     { block quasi-static; loads; printf '[displacement low]\nfacets = ymin\ntable = load.tsv\nunit = m\ncurve = curve.tsv\n'; } > loaded.scene
     { block dynamic 'gravity = 0, -9.81'; loads; contact; printf '[solver]\nend_time = 0.01\n[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
     { pressed_cube zmin zmax -0.002; printf '[contact wall]\nfacets = xmin\nrigid = wall.tsv\nunit = m\nside = front\n'; } > cube.scene
-    pair | nodes -u m | groups -f 'low=low:y,1%' -f 'high=high:y,1%' | shapefn > pair.mts 2> note
+    pair | nodes -u m | tag -f 'low=low:y,1%' -f 'high=high:y,1%' | shapefn > pair.mts 2> note
     { pressed_block | sed 's/= ymin/= low/; s/= ymax/= high/'; printf '[contact faces]\nfacets = *\nagainst = *\n[output]\ngaps = yes\n'; } > pair.scene
     mtled block.scene table.mts > u.mts
     mtled block.scene coarse.mts > u.coarse.mts
@@ -119,9 +119,9 @@ denied() {
     denied mtled moving.scene table.mts
 }
 
-@test "fault 25: mts, groups, interp, fieldcmp, fielderr, sizefield, tovtk" {
+@test "fault 25: mts, tag, interp, fieldcmp, fielderr, sizefield, tovtk" {
     for command in 'list table.mts' 'print u u.mts' 'text table.mts' 'binary u.mts' 'keep u u.mts' 'check table.mts'; do denied mts $command; done
-    denied groups -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
+    denied tag -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
     denied interp u.mts
     denied fieldcmp u.mts u.coarse.mts
     denied fielderr u.mts u.coarse.mts

@@ -86,7 +86,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     with 's/region = body/region = bdoy/'
     refused "region of a scene misspelt" 2 "no region 'bdoy'; present: body" 'mtled edited.scene table.mts'
     with 's/facets = ymax/nodes = corner/'
-    refused "node set absent" 2 "no node sets: run groups -n" 'mtled edited.scene table.mts'
+    refused "node set absent" 2 "no node sets: run tag -n" 'mtled edited.scene table.mts'
 }
 
 @test "fault 8: duplicate nodes, orphan nodes, tags with gaps" {
@@ -257,7 +257,7 @@ commands() {
 nodes -u mm square.msh
 nodes -l square.msh
 cloud -d 2 -k regular -n 5 --box 0,1,0,1
-groups -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
+tag -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
 ipoints cloud.mts
 support points.mts
 shapefn lists.mts

@@ -2,12 +2,12 @@
 
 load common.bash
 
-@test "liver: a surface from an image, named by groups, its lobe lifted; forces balance, the volume stays" {
+@test "liver: a surface from an image, named by tag, its lobe lifted; forces balance, the volume stays" {
     gzip -dc "$top/examples/liver/liver_surface.stl.gz" > liver_surface.stl
     cp "$top/examples/liver/liver.geo" .
     gmsh -3 -nt 1 -v 1 liver.geo -setnumber lc 25 -o liver.msh
     { cat "$top/examples/liver/liver.scene" && printf 'volume_ratio = yes\n[solver]\ntolerance = 1e-3\n'; } > liver.scene
-    nodes -u mm liver.msh 2> said | groups -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' 2>> said |
+    nodes -u mm liver.msh 2> said | tag -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' 2>> said |
         shapefn 2>> said > table.mts
     mtled liver.scene table.mts > u.dat
     mts print reactions u.dat | awk '
@@ -37,7 +37,7 @@ load common.bash
     gmsh -3 -nt 1 -v 1 "$top/examples/indentation/tissue.geo" -o tissue.msh
     cp "$top/examples/indentation/probe.tsv" .
     sed 's/^frames = .*/frames = 4/; s/^tolerance = .*/tolerance = 1e-2/' "$top/examples/indentation/indentation.scene" > a.scene
-    nodes -u mm tissue.msh | groups -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' 2> said | shapefn 2> said | mtled a.scene > u.dat
+    nodes -u mm tissue.msh | tag -f 'probed=ball:0,0,0,0.0045 and normal:0,0,1,10' 2> said | shapefn 2> said | mtled a.scene > u.dat
     mts print reactions.frames u.dat | awk -f "$top/pipelines/gallery/hertz.awk" | tee rows
     awk 'NR > 1 { for (i = 4; i <= 5; i++) good += $i > 0.98 && $i < 1.02 } END { exit !(good == 8 && NR == 5) }' rows
 }

@@ -11,9 +11,6 @@ setup() {
 # make GOALS, of the build under test.
 build() { make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" "$@" > log 2>&1 || { tail log; return 1; }; }
 
-# The name that a program is installed by: the system has a program groups already.
-installed() { echo "${1/#groups/mtled-groups}"; }
-
 # Flags that a program needs to be linked with the library as it was built.
 compile_flags=(-std=c11 -Wall -Werror)
 case $BUILD in
@@ -24,15 +21,18 @@ esac
 @test "install: every program, its page and its completion, below DESTDIR and PREFIX" {
     build install DESTDIR="$PWD/tree" PREFIX=/opt/mtled
     for tool in "${tools[@]}"; do
-        name=$(installed $tool)
-        [ "$(tree/opt/mtled/bin/$name --version | sed "s/^mtled-groups/groups/")" = "$($tool --version)" ]
-        grep -q "^.TH ${tool^^} 1" "tree/opt/mtled/share/man/man1/$name.1"
-        bash -n "tree/opt/mtled/share/bash-completion/completions/$name"
+        [ "$(tree/opt/mtled/bin/$tool --version)" = "$($tool --version)" ]
+        grep -q "^.TH ${tool^^} 1" "tree/opt/mtled/share/man/man1/$tool.1"
+        bash -n "tree/opt/mtled/share/bash-completion/completions/$tool"
     done
     [ "$(ls tree/opt/mtled/share/man/man5 | xargs)" = "mtled-scene.5 mts.5" ]
     [ "$(ls tree)" = opt ]
     [ "$(ls tree/opt/mtled | xargs)" = "bin include lib share" ]
     run -1 grep -r "$PWD" tree/opt/mtled/lib/pkgconfig
+    cloud -d 2 -k regular -n 4 --box 0,0.1,0,0.1 > square.mts
+    if python3 -c 'import numpy' 2> /dev/null; then
+        [ "$(PYTHONPATH=$(echo tree/opt/mtled/lib/python3*/dist-packages) python3 -c 'import mtled; print(mtled.read("square.mts")["nodes.x"].shape)')" = "(16, 2)" ]
+    fi
 }
 
 @test "install: a program of ten lines is built with the library by pkg-config" {
@@ -102,11 +102,11 @@ complete_words() {
     command -v dpkg-deb > /dev/null || skip "not Debian" # where there are no such packages
     build deb DEB="$PWD/mtled.deb"
     dpkg-deb -x mtled.deb root
+    [ -s root/usr/lib/python3/dist-packages/mtled/stream.py ]
     for tool in "${tools[@]}"; do
-        name=$(installed $tool)
-        [ -x "root/usr/bin/$name" ]
-        [ -s "root/usr/share/man/man1/$name.1.gz" ]
-        grep -q " $name$" "root/usr/share/bash-completion/completions/$name"
+        [ -x "root/usr/bin/$tool" ]
+        [ -s "root/usr/share/man/man1/$tool.1.gz" ]
+        grep -q " $tool$" "root/usr/share/bash-completion/completions/$tool"
     done
     block quasi-static > block.scene
     { held_below; printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.005\n'; } >> block.scene
@@ -121,7 +121,7 @@ complete_words() {
     tr ',' '\n' < depends | sed 's/^ *//; s/ .*//' | sort -u > names
     for library in libgsl libinih zlib libgomp; do grep -q "^$library" names; done
     run ! grep -q gmsh names # it makes the meshes, a program of its own
-    [ "$(dpkg-deb -f mtled.deb Recommends)" = gmsh ]
+    [ "$(dpkg-deb -f mtled.deb Recommends)" = "gmsh, python3-numpy" ]
     [ "$(dpkg-deb -f mtled.deb Version)" = "$(mts --version | cut -d ' ' -f 2)" ]
     rm -rf root/usr/share/doc
     gunzip root/usr/share/man/man*/*

@@ -125,7 +125,7 @@ even() {
     mts print points.x table.mts | awk '{ print $1, $2, ($1 < .05 ? 1000 : 2500), .3 }' > E.tsv
     printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material body]\nregion = body\ntable = E.tsv\nunit = m\n[displacement held]\nfacets = xmin, ymin\nnormal = 0\n' > table.scene
     mtled -q table.scene table.mts 2> note > u.dat
-    grep -q '^mtled: the shear modulus jumps 2.5 : 1 between cells of body at (0.05, .*: make a region of each side (groups -r, voxels)' note
+    grep -q '^mtled: the shear modulus jumps 2.5 : 1 between cells of body at (0.05, .*: make a region of each side (tag -r, voxels)' note
     sed 's/ 2500 / 1999 /' E.tsv > F.tsv
     mv F.tsv E.tsv
     mtled -q table.scene table.mts 2> note > u.dat

@@ -51,7 +51,7 @@ near() { fieldcmp "--tol-$1" "$2" other.dat u.dat > /dev/null; }
 
 @test "groups of one section that overlap: a pressure, a traction, a contact acts once on each facet" {
     stream=capped.mts
-    nodes -u mm body.msh 2> note | groups -f cap=ymax 2> note > capped.mts
+    nodes -u mm body.msh 2> note | tag -f cap=ymax 2> note > capped.mts
     printf -- '-1 0.095\n2 0.095\n' > roof.tsv
     for load in '[pressure a]\nvalue = 300' '[traction a]\ncomponents = 0, -300' '[contact a]\nrigid = roof.tsv\nunit = m\nside = right'; do
         solved "$load\nfacets = ymax" && cp u.dat other.dat
@@ -226,5 +226,5 @@ immersed() {
     refused 2 "floor.tsv:1: curve of one point" mtled block.scene square.mts
     mts drop sets.ptr square.mts | mts drop sets.idx > none.mts
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
-    refused 2 "[force c]: no node sets: run groups -n" mtled block.scene none.mts
+    refused 2 "[force c]: no node sets: run tag -n" mtled block.scene none.mts
 }

@@ -308,7 +308,7 @@ near() {
     cloud -d 3 -k regular -n 3 --box 0,1,0,1,0,1 > cube.mts
     refused 2 "dim = 2, but the nodes have 3 coordinates" mtled block.scene cube.mts
     mts drop 'facets*' square.mts | shapefn > bare.mts 2> note
-    refused 2 'block.scene:11: [displacement bottom]: no named facets: give the mesh physical groups, or run groups' mtled block.scene bare.mts
+    refused 2 'block.scene:11: [displacement bottom]: no named facets: give the mesh physical groups, or run tag' mtled block.scene bare.mts
     with 's/^components = 0, -0.005$/&\ncurve = ramp/'
     refused 2 'edited.scene:15: [displacement top]: curve: not smooth, linear or step, and as a file: ' mtled edited.scene square.mts
     refused 2 'square.mts: a stream, not a scene: mtled SCENE [FILE]' mtled square.mts block.scene
@@ -319,7 +319,7 @@ near() {
     run --separate-stderr mtled edited.scene square.mts
     [ "$status" -eq 1 ]
     [[ "$stderr" == *'edited.scene: a displacement of 10 m is prescribed, '*' times the size of the body: lengths without a unit are in m'* ]]
-    groups -r 'left=half:0.05,0,1,0' square.mts 2> note | shapefn > two.mts 2> note
+    tag -r 'left=half:0.05,0,1,0' square.mts 2> note | shapefn > two.mts 2> note
     refused 2 "region 'left' has no material: add it to a [material], or leave it out (nodes -r; voxels -l)" mtled block.scene two.mts
     printf '[output]\nstress = yes\n' | cat block.scene - > edited.scene
     mtled edited.scene square.mts > u.dat 2> note

@@ -203,10 +203,10 @@ volumes() {
         gmsh -v 1 two.mesh -save -format $format -o two.msh
         nodes -u m -t two.msh > two.mts 2> said
         grep -q "^# cells.region .* names=group_0,group_7$" two.mts
-        grep -q "nodes: no part of the boundary has a name: the program groups makes names" said
+        grep -q "nodes: no part of the boundary has a name: the program tag makes names" said
     done
     nodes -l two.msh > list 2> said
-    grep -q "the program groups makes names" said
+    grep -q "the program tag makes names" said
     grep -qx "$(printf 'group_7\t3\t7\t1')" list
 }
 

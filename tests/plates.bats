@@ -130,7 +130,7 @@ crushed() {
 @test "flat cells across which the field bends are no fold; those that the field turns over are" {
     # Random points, least quality 1e-7: beneath facets of a side that bulges their nodes get outside of the chords.
     bash "$top/pipelines/foreign/mesh.sh" delaunay-19 slivers.msh
-    nodes -u mm slivers.msh 2> note | groups -f low=low:x,12% -f high=high:x,12% 2>> note | shapefn > slivers.mts 2>> note
+    nodes -u mm slivers.msh 2> note | tag -f low=low:x,12% -f high=high:x,12% 2>> note | shapefn > slivers.mts 2>> note
     { block quasi-static | sed 's/dim = 2/dim = 3/; s/0.45/0.49/'
         printf '[displacement low]\nfacets = low\ncomponents = 0, 0, 0\n[displacement high]\nfacets = high\ncomponents = -0.012, 0, 0\n'; } > slivers.scene
     region=$(mts list slivers.mts | sed -nE 's/^cells.region.*names=(.*)$/\1/p')
@@ -171,7 +171,7 @@ crushed() {
         IFS=/ read -r corner size said <<< "$case"
         two "$corner" "$size" > two.geo
         gmsh -v 1 -2 two.geo -o two.msh
-        nodes -u m two.msh 2> note | groups -f 'ends=low:x,5% or ball:0.103,0.06,0.04 or ball:0.05,0.05,0.03' | shapefn > two.mts 2> note
+        nodes -u m two.msh 2> note | tag -f 'ends=low:x,5% or ball:0.103,0.06,0.04 or ball:0.05,0.05,0.03' | shapefn > two.mts 2> note
         { block quasi-static
             printf '[displacement ends]\nfacets = ends\ncomponents = 0, 0\n'; } > two.scene
         refused 2 "two.scene: $said" mtled two.scene two.mts

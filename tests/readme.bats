@@ -20,16 +20,16 @@ up_to_date() {
     same "$text" new -v digits=$digits
 }
 
-@test "what voxels and groups say in examples/neurosurgery/README.md is what they print" {
+@test "what voxels and tag say in examples/neurosurgery/README.md is what they print" {
     text=examples/neurosurgery/README.md
     cd "$top"
     (
         N=examples/neurosurgery
-        # Its line, up to groups.
-        eval "$(sed -n '/^voxels -v /,/^ *groups /p' $text | sed '$ s/ |$//')" > /dev/null
+        # Its line, up to tag.
+        eval "$(sed -n '/^voxels -v /,/^ *tag /p' $text | sed '$ s/ |$//')" > /dev/null
     ) 2> "$BATS_TEST_TMPDIR/said"
     cd "$BATS_TEST_TMPDIR"
-    grep -E '^(voxels|groups): ' "$top/$text" > shown
+    grep -E '^(voxels|tag): ' "$top/$text" > shown
     [ "$(wc -l < shown)" -ge 6 ]
     while IFS= read -r line; do
         grep -qxF "$line" said || { echo "not printed: $line"; cat said; false; }

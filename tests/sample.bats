@@ -133,7 +133,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
 }
 
 @test "only the points of chosen regions" {
-    groups -r 'left=box:-1,-1,0.05,1' square.mts > halves.mts
+    tag -r 'left=box:-1,-1,0.05,1' square.mts > halves.mts
     ipoints halves.mts > points.mts
     regions=$(mts list points.mts | sed -n 's/^cells.region.*names=\([^ ]*\).*/\1/p')
     first=${regions%%,*}

@@ -12,8 +12,8 @@ same_body() {
 
 @test "msh: nodes reads the same body again, and gmsh a mesh that is the same, in 2D and 3D" {
     cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 |
-        groups -n tip=ball:0.1,0.1,0.03 -n mid=ball:0.05,0.05,0.03 -r lump=ball:0.05,0.05,0.03 > plane.mts 2> note
-    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | groups -n tip=ball:0.1,0.1,0.1,0.03 -r lump=ball:0,0,0,0.06 > solid.mts 2> note
+        tag -n tip=ball:0.1,0.1,0.03 -n mid=ball:0.05,0.05,0.03 -r lump=ball:0.05,0.05,0.03 > plane.mts 2> note
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | tag -n tip=ball:0.1,0.1,0.1,0.03 -r lump=ball:0,0,0,0.06 > solid.mts 2> note
     for body in plane solid; do
         tomesh -u 0.5 -o $body.msh $body.mts
         nodes -u 0.5 $body.msh > again.mts
@@ -28,7 +28,7 @@ same_body() {
 }
 
 @test "inp: CalculiX finds nodes, element sets, node sets and surfaces" {
-    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | groups -n base=plane:0,0,0,0,0,1 -r low=box:-1,-1,-1,1,1,0.05 > solid.mts 2> note
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | tag -n base=plane:0,0,0,0,0,1 -r low=box:-1,-1,-1,1,1,0.05 > solid.mts 2> note
     tomesh -o solid.inp solid.mts
     [ "$(grep -c '^\*SURFACE' solid.inp)" -eq 6 ]
     {

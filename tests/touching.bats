@@ -275,7 +275,7 @@ END
         'Mesh.MeshSizeMax = 2.5;' 'Physical Surface("low") = {1};' 'Physical Surface("up") = {2};' > pair.geo
     gmsh -2 -v 1 pair.geo -o pair.msh
     nodes -u mm pair.msh 2> note |
-        groups -u mm -f base=plane:0,0,0,1 -f head=plane:0,70.5,0,1 -f floor=plane:0,40,0,1 -f sole=plane:0,40.5,0,1 | shapefn > pair.mts 2> note
+        tag -u mm -f base=plane:0,0,0,1 -f head=plane:0,70.5,0,1 -f floor=plane:0,40,0,1 -f sole=plane:0,40.5,0,1 | shapefn > pair.mts 2> note
     printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' '[material low]' 'region = low' 'E = 3000' 'nu = 0.49' \
         '[material up]' 'region = up' 'E = 30000' 'nu = 0.45' '[displacement base]' 'facets = base' 'components = 0, 0' \
         '[displacement head]' 'facets = head' 'components = 0.02, -0.008' '[contact pair]' 'facets = sole' 'against = floor' > part.scene
@@ -336,7 +336,7 @@ SetFactory("OpenCASCADE"); Disk(1) = {0, 0, 0, 50}; Disk(2) = {0, 0, 0, 35}; Rec
 BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2, 3}; Delete; }; Physical Surface("body") = {4};
 Mesh.MeshSizeMin = $size; Mesh.MeshSizeMax = $size;
 END
-        nodes -u mm ring.msh 2> note | groups -u mm -f top=ball:0,50,12 -f bottom=ball:0,-50,12 | shapefn > ring.mts 2> note
+        nodes -u mm ring.msh 2> note | tag -u mm -f top=ball:0,50,12 -f bottom=ball:0,-50,12 | shapefn > ring.mts 2> note
         for way in 0.008 0.012 0.016; do
             { block quasi-static; printf '[displacement top]\nfacets = top\ncomponents = 0, -%s\n[displacement bottom]\nfacets = bottom\ncomponents = 0, %s\n' $way $way
                 printf '[contact self]\nfacets = *\nagainst = *\n[output]\nreactions = yes\nenergy = yes\n'; } > ring.scene
@@ -438,7 +438,7 @@ END
 
 @test "facets that share a corner: a crevice of blobs closes at its root, and the body stays in order" {
     "$BUILD/tests/helper/phantom" blobs 7 > blobs.nii.gz
-    voxels --largest -h 5mm blobs.nii.gz 2> note | groups -f held=low:long,12% -f pushed=high:long,12% 2> note | shapefn > blobs.mts 2> note
+    voxels --largest -h 5mm blobs.nii.gz 2> note | tag -f held=low:long,12% -f pushed=high:long,12% 2> note | shapefn > blobs.mts 2> note
     {
         printf '[scene]\ndim = 3\nanalysis = quasi-static\n'
         for label in 1 2 3; do

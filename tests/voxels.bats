@@ -25,7 +25,7 @@ near() {
 
 # press BODY: held within 12 % of the low end of its longest side, pushed by a tenth of the length at the other end
 press() {
-    groups -f held=low:long,12% -f pushed=high:long,12% "$1" > named.mts 2> said.groups
+    tag -f held=low:long,12% -f pushed=high:long,12% "$1" > named.mts 2> said.groups
     local push
     push=$(mts print nodes.x "$1" | awk '
         { for (k = 1; k <= NF; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }
@@ -350,7 +350,7 @@ nib.save(image, "furrow.nii")
 END
     voxels -h 4mm --surface label_1 --gap 6mm furrow.nii > gap.tsv 2> said
     grep -qE "^voxels: --gap: [0-9]+ nodes are moved by less, the first at \([0-9., ]+\) mm: " said
-    voxels -h 4mm furrow.nii | groups -f held=low:z,20% > body.mts 2> said
+    voxels -h 4mm furrow.nii | tag -f held=low:z,20% > body.mts 2> said
     shapefn body.mts 2> said.shapefn | mtled slide.scene > u.dat
 }
 

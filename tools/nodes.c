@@ -79,7 +79,7 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
         named = named || (group->dim == dim - 1 && group->element_count > 0);
     }
     if (!named) {
-        tool_note(tool, "no part of the boundary has a name: the program groups makes names (groups -h)");
+        tool_note(tool, "no part of the boundary has a name: the program tag makes names (tag -h)");
     }
 }
 
@@ -172,7 +172,7 @@ int main(int argc, char *argv[])
         tool_note(&tool, "%s", mesh.notes.name[i]);
     }
     if (mesh.facet_sets.count == 0) {
-        tool_note(&tool, "no part of the boundary has a name: the program groups makes names");
+        tool_note(&tool, "no part of the boundary has a name: the program tag makes names");
     }
     report(&tool, &mesh, tool_given(&tool, "verbose"));
     TOOL_TRY(&tool, mesh_put(&mesh, &stream, &error));

@@ -23,7 +23,7 @@ static const char usage[] =
     "out, with a note: --fine keeps more. Bodies that share only a node or an edge are cut apart; where\n"
     "parts of one body do, the gap is filled, as are the tips of crevices.\n"
     "\n"
-    "Parts of the boundary get names by --part, with nodes on their rim, or by groups, of whole facets.\n"
+    "Parts of the boundary get names by --part, with nodes on their rim, or by tag, of whole facets.\n"
     "\n"
     "A slice (an image of one, or chosen by -s) makes a body in the plane: x and y are the two world axes\n"
     "in the slice, in their order.\n"

@@ -26,7 +26,7 @@ last() { tail -n 1 "$1" | tr '\t' ' ' | sed "s|$work/||g" | cut -c 1-200; }
 nodes -v -u mm "$mesh" > "$work/body.mts" 2> "$work/said" || { status=$?; fail "$(last "$work/said")"; }
 read -r nodes cells < <(sed -nE 's/^nodes: ([0-9]+) nodes, ([0-9]+) cells.*/\1 \2/p' "$work/said")
 quality=$(sed -nE 's/^nodes: quality of the cells: least ([^,]*),.*/\1/p' "$work/said")
-groups -f held=low:long,12% -f pushed=high:long,12% "$work/body.mts" > "$work/named.mts" 2> "$work/said" ||
+tag -f held=low:long,12% -f pushed=high:long,12% "$work/body.mts" > "$work/named.mts" 2> "$work/said" ||
     { status=$?; fail "$(last "$work/said")"; }
 push=$(mts print nodes.x "$work/body.mts" | awk -v way=$way '
     { for (k = 1; k <= 3; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }

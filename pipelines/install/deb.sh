@@ -33,6 +33,7 @@ else
     depends=$(derive)
 fi
 [ -n "$depends" ] || { echo "deb.sh: no package has the libraries of the programs" >&2; exit 1; }
+# barcode has a program sample, libghc-wai-app-static-dev a program warp.
 cat > "$root/DEBIAN/control" << END
 Package: mtled
 Version: $version
@@ -40,7 +41,8 @@ Architecture: $(dpkg --print-architecture)
 Maintainer: mtled <mtled@localhost>
 Installed-Size: $(du -sk "$root/usr" | cut -f 1)
 Depends: $depends
-Recommends: gmsh
+Recommends: gmsh, python3-numpy
+Conflicts: barcode, libghc-wai-app-static-dev
 Section: science
 Priority: optional
 Description: meshless simulation of soft tissue by small programs in a pipe

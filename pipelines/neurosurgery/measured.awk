@@ -5,7 +5,7 @@
 BEGIN {
     read_stream(field, "")
     need_section("u", "is " field " a result of mtled?")
-    need_section("facets.set", "groups -f exposed=...")
+    need_section("facets.set", "tag -f exposed=...")
     n = split(attribute["facets.set", "names"], name, ",")
     m = split(groups == "" ? "exposed" : groups, wanted, ",")
     for (k = 1; k <= m; k++) {

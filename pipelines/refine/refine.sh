@@ -9,7 +9,7 @@
 #
 # Environment: UNIT of the geometry, which is no image, about NODES at most (default 20000), ROUNDS at most (default 8), GMSH more arguments for gmsh,
 # of an image SPACING of the first round's lattice, such as 6mm, and VOXELS more arguments for voxels (-l labels.tsv; not -h),
-# REFINE_GROUPS arguments for groups (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
+# REFINE_GROUPS arguments for tag (GROUPS of make; bash has an array of that name), quoted as in a shell: -u mm -f 'held=low:z,5',
 # ORDER of the error for fielderr (default 1), SUPPORT arguments for support (-k 2), START a factor for the sizes of the first round (default 1), LEAST a length with unit below which no size goes (sizefield), GRADED=no: all sizes
 # made smaller alike, AFRESH=yes: no solution begins from that of the last round (mtled --start), REPEAT how often the finer solution is timed: the least counts.
 #
@@ -101,9 +101,9 @@ scaled() {
     awk -v factor="$1" '/^# / { on = $2 == "size" } on && NF == 1 { $1 = sprintf("%.17g", factor * $1) } { print }' "$work/$sizes"
 }
 
-# named: the stage groups, where it is asked for.
+# named: the stage tag, where it is asked for.
 named() {
-    if [ "${#naming[@]}" -gt 0 ]; then groups "${naming[@]}"; else cat; fi
+    if [ "${#naming[@]}" -gt 0 ]; then tag "${naming[@]}"; else cat; fi
 }
 
 # solve MESH FILE [START]: the stages start together, and all of them append to an empty log. The solution begins from that of START, or without load.

@@ -22,7 +22,7 @@ worst=$(sed -nE 's/^voxels: .* of cells \(([+-][0-9.]+) %\).*/\1/p' "$work/said"
 lost=$(sed -nE 's/^voxels: .*: ([0-9.e+-]+) ml are lost.*/\1/p' "$work/said" | awk '{ sum += $1 } END { printf "%.3g", sum }')
 
 # Only one body can be held at its ends.
-voxels --largest "$@" 2> "$work/largest" | groups -f held=low:long,12% -f pushed=high:long,12% > "$work/named.mts" 2> "$work/groups" ||
+voxels --largest "$@" 2> "$work/largest" | tag -f held=low:long,12% -f pushed=high:long,12% > "$work/named.mts" 2> "$work/groups" ||
     { cat "$work/groups" >&2; exit 1; }
 push=$(mts print nodes.x "$work/named.mts" | awk '
     { for (k = 1; k <= 3; k++) { if (NR == 1 || $k < low[k]) low[k] = $k; if (NR == 1 || $k > high[k]) high[k] = $k } }

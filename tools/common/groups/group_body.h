@@ -56,7 +56,7 @@ MUST_CHECK enum status group_check_name(const char *name, struct error *error);
 MUST_CHECK enum status group_body_write(const struct group_body *body, struct stream *stream,
                                         struct error *error);
 
-/* Evaluate an expression (the usage text of groups has the grammar) for a kind of items:
+/* Evaluate an expression (the usage text of tag has the grammar) for a kind of items:
  * chosen[body->items[kind].count]. Its lengths are in `unit` metres. The message of an error begins with the
  * faulty term. */
 MUST_CHECK enum status group_select(const struct group_body *body, enum group_kind kind,

@@ -35,7 +35,7 @@ enum status model_facets(struct model *model, const struct scene_label *label, c
         return STATUS_OK;
     }
     if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
-        return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run groups",
+        return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run tag",
                     label->where);
     }
     RETURN_IF_ERROR(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
@@ -69,7 +69,7 @@ enum status model_nodes(struct model *model, const struct scene_label *label, co
     int64_t node_count = model->assembly.cells.node_count;
     *count = 0;
     if (stream_find(model->stream, "sets.ptr") == NULL) {
-        return fail(error, STATUS_INPUT, "%s: no node sets: run groups -n", label->where);
+        return fail(error, STATUS_INPUT, "%s: no node sets: run tag -n", label->where);
     }
     RETURN_IF_ERROR(stream_sets(model->stream, true, node_count, &sets, error));
     NEW_SCRATCH(bool, wanted, sets.names.count, error);

@@ -116,7 +116,7 @@ static enum status note_jump(struct model *model, const struct faces *faces, con
         "and forces are wrong there: %s",
         found->ratio, regions.names.name[first], first == second ? "" : " and ",
         first == second ? "" : regions.names.name[second], place,
-        first == second ? "make a region of each side (groups -r, voxels), and supports stop there"
+        first == second ? "make a region of each side (tag -r, voxels), and supports stop there"
                         : "let supports stop there (support without -i and --reach)");
     return STATUS_OK;
 }

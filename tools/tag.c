@@ -1,7 +1,7 @@
 static const char usage[] =
-    "groups - names for parts of the boundary, node sets and regions\n"
+    "tag - names for parts of the boundary, node sets and regions\n"
     "\n"
-    "usage: groups [-u UNIT] [-f NAME=EXPRESSION]... [-n NAME=EXPRESSION]... [-r NAME=EXPRESSION]...\n"
+    "usage: tag [-u UNIT] [-f NAME=EXPRESSION]... [-n NAME=EXPRESSION]... [-r NAME=EXPRESSION]...\n"
     "              [-m OLD=NEW]... [-d NAME]... [--replace] [-v] [-t] [-o FILE] [FILE]\n"
     "\n"
     "Reads a stream with nodes.x and cells (see nodes) and adds named groups, chosen by place:\n"
@@ -55,9 +55,9 @@ static const char usage[] =
     "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
-    "  nodes -u mm liver.msh | groups -f held=low:long,12% -f pushed=high:long,12% -v > liver.mts\n"
-    "  groups -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
-    "  groups -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
+    "  nodes -u mm liver.msh | tag -f held=low:long,12% -f pushed=high:long,12% -v > liver.mts\n"
+    "  tag -u mm -f 'probe=ball:10,0,42,5 and normal:0,0,1,60' -f 'free=all without probe' < body.mts\n"
+    "  tag -f 'cavity=side:2,180' -r 'tumour=ball:0.01,0,0.03,0.008' -n 'tip=plane:0,0,0.1,0,0,1'\n";
 
 #include "cell_report.h"
 #include "groups/group_body.h"
