@@ -4,7 +4,7 @@ static const char usage[] =
     "usage: nodes -u UNIT [-r REGION,...] [--midside drop|use] [-v] [-t] [-o FILE] [MESH]\n"
     "       nodes -l [MESH]\n"
     "\n"
-    "Reads a mesh of gmsh (MSH 1, 2 or 4, ASCII or binary, partitioned or not; triangles and quadrangles\n"
+    "Reads a mesh of gmsh (MSH 2.2 or 4.1, ASCII or binary, not partitioned; triangles and quadrangles\n"
     "in a plane z = const, or tetrahedra, hexahedra, prisms and pyramids) from MESH or standard input, and\n"
     "writes nodes.x (m), the nodes of its cells in the order of the file; cells, split into triangles or\n"
     "tetrahedra and positively oriented, with the physical group of each as cells.region; facets, the\n"

@@ -8,13 +8,13 @@
 #include <stdio.h>
 
 struct fixture {
-    int version; /* 22, 40, 41 */
+    bool msh4;
     bool binary;
     size_t size;
     char bytes[8192];
 };
 
-enum { FIXTURE_NODES = 5, FIXTURE_ELEMENTS = 4, FIXTURE_FORMS = 5 };
+enum { FIXTURE_NODES = 5, FIXTURE_ELEMENTS = 4, FIXTURE_FORMS = 4 };
 
 static const int fixture_node_tags[FIXTURE_NODES] = {1, 2, 4, 7, 9};
 static const double fixture_points[FIXTURE_NODES][3] = {
@@ -82,7 +82,7 @@ static void put_entities(struct fixture *f)
     put_line_end(f);
     for (int dim = 0; dim < 3; dim++) {
         put_int(f, 1);
-        for (int k = 0; k < (dim == 0 && f->version == 41 ? 3 : 6); k++) {
+        for (int k = 0; k < (dim == 0 ? 3 : 6); k++) {
             put_real(f, dim == 0 ? 0 : k < 3 ? 0 : k % 3 == 2 ? 0 : 2);
         }
         put_size(f, 1);
@@ -102,24 +102,19 @@ static void put_nodes4(struct fixture *f)
 {
     put_size(f, 1);
     put_size(f, FIXTURE_NODES);
-    if (f->version == 41) {
-        put_size(f, 1);
-        put_size(f, 9);
-    }
+    put_size(f, 1);
+    put_size(f, 9);
     put_line_end(f);
-    put_int(f, f->version == 41 ? 2 : 1);
-    put_int(f, f->version == 41 ? 1 : 2);
+    put_int(f, 2);
+    put_int(f, 1);
     put_int(f, 0);
     put_size(f, FIXTURE_NODES);
     put_line_end(f);
-    for (int n = 0; n < FIXTURE_NODES && f->version == 41; n++) {
+    for (int n = 0; n < FIXTURE_NODES; n++) {
         put_size(f, fixture_node_tags[n]);
         put_line_end(f);
     }
     for (int n = 0; n < FIXTURE_NODES; n++) {
-        if (f->version == 40) {
-            put_int(f, fixture_node_tags[n]);
-        }
         for (int k = 0; k < 3; k++) {
             put_real(f, fixture_points[n][k]);
         }
@@ -146,31 +141,22 @@ static int fixture_corners(int e)
 
 static void put_elements4(struct fixture *f)
 {
-    bool new = f->version == 41;
     put_size(f, 3);
     put_size(f, FIXTURE_ELEMENTS);
-    if (new) {
-        put_size(f, 11);
-        put_size(f, 14);
-    }
+    put_size(f, 11);
+    put_size(f, 14);
     put_line_end(f);
     for (int e = 0; e < FIXTURE_ELEMENTS; e++) {
         const int *element = fixture_elements[e];
         if (e < 3) { /* the last two are one block */
-            put_int(f, new ? element[1] : 1);
-            put_int(f, new ? 1 : element[1]);
+            put_int(f, element[1]);
+            put_int(f, 1);
             put_int(f, element[0]);
             put_size(f, e == 2 ? 2 : 1);
             put_line_end(f);
         }
-        void (*put)(struct fixture *, int64_t) = put_size;
         for (int k = 0; k <= fixture_corners(e); k++) {
-            int value = k == 0 ? 11 + e : element[2 + k];
-            if (new) {
-                put(f, value);
-            } else {
-                put_int(f, value);
-            }
+            put_size(f, k == 0 ? 11 + e : element[2 + k]);
         }
         put_line_end(f);
     }
@@ -200,28 +186,27 @@ static void put_elements2(struct fixture *f)
     }
 }
 
-enum { ASCII_22, BINARY_22, ASCII_40, ASCII_41, BINARY_41 };
+enum { ASCII_22, BINARY_22, ASCII_41, BINARY_41 };
 
 /* The file in one of these FIXTURE_FORMS forms. */
 static struct fixture fixture_make(int form)
 {
-    static const int versions[FIXTURE_FORMS] = {22, 22, 40, 41, 41};
-    struct fixture f = {.version = versions[form], .binary = form == BINARY_22 || form == BINARY_41};
+    struct fixture f = {.msh4 = form >= ASCII_41, .binary = form == BINARY_22 || form == BINARY_41};
     const char *raw_end = f.binary ? "\n" : "";
-    put_text(&f, "$MeshFormat\n%g %d 8\n", f.version / 10.0, f.binary);
+    put_text(&f, "$MeshFormat\n%s %d 8\n", f.msh4 ? "4.1" : "2.2", f.binary);
     if (f.binary) {
         put_int(&f, 1);
         put_text(&f, "\n");
     }
     put_text(&f, "$EndMeshFormat\n$PhysicalNames\n3\n0 5 \"corner\"\n1 3 \"bottom\"\n2 2 "
                  "\"body\"\n$EndPhysicalNames\n");
-    if (f.version >= 40) {
+    if (f.msh4) {
         put_entities(&f);
     }
     put_text(&f, "$Nodes\n");
-    (f.version < 40 ? put_nodes2 : put_nodes4)(&f);
+    (f.msh4 ? put_nodes4 : put_nodes2)(&f);
     put_text(&f, "%s$EndNodes\n$Elements\n", raw_end);
-    (f.version < 40 ? put_elements2 : put_elements4)(&f);
+    (f.msh4 ? put_elements4 : put_elements2)(&f);
     put_text(&f, "%s$EndElements\n", raw_end);
     return f;
 }

@@ -1,5 +1,5 @@
-/* Meshes of gmsh (MSH 1, 2 and 4, ASCII and binary), in two steps: msh_read reads a file as it is; mesh_build
- * makes cells, facets and node sets of it. */
+/* Meshes of gmsh (MSH 2.2 and 4.1, ASCII and binary), in two steps: msh_read reads a file as it is;
+ * mesh_build makes cells, facets and node sets of it. */
 #pragma once
 
 #include "base/status.h"
@@ -33,8 +33,6 @@ struct msh {
     int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
-    int64_t partitions;       /* number of partitions of the mesh (MSH 4 only); 0: not partitioned */
-    int64_t partitions_here;  /* number of these with elements of the highest dimension in this file */
     bool by_entity[4];        /* of each dimension: the groups are entities */
 };
 
@@ -51,8 +49,9 @@ struct msh_type {
 struct msh_type msh_type(int64_t number);
 
 /* Read a mesh from its bytes. STATUS_INPUT if they are not a complete, valid mesh file; the message names
- * section and record, or for a file of another program the command that converts it. STATUS_SYSTEM: memory.
- * Time and memory are proportional to the size, whatever counts the file states. On failure *msh is empty. */
+ * section and record, or for a file of another version or program the command that converts it.
+ * STATUS_SYSTEM: memory. Time and memory are proportional to the size, whatever counts the file states. On
+ * failure *msh is empty. */
 MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
 
 /* Read a mesh from an open descriptor (a regular file or a pipe), which stays open. Messages begin with

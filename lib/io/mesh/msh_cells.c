@@ -68,13 +68,6 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
     if (lost > 0) {
         RETURN_IF_ERROR(mesh_add_note(draft, "nodes of no cell, left out: %lld", (long long)lost));
     }
-    if (msh->partitions_here < msh->partitions) {
-        RETURN_IF_ERROR(
-            mesh_add_note(draft,
-                          "%lld of the %lld parts that a mesh was cut into: others may lie in files "
-                          "of their own; save all of them as one (gmsh without -part_split)",
-                          (long long)msh->partitions_here, (long long)msh->partitions));
-    }
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {

@@ -37,7 +37,7 @@ struct block {
     int64_t number; /* of the type */
     struct msh_type type;
     int64_t key;  /* of the entity, MSH 4 */
-    int64_t tags; /* MSH 1 and 2: number of tags that follow: group, entity, partitions */
+    int64_t tags; /* MSH 2: number of tags that follow: group, entity, partitions */
 };
 
 static void read_type(struct msh_reader *r, struct block *block)
@@ -53,11 +53,11 @@ static void read_type(struct msh_reader *r, struct block *block)
 static void read_block_head(struct msh_reader *r, struct block *block, int64_t left)
 {
     int64_t dim;
-    if (r->version >= 40) {
+    if (r->msh4) {
         int64_t tag = msh_read_entity_tag(r, &dim);
         block->key = msh_key(dim, tag);
         read_type(r, block);
-        block->count = msh_count(r, "number of elements", 4, r->version == 40 ? 8 : 16);
+        block->count = msh_count(r, "number of elements", 4, 16);
         if (r->status == STATUS_OK && block->type.dim != dim) {
             msh_fail(r, "a %s on an entity of dimension %lld", block->type.name, (long long)dim);
         }
@@ -74,7 +74,7 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
     }
 }
 
-/* The tags of an element of MSH 1 and 2: the first is its physical group, negative if that reverses it; the
+/* The tags of an element of MSH 2: the first is its physical group, negative if that reverses it; the
  * second its entity. Both are of the dimension of its type. */
 static void read_tags(struct msh_reader *r, int64_t e, const struct block *block)
 {
@@ -83,7 +83,7 @@ static void read_tags(struct msh_reader *r, int64_t e, const struct block *block
         if (k == 0 && tag != 0) {
             r->element_key[e] = msh_key(block->type.dim, tag < 0 ? -tag : tag);
         } else if (k == 1) {
-            r->whole_key[e] = msh_key(block->type.dim, tag);
+            r->entity_key[e] = msh_key(block->type.dim, tag);
         }
     }
 }
@@ -95,8 +95,7 @@ static void read_element_nodes(struct msh_reader *r, int64_t e, const struct blo
     msh->node_ptr[e + 1] = first + block->type.node_count;
     MSH_GROW(r, &msh->node_idx, msh->node_ptr[e + 1], &r->node_idx_room);
     for (int64_t k = first; r->status == STATUS_OK && k < msh->node_ptr[e + 1]; k++) {
-        int64_t node = r->version == 41 ? msh_size(r, "node", INT64_MIN, INT64_MAX)
-                                        : msh_int(r, "node", INT64_MIN, INT64_MAX);
+        int64_t node = msh_tag(r, "node", INT64_MIN, INT64_MAX);
         int64_t place = msh_index_find(&r->nodes, node);
         msh->node_idx[k] = (int32_t)place;
         if (place < 0) {
@@ -110,19 +109,15 @@ static void read_element(struct msh_reader *r, int64_t e, struct block *block)
 {
     struct msh *msh = r->msh;
     r->record = e + 1;
-    msh->element_tag[e] =
-        r->version == 41 ? msh_size(r, "tag", 1, MSH_LARGEST_TAG) : msh_int(r, "tag", 1, MSH_LARGEST_TAG);
-    if (r->version < 40 && !r->binary) {
+    msh->element_tag[e] = msh_tag(r, "tag", 1, MSH_LARGEST_TAG);
+    if (!r->msh4 && !r->binary) {
         read_type(r, block);
-        block->tags = r->version == 10 ? 2 : msh_int(r, "number of tags", 0, MOST_TAGS);
+        block->tags = msh_int(r, "number of tags", 0, MOST_TAGS);
     }
-    if (r->version < 40) {
+    if (!r->msh4) {
         read_tags(r, e, block);
     } else {
-        r->element_key[e] = r->whole_key[e] = block->key;
-    }
-    if (r->version == 10) {
-        (void)msh_int(r, "number of nodes", block->type.node_count, block->type.node_count);
+        r->element_key[e] = r->entity_key[e] = block->key;
     }
     msh->element_type[e] = (int8_t)block->number;
     if (r->status == STATUS_OK) {
@@ -134,7 +129,7 @@ void msh_read_elements(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
     FREED_BY(msh_index_free) struct msh_index tags = {0};
-    bool blocked = r->version >= 40;
+    bool blocked = r->msh4;
     int64_t found = 0;
     r->kind = "element";
     if (!r->has[MSH_NODES]) {
@@ -143,7 +138,7 @@ void msh_read_elements(struct msh_reader *r)
     int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : INT64_MAX;
     int64_t count =
         blocked ? msh_count(r, "number of elements", 4, 8) : msh_count_line(r, "number of elements", 8);
-    for (int k = 0; k < 2 && r->version == 41; k++) {
+    for (int k = 0; k < 2 && blocked; k++) {
         (void)msh_size(r, "range of tags", 0, MSH_LARGEST_TAG);
     }
     msh->element_count = count;
@@ -151,7 +146,7 @@ void msh_read_elements(struct msh_reader *r)
     MSH_NEW(r, &msh->element_type, count);
     MSH_NEW(r, &msh->node_ptr, count + 1);
     MSH_NEW(r, &r->element_key, count);
-    MSH_NEW(r, &r->whole_key, count);
+    MSH_NEW(r, &r->entity_key, count);
     for (int64_t b = 0; r->status == STATUS_OK && b < blocks && (blocked || found < count); b++) {
         struct block block = {0};
         r->record = found + 1;

@@ -1,6 +1,4 @@
-/* Reading $PhysicalNames, $Entities and $PartitionedEntities: the names of physical groups, and the groups of
- * each entity. */
-#include "base/lists.h"
+/* Reading $PhysicalNames and $Entities: the names of physical groups, and the groups of each entity. */
 #include "io/mesh/msh_private.h"
 
 #include <string.h>
@@ -50,7 +48,7 @@ void msh_read_names(struct msh_reader *r)
     r->binary = binary;
 }
 
-/* ---- $Entities, $PartitionedEntities ---- */
+/* ---- $Entities ---- */
 
 const char *msh_entity_kind(int dim)
 {
@@ -60,15 +58,8 @@ const char *msh_entity_kind(int dim)
 
 int64_t msh_read_entity_tag(struct msh_reader *r, int64_t *dim)
 {
-    int64_t tag = 0;
-    if (r->version == 40) {
-        tag = msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-    }
     *dim = msh_int(r, "dimension", 0, 3);
-    if (r->version == 41) {
-        tag = msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-    }
-    return tag;
+    return msh_int(r, "entity", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
 }
 
 /* Skip the tags of the entities that bound an entity, which follow its box. */
@@ -77,26 +68,6 @@ static void skip_tags(struct msh_reader *r, const char *what)
     int64_t count = msh_count(r, what, 2, 4);
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         (void)msh_int(r, what, -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-    }
-}
-
-/* Read the partitions of an entity. Those of entities of the mesh's highest dimension are kept. */
-static void read_partitions_of(struct msh_reader *r, int dim, bool is_part)
-{
-    int64_t count = msh_count(r, "partitions", 2, 4);
-    if (is_part && dim > r->partition_dim) {
-        r->partition_dim = dim;
-        r->partition_count = 0;
-    }
-    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
-        int64_t tag = msh_int(r, "partitions", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        if (!is_part) {
-            continue;
-        }
-        MSH_GROW(r, &r->partitions, r->partition_count + 1, &r->partition_room);
-        if (r->status == STATUS_OK) {
-            r->partitions[r->partition_count++] = tag;
-        }
     }
 }
 
@@ -118,36 +89,25 @@ static void read_physicals(struct msh_reader *r, int dim, struct msh_entity *ent
     entity->count = r->physical_count - entity->first;
 }
 
-/* Read an entity. In a partitioned mesh the surfaces between the partitions of a volume are entities that
- * name the volume and its physical group. They belong to no group here. */
-static void read_entity(struct msh_reader *r, int dim, bool partitioned, struct msh_entity *entity)
+static void read_entity(struct msh_reader *r, int dim, struct msh_entity *entity)
 {
-    bool is_part = true;
     *entity = (struct msh_entity){.key = msh_key(dim, msh_int(r, "tag", -MSH_LARGEST_TAG, MSH_LARGEST_TAG))};
-    entity->whole = entity->key;
-    if (partitioned) {
-        is_part = msh_int(r, "dimension of the whole", -1, 3) == dim;
-        int64_t whole = msh_int(r, "tag of the whole", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-        entity->whole = is_part ? msh_key(dim, whole) : 0;
-        read_partitions_of(r, dim, is_part);
-    }
-    for (int k = 0; k < (dim == 0 && r->version == 41 ? 3 : 6); k++) {
+    for (int k = 0; k < (dim == 0 ? 3 : 6); k++) {
         (void)msh_real(r, "box");
     }
     read_physicals(r, dim, entity);
-    if (!is_part) {
-        r->physical_count = entity->first;
-        entity->count = 0;
-    }
     if (dim > 0) {
         skip_tags(r, "boundary");
     }
 }
 
-static void read_entities(struct msh_reader *r, bool partitioned)
+void msh_read_entities(struct msh_reader *r)
 {
     int64_t counts[4];
     int64_t total = 0;
+    if (!r->msh4) {
+        msh_fail(r, "has no place in MSH 2");
+    }
     for (int dim = 0; dim < 4; dim++) {
         counts[dim] = msh_count(r, "number of entities", 10, 36);
         total += counts[dim];
@@ -160,31 +120,7 @@ static void read_entities(struct msh_reader *r, bool partitioned)
         r->kind = msh_entity_kind(dim);
         for (int64_t i = 0; r->status == STATUS_OK && i < counts[dim]; i++) {
             r->record = i + 1;
-            read_entity(r, dim, partitioned, &r->entities[r->entity_count++]);
+            read_entity(r, dim, &r->entities[r->entity_count++]);
         }
-    }
-}
-
-void msh_read_entities(struct msh_reader *r)
-{
-    if (r->version < 40) {
-        msh_fail(r, "has no place in MSH 2");
-    }
-    read_entities(r, false);
-}
-
-void msh_read_partitions(struct msh_reader *r)
-{
-    if (r->version < 40 || !r->has[MSH_ENTITIES]) {
-        msh_fail(r, "stands in MSH 4 only, behind $Entities");
-    }
-    r->msh->partitions = msh_size(r, "number of partitions", 0, MSH_LARGEST_TAG);
-    int64_t ghosts = msh_count(r, "number of ghosts", 4, 8);
-    for (int64_t i = 0; r->status == STATUS_OK && i < 2 * ghosts; i++) {
-        (void)msh_int(r, "ghost", -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
-    }
-    read_entities(r, true);
-    if (r->status == STATUS_OK && r->partition_count > 0) {
-        r->msh->partitions_here = sort_distinct(r->partition_count, r->partitions);
     }
 }

@@ -196,11 +196,11 @@ static const struct msh_entity *find_entity(const struct msh_reader *r, int64_t 
                : bsearch(&key, r->entities, (size_t)r->entity_count, sizeof *r->entities, compare_int64);
 }
 
-/* In MSH 4: the whole of which the entity of each element is a part. The file may list no entities. */
-static void find_wholes(struct msh_reader *r)
+/* In MSH 4: the entity of each element is in $Entities, unless the file lists none. */
+static void check_entities(struct msh_reader *r)
 {
     const struct msh_entity *entity = NULL;
-    bool listed = r->version >= 40 && r->entity_count > 0;
+    bool listed = r->msh4 && r->entity_count > 0;
     for (int64_t e = 0; listed && r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int64_t key = r->element_key[e];
         entity = entity != NULL && entity->key == key ? entity : find_entity(r, key);
@@ -208,8 +208,6 @@ static void find_wholes(struct msh_reader *r)
             r->status =
                 fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",
                      (long long)r->msh->element_tag[e], msh_entity_kind(key_dim(key)), key_tag(key));
-        } else {
-            r->whole_key[e] = entity->whole;
         }
     }
 }
@@ -229,16 +227,16 @@ static void group_by_entity(struct msh_reader *r, bool by_element[])
     }
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int of_element = dim_of(r, e);
-        grouped[of_element] = grouped[of_element] || (r->version < 40 && r->element_key[e] != 0);
-        first = of_element > dim ? r->whole_key[e] : first;
-        several = of_element > dim ? false : several || (of_element == dim && r->whole_key[e] != first);
+        grouped[of_element] = grouped[of_element] || (!r->msh4 && r->element_key[e] != 0);
+        first = of_element > dim ? r->entity_key[e] : first;
+        several = of_element > dim ? false : several || (of_element == dim && r->entity_key[e] != first);
         dim = of_element > dim ? of_element : dim;
     }
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int of_element = dim_of(r, e);
         if (!grouped[of_element] && (of_element == dim ? several : of_element == dim - 1)) {
             by_element[of_element] = r->msh->by_entity[of_element] = true;
-            r->element_key[e] = r->whole_key[e];
+            r->element_key[e] = r->entity_key[e];
         }
     }
 }
@@ -258,7 +256,7 @@ static void make_entities(struct msh_reader *r, const bool by_element[])
     for (int64_t i = 0; r->status == STATUS_OK && i < r->msh->group_count; i++) {
         int64_t key = group_key(&r->msh->groups[i]);
         if (by_element[r->msh->groups[i].dim]) {
-            r->entities[r->entity_count++] = (struct msh_entity){key, key, r->physical_count, 1};
+            r->entities[r->entity_count++] = (struct msh_entity){key, r->physical_count, 1};
             r->physicals[r->physical_count++] = key;
         }
     }
@@ -305,9 +303,9 @@ static void join_members(struct msh_reader *r)
 
 void msh_join_groups(struct msh_reader *r)
 {
-    bool old = r->version < 40, by_element[4] = {old, old, old, old};
+    bool old = !r->msh4, by_element[4] = {old, old, old, old};
     sort_entities(r);
-    find_wholes(r);
+    check_entities(r);
     group_by_entity(r, by_element);
     collect_groups(r, by_element);
     name_groups(r);

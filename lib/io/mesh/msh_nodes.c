@@ -72,22 +72,21 @@ static void read_point(struct msh_reader *r, int64_t node, int64_t parameters)
     }
 }
 
-/* A block of nodes: all nodes of a file of MSH 1 or 2, those of one entity in MSH 4. */
+/* A block of nodes: all nodes of a file of MSH 2, those of one entity in MSH 4. */
 struct block {
     int64_t first, count;
     int64_t parameters;  /* number of parametric coordinates of each node, which are not used, or EACH_NODE */
     int64_t least, most; /* bounds of the tags */
 };
 
-/* In MSH 4.1 all tags come before all points, else each before its point. */
+/* In MSH 4 all tags come before all points, else each before its point. */
 static void read_block(struct msh_reader *r, const struct block *block)
 {
-    bool apart = r->version == 41;
+    bool apart = r->msh4;
     int64_t end = block->first + block->count;
     for (int64_t n = block->first; r->status == STATUS_OK && n < end; n++) {
         r->record = n + 1;
-        r->msh->node_tag[n] = apart ? msh_size(r, "tag", block->least, block->most)
-                                    : msh_int(r, "tag", block->least, block->most);
+        r->msh->node_tag[n] = msh_tag(r, "tag", block->least, block->most);
         if (!apart) {
             read_point(r, n, block->parameters);
         }
@@ -111,7 +110,7 @@ static void read_block_head(struct msh_reader *r, struct block *block)
 void msh_read_nodes(struct msh_reader *r)
 {
     struct msh *msh = r->msh;
-    bool blocked = r->version >= 40;
+    bool blocked = r->msh4;
     struct block block = {.least = 1,
                           .most = MSH_LARGEST_TAG,
                           .parameters = strcmp(r->section, "$ParametricNodes") == 0 ? EACH_NODE : 0};
@@ -119,7 +118,7 @@ void msh_read_nodes(struct msh_reader *r)
     int64_t blocks = blocked ? msh_count(r, "number of blocks", 8, 20) : 1;
     int64_t count =
         blocked ? msh_count(r, "number of nodes", 8, 28) : msh_count_line(r, "number of nodes", 8);
-    if (r->version == 41) {
+    if (blocked) {
         block.least = msh_size(r, "smallest tag", count > 0, MSH_LARGEST_TAG);
         block.most = msh_size(r, "largest tag", count > 0, MSH_LARGEST_TAG);
     }

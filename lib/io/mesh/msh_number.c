@@ -125,6 +125,11 @@ int64_t msh_size(struct msh_reader *r, const char *what, int64_t least, int64_t 
     return whole(r, what, true, least, most);
 }
 
+int64_t msh_tag(struct msh_reader *r, const char *what, int64_t least, int64_t most)
+{
+    return whole(r, what, r->msh4, least, most);
+}
+
 int64_t msh_count(struct msh_reader *r, const char *what, int64_t text, int64_t binary)
 {
     int64_t count = msh_size(r, what, 0, INT64_MAX);

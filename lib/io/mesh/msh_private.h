@@ -17,7 +17,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Tags are of type int in all versions of the format except MSH 4.1, where gmsh keeps most of them as int. */
+/* Tags are of type int in MSH 2; in MSH 4 gmsh keeps most of them as int. */
 #define MSH_LARGEST_TAG INT32_MAX
 
 /* The place of each tag in the file. */
@@ -35,10 +35,9 @@ struct msh_name {
     int length;
 };
 
-/* A list of groups to which elements refer: in MSH 4 that of an entity; in MSH 1 and 2 a group. */
+/* A list of groups to which elements refer: in MSH 4 that of an entity; in MSH 2 a group. */
 struct msh_entity {
     int64_t key;
-    int64_t whole;        /* in a partitioned mesh the key of the entity that this is a part of, 0: of none */
     int64_t first, count; /* its groups: of reader->physicals */
 };
 
@@ -55,7 +54,7 @@ enum msh_section {
 
 struct msh_reader {
     const char *at, *end; /* the rest of the file */
-    int version;          /* ten times that of the file: 10, 20, 21, 22, 40, 41 */
+    bool msh4;            /* MSH 4.1, else 2.2 */
     bool binary;          /* numbers are little-endian values of 4 bytes (int), 8 (size) and 8 (real) */
     const char *section;  /* for messages: "$Nodes", and the kind of its records, "node" */
     const char *kind;
@@ -67,18 +66,14 @@ struct msh_reader {
     struct msh_index nodes;
     bool has[MSH_SECTIONS]; /* the section was read to its end */
     int64_t node_idx_room;
-    int64_t *element_key; /* msh->element_count: key of the entity, in MSH 1 and 2 of the group; 0: none */
-    int64_t *whole_key;   /* msh->element_count: key of the entity, which partitions do not cut; 0: none */
+    int64_t *element_key; /* msh->element_count: key of the entity, in MSH 2 of the group; 0: none */
+    int64_t *entity_key;  /* msh->element_count: key of the entity; 0: none */
     int64_t name_count;
     struct msh_name *names;
     int64_t entity_count, entity_room;
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
     int64_t *physicals; /* keys of groups */
-    /* The partitions that have elements of the highest dimension so far. */
-    int partition_dim;
-    int64_t partition_count, partition_room;
-    int64_t *partitions;
 };
 
 /* ---- msh_number.c: numbers, text or binary alike ---- */
@@ -90,11 +85,14 @@ void msh_fail(struct msh_reader *reader, const char *format, ...) __attribute__(
 int64_t msh_int(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
 int64_t msh_size(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
 
+/* The tag of a node or an element: an int in MSH 2, a size in MSH 4. */
+int64_t msh_tag(struct msh_reader *reader, const char *what, int64_t least, int64_t most);
+
 /* A number of records, each of at least `text` or `binary` bytes; the rest of the file must have room for
  * them. */
 int64_t msh_count(struct msh_reader *reader, const char *what, int64_t text, int64_t binary);
 
-/* The same for the count at the head of a section of MSH 1 and 2, which is a line of text in all files. */
+/* The same for the count at the head of a section of MSH 2, which is a line of text in all files. */
 int64_t msh_count_line(struct msh_reader *reader, const char *what, int64_t least);
 
 /* The next real number, finite or not. */
@@ -124,7 +122,6 @@ void msh_skip_line(struct msh_reader *reader);
 
 void msh_read_names(struct msh_reader *reader); /* msh_entities.c */
 void msh_read_entities(struct msh_reader *reader);
-void msh_read_partitions(struct msh_reader *reader);
 void msh_read_nodes(struct msh_reader *reader);    /* msh_nodes.c */
 void msh_read_elements(struct msh_reader *reader); /* msh_elements.c */
 

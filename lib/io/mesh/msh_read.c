@@ -2,7 +2,6 @@
 #include "io/files/descriptor.h"
 #include "io/mesh/msh_private.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,35 +15,34 @@ static bool is_end_of_line(char c)
     return c == '\n' || c == '\r';
 }
 
+static bool is_mesh(const char *bytes, size_t size)
+{
+    return size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]);
+}
+
 /* MSH 1 has no $MeshFormat. */
 static bool is_mesh1(const char *bytes, size_t size)
 {
-    return size >= MAGIC_SIZE && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4]);
+    return size > 4 && memcmp(bytes, "$NOD", 4) == 0 && is_end_of_line(bytes[4]);
 }
 
-static bool is_mesh(const char *bytes, size_t size)
+static enum status fail_version(double version, struct error *error)
 {
-    return is_mesh1(bytes, size) ||
-           (size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]));
+    return fail(error, STATUS_INPUT,
+                "MSH version %#.2g: convert it: gmsh FILE -save -format msh41 -o NEW.msh", version);
 }
 
 /* ---- sections ---- */
 
 static void read_format(struct msh_reader *r)
 {
-    static const double versions[] = {2.0, 2.1, 2.2, 4.0, 4.1};
     double version = msh_real(r, "version");
+    if (r->status == STATUS_OK && version != 2.2 && version != 4.1) {
+        r->status = fail_version(version, r->error);
+    }
+    r->msh4 = version == 4.1;
     bool binary = msh_int(r, "file type", 0, 1) == 1;
     (void)msh_int(r, "size of a real number", 8, 8);
-    for (size_t i = 0; i < sizeof versions / sizeof *versions; i++) {
-        r->version = version == versions[i] ? (int)lround(10 * version) : r->version;
-    }
-    if (r->version == 0) {
-        msh_fail(r, "version %g is not read: save as MSH 4.1 or 2.2", version);
-    }
-    if (r->version == 40 && binary) { /* gmsh does not read it either */
-        msh_fail(r, "version 4.0 is read as ASCII only: save as MSH 4.1");
-    }
     msh_skip_line(r);
     r->binary = binary;
     if (binary && msh_int(r, "byte order", INT32_MIN, INT32_MAX) != 1) {
@@ -71,12 +69,10 @@ static void read_heading(struct msh_reader *r, char name[], size_t size)
     r->at += length;
 }
 
-/* Read "$EndName" on a line of its own, or at the end of the file; in MSH 1 "$ENDNAM". */
+/* Read "$EndName" on a line of its own, or at the end of the file. */
 static void read_ending(struct msh_reader *r)
 {
     const char *name = r->section + 1;
-    bool old = strcmp(name, "NOD") == 0 || strcmp(name, "ELM") == 0;
-    const char *begin = old ? "$END" : "$End";
     size_t length = strlen(name);
     if (r->status != STATUS_OK) {
         return;
@@ -84,10 +80,10 @@ static void read_ending(struct msh_reader *r)
     r->record = 0;
     msh_skip_space(r);
     if ((size_t)(r->end - r->at) < 4 + length) {
-        msh_fail(r, "no %s%s: the file is truncated", begin, name);
-    } else if (memcmp(r->at, begin, 4) != 0 || memcmp(r->at + 4, name, length) != 0 ||
+        msh_fail(r, "no $End%s: the file is truncated", name);
+    } else if (memcmp(r->at, "$End", 4) != 0 || memcmp(r->at + 4, name, length) != 0 ||
                (r->at + 4 + length < r->end && r->at[4 + length] > ' ')) {
-        msh_fail(r, "more in the section than its head says: no %s%s where it should be", begin, name);
+        msh_fail(r, "more in the section than its head says: no $End%s where it should be", name);
     } else {
         r->at += 4 + length;
         if (memchr(r->at, '\n', (size_t)(r->end - r->at)) != NULL) {
@@ -109,6 +105,13 @@ static void skip_section(struct msh_reader *r)
     }
 }
 
+static void refuse_partitions(struct msh_reader *r)
+{
+    msh_fail(r,
+             "the mesh is partitioned: write it whole: gmsh FILE -save -format msh22 -o NEW.msh (if it was "
+             "cut into files, mesh without -part_split)");
+}
+
 /* Read the content of a section; a needed section must not be repeated. */
 static void read_content(struct msh_reader *r)
 {
@@ -120,12 +123,10 @@ static void read_content(struct msh_reader *r)
         {"$MeshFormat", MSH_FORMAT, read_format},
         {"$PhysicalNames", MSH_NAMES, msh_read_names},
         {"$Entities", MSH_ENTITIES, msh_read_entities},
-        {"$PartitionedEntities", MSH_PARTITIONS, msh_read_partitions},
+        {"$PartitionedEntities", MSH_PARTITIONS, refuse_partitions},
         {"$Nodes", MSH_NODES, msh_read_nodes},
         {"$ParametricNodes", MSH_NODES, msh_read_nodes}, /* MSH 2 */
-        {"$NOD", MSH_NODES, msh_read_nodes},             /* MSH 1 */
         {"$Elements", MSH_ELEMENTS, msh_read_elements},
-        {"$ELM", MSH_ELEMENTS, msh_read_elements},
     };
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
         if (strcmp(r->section, needed[i].name) == 0) {
@@ -165,17 +166,18 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
 {
     struct msh_reader reader = {.at = bytes, .end = bytes + size, .error = error, .msh = msh};
     *msh = (struct msh){0};
+    if (is_mesh1(bytes, size)) {
+        return fail_version(1, error);
+    }
     if (!is_mesh(bytes, size)) {
         return fail(error, STATUS_INPUT, "%s%s",
                     size == 0 ? "empty" : "not a gmsh mesh: the first line is not $MeshFormat",
                     msh_foreign_hint(bytes, size));
     }
-    reader.version = is_mesh1(bytes, size) ? 10 : 0;
     read_sections(&reader);
     msh_join_groups(&reader);
     msh_index_free(&reader.nodes);
-    FREE_ALL(reader.element_key, reader.whole_key, reader.names, reader.entities, reader.physicals,
-             reader.partitions);
+    FREE_ALL(reader.element_key, reader.entity_key, reader.names, reader.entities, reader.physicals);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
