@@ -29,8 +29,9 @@ void model_free(struct model *model);
  * contacts, with their curves, facets, nodes and tables. */
 MUST_CHECK enum status model_materials(struct model *model, struct error *error);
 MUST_CHECK enum status model_conditions(struct model *model, struct error *error);
-/* Set model->interfaces if supports reach across a jump of the stiffness. If the softer side owns an
- * interface at which supports stop, number the sides by stiffness and make the tables of the stream anew. */
+/* Let supports stop where the stiffness jumps within a region, as a table of moduli may, and the stiffer side
+ * own each interface: number the sides by stiffness and make the tables of the stream anew. Set
+ * model->interfaces if supports still reach across a jump. */
 MUST_CHECK enum status model_interfaces(struct model *model, struct stream *stream, bool *renewed,
                                         struct error *error);
 /* Read measured points, and set the field there; assembly compares and adds them. */

@@ -2,6 +2,7 @@
 #include "model/model.h"
 
 #include "approx/support/support.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -29,6 +30,40 @@ static void read_moduli(const struct assembly *input, struct moduli *of)
     }
 }
 
+/* Whether the shear moduli of two cells differ by so much that supports should stop between them. */
+static double jump_between(const struct moduli *a, const struct moduli *b)
+{
+    return fmax(a->high, b->high) / fmin(a->low, b->low);
+}
+
+/* side[cells]: the parts into which jumps of the modulus within a region divide the sides of the input. Two
+ * cells with a common face are on one side if they were so before, and no such jump is between them.
+ * `*divided`: whether there are more than before. */
+static enum status divide(const struct assembly *input, const struct faces *faces, const int32_t *region,
+                          const struct moduli *of, int32_t *side, bool *divided, struct error *error)
+{
+    int64_t cells = input->cells.count;
+    NEW_SCRATCH(int32_t, first, cells, error);
+    *divided = false;
+    for (int64_t c = 0; c < cells; c++) {
+        first[c] = (int32_t)c;
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        bool together = b >= 0 && (input->cell_side == NULL || input->cell_side[a] == input->cell_side[b]);
+        if (together && region[a] == region[b] && jump_between(&of[a], &of[b]) > least_jump) {
+            *divided = true;
+        } else if (together) {
+            set_join(first, a, b);
+        }
+    }
+    for (int64_t c = 0, count = 0; c < cells; c++) {
+        int32_t head = set_first(first, (int32_t)c);
+        side[c] = head == c ? (int32_t)count++ : side[head];
+    }
+    return STATUS_OK;
+}
+
 /* What there is at the faces between cells. */
 struct found {
     bool softer;  /* a jump where supports stop, and the softer side owns the interface */
@@ -36,13 +71,12 @@ struct found {
     int64_t face; /* there */
 };
 
-static struct found search(const struct assembly *input, const struct faces *faces, const struct moduli *of)
+static struct found search(const struct faces *faces, const int32_t *side, const struct moduli *of)
 {
     struct found found = {.ratio = least_jump};
-    const int32_t *side = input->cell_side;
     for (int64_t f = 0; f < faces->count; f++) {
         int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
-        double ratio = b < 0 ? 1.0 : fmax(of[a].high, of[b].high) / fmin(of[a].low, of[b].low);
+        double ratio = b < 0 ? 1.0 : jump_between(&of[a], &of[b]);
         if (ratio > least_jump && side != NULL && side[a] != side[b]) {
             found.softer = found.softer || (side[a] < side[b]) == (of[a].high < of[b].high);
         } else if (ratio > found.ratio) {
@@ -68,11 +102,10 @@ static int compare_ranked(const void *a, const void *b)
 
 /* Number the sides by falling stiffness, and make the shape functions anew: the lower side owns an interface.
  */
-static enum status stiffest_first(struct stream *stream, const struct assembly *input,
+static enum status stiffest_first(struct stream *stream, int64_t cells, const int32_t *side,
                                   const struct moduli *of, struct error *error)
 {
-    const int32_t *side = input->cell_side;
-    int64_t cells = input->cells.count, sides = 0;
+    int64_t sides = 0;
     NEW_SCRATCH(int32_t, renewed, cells, error);
     for (int64_t c = 0; c < cells; c++) {
         sides = side[c] >= sides ? side[c] + 1 : sides;
@@ -97,44 +130,52 @@ static enum status stiffest_first(struct stream *stream, const struct assembly *
     return stage_renew(stream, renewed, error);
 }
 
-/* Say where supports reach across a jump. */
-static enum status note_jump(struct model *model, const struct faces *faces, const struct found *found,
-                             struct error *error)
+/* Say where supports reach across a jump; `distance`: they reach across everything. */
+static void note_jump(struct model *model, const struct faces *faces, const struct cell_regions *regions,
+                      const struct found *found, bool distance)
 {
     const struct cells *cells = &model->assembly.cells;
     const int32_t *cell = faces->cell + 2 * found->face, *node = faces->node + found->face * cells->dim;
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
     double middle[3];
     char place[96];
-    RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
     vector_middle(cells->dim, cells->x, cells->dim, node, middle);
     point_text(cells->dim, middle, place);
-    int32_t first = regions.of_cell[cell[0]], second = regions.of_cell[cell[1]];
-    (void)fail(
-        &model->interfaces, STATUS_OK,
-        "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: stress "
-        "and forces are wrong there: %s",
-        found->ratio, regions.names.name[first], first == second ? "" : " and ",
-        first == second ? "" : regions.names.name[second], place,
-        first == second ? "make a region of each side (tag -r, voxels), and supports stop there"
-                        : "let supports stop there (support without -i and --reach)");
-    return STATUS_OK;
+    int32_t first = regions->of_cell[cell[0]], second = regions->of_cell[cell[1]];
+    (void)fail(&model->interfaces, STATUS_OK,
+               "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
+               "stress and forces are wrong there: %s",
+               found->ratio, regions->names.name[first], first == second ? "" : " and ",
+               first == second ? "" : regions->names.name[second], place,
+               first == second && !distance ? "smooth the table, or refine the mesh"
+                                            : "let supports stop there (support without -i and --reach)");
 }
 
 enum status model_interfaces(struct model *model, struct stream *stream, bool *renewed, struct error *error)
 {
     const struct assembly *input = &model->assembly;
     FREED_BY(faces_free) struct faces built = {0};
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    struct recorded recorded;
+    bool divided = false;
     NEW_SCRATCH(struct moduli, of, input->cells.count, error);
+    NEW_SCRATCH(int32_t, divided_side, input->cells.count, error);
     if (!input->smoothed) {
         RETURN_IF_ERROR(faces_build(&input->cells, false, &built, error));
     }
     const struct faces *faces = input->smoothed ? &input->faces : &built;
+    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
+    RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
     read_moduli(input, of);
-    struct found found = search(input, faces, of);
-    if (found.ratio > least_jump) {
-        RETURN_IF_ERROR(note_jump(model, faces, &found, error));
+    const int32_t *side = input->cell_side;
+    bool distance = recorded.support.visibility == VISIBILITY_DISTANCE;
+    if (!distance) {
+        RETURN_IF_ERROR(divide(input, faces, regions.of_cell, of, divided_side, &divided, error));
+        side = divided ? divided_side : side;
     }
-    *renewed = found.softer;
-    return found.softer ? stiffest_first(stream, input, of, error) : STATUS_OK;
+    struct found found = search(faces, side, of);
+    if (found.ratio > least_jump) {
+        note_jump(model, faces, &regions, &found, distance);
+    }
+    *renewed = divided || found.softer;
+    return *renewed ? stiffest_first(stream, input->cells.count, side, of, error) : STATUS_OK;
 }
