@@ -3,7 +3,7 @@
 # A row for each image: nodes, cells, whether mts check finds fault, least and largest dihedral angle, the volume of the label that is
 # farthest off, what is lost in thin parts, how far the nodes of interfaces are from them, seconds of the processor; then the
 # compression's status, steps and least J, and from which share of the load on the body folds. Bodies of random blobs have crevices of some
-# voxels, whose walls meet under the push: such a body is computed once more, with contact with itself, and steps are those of both runs. Then
+# voxels, whose walls meet under the push: such a body is computed again, with contact with itself, and steps are those of that run. Then
 # a ball and the whole brain, meshed by gmsh and from images: meshes.sh.
 VOXELS_OUT := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)

@@ -292,26 +292,6 @@ END
     nodes -u mm two.msh 2> note | shapefn > two.mts 2> note
 }
 
-@test "a part that shares no face with the rest of its body is named before the first step, with the axis it may turn about" {
-    cat > lobes.geo << 'END'
-SetFactory("OpenCASCADE"); Mesh.MeshSizeMax = 25; Rectangle(1) = {0, 0, 0, 100, 100};
-Rectangle(2) = {100, 100, 0, 100, 100}; BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
-Physical Surface("body") = {1, 2}; left() = Curve In BoundingBox{-1, -1, -1, 1, 101, 1};
-right() = Curve In BoundingBox{199, 99, -1, 201, 201, 1}; Physical Curve("left") = {left()};
-Physical Curve("right") = {right()};
-END
-    gmsh -v 1 -2 lobes.geo -o lobes.msh
-    nodes -u mm lobes.msh 2> note | shapefn > lobes.mts 2> note
-    { block quasi-static; printf '[displacement left]\nfacets = left\ncomponents = 0, 0\n'; } > lobes.scene
-    { cat lobes.scene; printf '[traction t]\nfacets = right\ncomponents = 0, 5\n[solver]\nmax_steps = 100\n'; } > loaded.scene
-    run -1 --separate-stderr mtled loaded.scene lobes.mts
-    [[ "${stderr_lines[0]}" == "mtled: loaded.scene: a part (region body, near (0.15, 0.15)) has nodes in common with the rest of its body, but no face: it may turn about (0.1, 0.1): hold it"* ]]
-    # Held as well, there is nothing to tell.
-    { cat lobes.scene; printf '[displacement right]\nfacets = right\ncomponents = 0.001, 0\n'; } > held.scene
-    mtled held.scene lobes.mts > u.dat 2> said
-    [ ! -s said ]
-}
-
 @test "of several bodies the free one is named; what only contact holds runs, and is reported" {
     two
     { block quasi-static 'gravity = 0, -1' | sed 's/^region = body/region = body, lid/'; printf '[displacement floor]\nfacets = floor\ncomponents = 0, 0\n'; } > two.scene
@@ -352,22 +332,4 @@ END
     mtled twist.scene cube.mts > u.dat
     grep -q '^# moments f8 1 3 .*unit=N.m about=0.05,0.05,0 cols=x,y,z rows=bottom' u.dat
     rows moments u.dat | awk '{ x = $1 / 5e-4 - 1; z = $3 / -5e-4 - 1; print; exit !(x^2 < 1e-4 && z^2 < 1e-4 && $2^2 < 1e-12) }'
-}
-
-# With 4 facets the force is 1.4 times that of mixed elements on the same mesh, with 14 within 10 %.
-@test "a patch of less than three facets across is reported, where forces are asked for" {
-    cloud -d 3 -k regular -n 7 --box 0,0.06,0,0.06,0,0.06 | tag -u mm -f narrow=box:20,20,60,40,40,60 -f wide=box:10,10,60,50,50,60 |
-        shapefn > cube.mts 2> note
-    { head3; printf '[displacement bottom]\nfacets = zmin\ncomponents = 0, 0, 0\n[displacement push]\nfacets = narrow\ncomponents = 0, 0, -0.001\n'; } > push.scene
-    run --separate-stderr mtled push.scene cube.mts
-    [ "$status" -eq 0 ]
-    [[ "$stderr" == *"[displacement push]: 8 of its 8 facets, such as that at (0.02, 0.02, 0.06), are on patches of less than three facets across"* ]]
-    [ "$(wc -l <<< "$stderr")" -eq 1 ]
-    sed 's/narrow/wide/' push.scene > wide.scene
-    run --separate-stderr mtled wide.scene cube.mts
-    [ "$status" -eq 0 ]
-    [ -z "$stderr" ]
-    sed '/^reactions/d' push.scene > quiet.scene
-    run --separate-stderr mtled quiet.scene cube.mts
-    [ -z "$stderr" ]
 }

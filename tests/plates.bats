@@ -137,7 +137,7 @@ crushed() {
     sed -i "s/^region = .*/region = $region/" slivers.scene
     run --separate-stderr mtled -o u.dat slivers.scene slivers.mts
     [ "$status" -eq 0 ]
-    [[ $stderr == *", cells are inverted between their nodes, by less than a tenth of their size, or flat ones across which the field bends: "* ]]
+    [ -z "$stderr" ]
     # A lattice of cells that are eight times as wide as high, crushed.
     cloud -d 2 -k regular -n 6,40 --box 0,0.1,0,0.1 | shapefn > flat.mts 2> note
     crushed | sed 's/-0.07/-0.05/' > flat.scene
@@ -152,7 +152,7 @@ crushed() {
     # The block is symmetric, and unstable on the way: chance which plane it is, and when the wrinkles have grown.
     refused 1 'slide.scene: the body folds ' mtled slide.scene block.mts
     [[ $stderr =~ ": ymax at (0.0"[0-9]*", 0.1) is turned over, "|": ymin at (0.0"[0-9]*", 0) is turned over, " ]]
-    [[ $stderr == *" is turned over, through the plane that it slides on: let a rigid surface in place of that support stop it, "* ]]
+    [[ $stderr == *" is turned over, through the plane that it slides on: press less, "* ]]
     # Up to the stretch at which a plane side creases, .65, that is homogeneous: in closed form 215.611 N/m at .7.
     sed 's/-0.05/-0.03\n[output]\nreactions = yes/' slide.scene > slide30.scene
     mtled slide30.scene block.mts > u.dat
@@ -257,7 +257,7 @@ buckled() {
     outlasts buckled.scene state.stability.looks buckles
     cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > table.mts 2> note
     crushed 'folds = allowed' | sed 's/tolerance = 1e-3/tolerance = 1e-6/' > fold.scene
-    outlasts fold.scene state.folds.now.seen folds
+    outlasts fold.scene state.folds.seen folds
 }
 
 @test "no frame of a run that folds is lost" {
@@ -268,41 +268,6 @@ buckled() {
     [ ! -e u.dat ]
     mts recover u.dat.part 2> said | mts list > list
     [ "$(grep -c '^u\.frame\.' list)" -eq 6 ] # and that of the start
-}
-
-@test "a side beyond the plane of its support is noted; a rigid plate there stops it" {
-    crushed '' | sed 's/-0.07/-0.025/' > bulge.scene
-    cloud -d 2 -k regular -n 17 --box 0,0.1,0,0.1 | shapefn > fine.mts 2> note
-    mtled bulge.scene fine.mts > u.dat 2> said
-    grep -q '^mtled: bulge.scene: from 0\.[0-9]* of the load on, xm.. at (.*) is beyond the plane of y..., where nothing in the scene stops it$' said
-    [ "$(wc -l < said)" -eq 1 ]
-    printf -- '-1 0.1\n2 0.1\n' > top.tsv
-    printf -- '-1 0\n2 0\n' > bottom.tsv
-    { cat bulge.scene; printf '[contact top]\nfacets = xmin, xmax\nrigid = top.tsv\nunit = m\nside = right\ntranslation = 0, -0.025\ncurve = smooth\n'
-        printf '[contact bottom]\nfacets = xmin, xmax\nrigid = bottom.tsv\nunit = m\nside = left\n'; } > plates.scene
-    mtled plates.scene fine.mts > u.dat 2> said
-    [ ! -s said ]
-}
-
-@test "a side that goes through the support beside it is not let touch it: a plate beside the support is" {
-    cat > tilted.geo << END
-Mesh.MeshSizeMax = 3.5;
-Point(1) = {-50, 0, 0}; Point(2) = {50, 0, 0}; Point(3) = {50, 60, 0}; Point(4) = {-50, 60, 0};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1:4}; Plane Surface(1) = {1};
-Physical Surface("body") = {1}; Physical Curve("ymin") = {1}; Physical Curve("sides") = {2, 4}; Physical Curve("ymax") = {3};
-END
-    gmsh -v 1 -2 tilted.geo -o tilted.msh
-    nodes -u mm tilted.msh | shapefn > tilted.mts 2> note
-    printf -- '-0.295 0.017\n0.295 0.121\n' > tilted.tsv
-    printf -- '-1 0\n1 0\n' > base.tsv
-    { block quasi-static && printf '[displacement bonded]\nfacets = ymin\ncomponents = 0, 0\n' &&
-        printf '[contact plate]\nfacets = ymax, sides\nrigid = tilted.tsv\nunit = m\nside = right\ntranslation = 0, -0.03\ncurve = linear\n' ; } |
-        sed 's/^nu = .*/nu = 0.49/' > tilted.scene
-    refused 1 ': let a rigid surface beside the support stop it, ' mtled tilted.scene tilted.mts
-    [[ $stderr != *"once more"* ]]
-    { cat tilted.scene && printf '[contact base]\nfacets = sides\nrigid = base.tsv\nunit = m\nside = left\n' ; } > base.scene
-    mtled base.scene tilted.mts > u.dat 2> said
-    [ ! -s said ]
 }
 
 @test "a block between plates that its sides may touch: the closed form up to the stretch at which sides crease, and below it less than that" {

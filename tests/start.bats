@@ -81,25 +81,6 @@ sooner() {
     same_state curve.scene 2e-5
 }
 
-@test "a body that is computed once more, with contact with itself, begins there again" {
-    cat > notch.geo << 'END'
-Point(1) = {0, 0, 0, 10}; Point(2) = {100, 0, 0, 10}; Point(3) = {100, 45, 0, 10}; Point(4) = {40, 45, 0, 4};
-Point(5) = {40, 55, 0, 4}; Point(6) = {100, 55, 0, 10}; Point(7) = {100, 100, 0, 10}; Point(8) = {0, 100, 0, 10};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8};
-Line(8) = {8, 1}; Curve Loop(1) = {1:8}; Plane Surface(1) = {1};
-Physical Surface("body") = {1}; Physical Curve("ymin") = {1}; Physical Curve("ymax") = {7};
-END
-    gmsh -v 1 -2 notch.geo -o fine.msh
-    gmsh -v 1 -2 -clscale 1.6 notch.geo -o coarse.msh
-    for mesh in coarse fine; do nodes -u mm $mesh.msh | shapefn > $mesh.mts 2> note; done
-    pressed_block | sed 's/-0.005$/-0.014/' > shut.scene
-    mtled -q -o coarse.dat shut.scene coarse.mts 2> note
-    mtled -q -o cold.dat shut.scene fine.mts 2> note
-    mtled -q -s coarse.dat -o warm.dat shut.scene fine.mts 2> said
-    grep -q 'once more, with contact of the body with itself' said
-    fieldcmp --tol-max 0.03mm cold.dat warm.dat
-}
-
 @test "the same bytes for any number of threads and processes; from a checkpoint, too" {
     clouds 2 8 12
     pressed_block > push.scene

@@ -181,68 +181,22 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     done
 }
 
-@test "bodies that go through each other are computed once more, with contact: as where the scene asks for it" {
+@test "bodies that go through each other are a verdict that names contact as the remedy, quasi-static and in time" {
     stack
-    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\nenergy = yes/' > none.scene
-    { cat none.scene; printf '[contact itself]\nfacets = *\nagainst = *\n'; } > all.scene
-    mtled all.scene stack.mts > all.dat
-    rows reactions all.dat | awk 'NR == 1 { exit !($2 > 20) }'
-    run -0 --separate-stderr mtled -v none.scene stack.mts
-    [[ $stderr == *"mtled: none.scene: the body folds from "*" of the load on: "*": once more, with contact of the body with itself"* ]]
-    [[ $stderr == *$'steps without contact of the body with itself\t'* ]]
-    # Frame 0, before the fold, is of the first run, which has no contact.
-    cmp <(mts drop -t gaps.frame.0 all.dat | bare) <(printf '%s\n' "$output" | bare)
-    mtled none.scene - < stack.mts 2> note > piped.dat # a pipe cannot be read twice
-    cmp <(rows u all.dat) <(rows u piped.dat)
-    # With a rigid surface that moves: the curves of what was there stay.
-    printf '%s\n' '-1 0.1' '2 0.1' > plate.tsv
-    plate=$'[contact plate]\nfacets = ymax\nrigid = plate.tsv\nunit = m\nside = right\ntranslation = 0, -0.005\ncurve = linear\n'
-    for name in none all; do
-        { sed '/displacement top/,/normal/d' $name.scene | sed '/^\[contact/,$d'; printf '%s' "$plate"; } > $name-plate.scene
-        sed -n '/^\[contact itself/,$p' $name.scene >> $name-plate.scene
-        sed -i '/^frames/d' $name-plate.scene
-        mtled $name-plate.scene stack.mts > $name-plate.dat 2> $name.said
+    stack_scene | sed '/^\[contact/,/^against/d' > none.scene
+    refused 1 'none.scene: the body folds from 0.' mtled none.scene stack.mts
+    [[ $stderr == *" goes through "*": let it touch itself ([contact] with facets = *, against = *), press less, refine there, or allow it"* ]]
+    block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > fall.scene
+    printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement left]\nfacets = xmin\nnormal = 0\n[solver]\nend_time = 0.05\n' >> fall.scene
+    refused 1 'fall.scene: the body folds from t = ' mtled fall.scene stack.mts
+    for name in none fall; do
+        { cat $name.scene; printf '[contact itself]\nfacets = *\nagainst = *\n'; } > all.scene
+        mtled all.scene stack.mts 2> said > u.dat
+        run ! grep folds said
     done
-    grep -q 'once more, with contact' none.said
-    cmp <(bare none-plate.dat) <(bare all-plate.dat)
-    # Where folds are allowed nothing is done about them.
     sed 's/^\[output\]/&\nfolds = allowed/' none.scene > allowed.scene
     run -0 --separate-stderr mtled allowed.scene stack.mts
-    [[ $stderr == *"the body folds from"* && $stderr != *"once more"* ]]
-}
-
-@test "the same in time; ended and taken up while it is computed once more; in several processes" {
-    stack
-    block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > fall.scene
-    printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement left]\nfacets = xmin\nnormal = 0\n' >> fall.scene
-    printf '[output]\nenergy = yes\n[solver]\nend_time = 0.05\n' >> fall.scene
-    { cat fall.scene; printf '[contact itself]\nfacets = *\nagainst = *\n'; } > all.scene
-    mtled all.scene stack.mts > all.dat
-    mtled fall.scene stack.mts > u.dat 2> said
-    grep -q 'the body folds from t = .* s on: .*: once more, with contact of the body with itself' said
-    cmp <(bare all.dat) <(bare u.dat)
-    stack_scene | sed '/^\[contact/,/^against/d; s/^gaps = yes/&\nframes = 2\n[solver]\nramp_steps = 3000/' > run.scene
-    cp stack.mts table.mts
-    mtled run.scene table.mts > whole.dat 2> note
-    for _ in 1 2 3 4 5; do # on a busy machine it may be over before that is seen
-        mtled -c run.ckpt -o out.dat run.scene table.mts 2> said 3>&- &
-        while [ -n "$(jobs -rp)" ] && ! grep -q 'once more' said; do sleep 0.02; done
-        kill -TERM $! 2> note || true
-        status=0
-        wait $! || status=$?
-        [ $status -eq 0 ] || break
-    done
-    [ $status -eq 143 ]
-    run -0 --separate-stderr mtled -c run.ckpt -o out.dat run.scene table.mts
-    [[ $stderr == "mtled: going on from step "* && $stderr != *"once more"* ]]
-    cmp whole.dat out.dat
-    if [ -x "$BUILD/bin/mtled-mpi" ]; then
-        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-        sed '/^ramp_steps/d' run.scene > short.scene
-        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat short.scene table.mts 2> note
-        [ "$(grep -c 'once more' note)" -eq 1 ]
-        mtled short.scene table.mts 2> note | cmp <(bare two.dat) <(bare)
-    fi
+    [[ $stderr == *"the body folds from"* ]]
 }
 
 @test "a soft block that bulges around the corner of a stiff one: the corner sinks into its chord, and that is no fold" {
@@ -270,21 +224,7 @@ END
     done
 }
 
-@test "where parts that no contact names pass through each other, the remedy is to let all of it touch" {
-    printf '%s\n' 'SetFactory("OpenCASCADE");' 'Rectangle(1) = {0, 0, 0, 100, 40};' 'Rectangle(2) = {20, 40.5, 0, 50, 30};' \
-        'Mesh.MeshSizeMax = 2.5;' 'Physical Surface("low") = {1};' 'Physical Surface("up") = {2};' > pair.geo
-    gmsh -2 -v 1 pair.geo -o pair.msh
-    nodes -u mm pair.msh 2> note |
-        tag -u mm -f base=plane:0,0,0,1 -f head=plane:0,70.5,0,1 -f floor=plane:0,40,0,1 -f sole=plane:0,40.5,0,1 | shapefn > pair.mts 2> note
-    printf '%s\n' '[scene]' 'dim = 2' 'analysis = quasi-static' '[material low]' 'region = low' 'E = 3000' 'nu = 0.49' \
-        '[material up]' 'region = up' 'E = 30000' 'nu = 0.45' '[displacement base]' 'facets = base' 'components = 0, 0' \
-        '[displacement head]' 'facets = head' 'components = 0.02, -0.008' '[contact pair]' 'facets = sole' 'against = floor' > part.scene
-    refused 1 ": let all of it touch (facets = *, against = *), press less, " mtled part.scene pair.mts
-    sed 's/= sole/= */; s/= floor/= */' part.scene > whole.scene
-    mtled whole.scene pair.mts > u.dat
-}
-
-@test "two blocks pressed by half with their sides held apart: the closed form; with these free and pressed a little less the sides crease, which is told" {
+@test "two blocks pressed by half with their sides held apart: the closed form" {
     stack
     stack_scene | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.05/' > half.scene
     { cat half.scene; printf '[displacement right]\nfacets = xmax\nnormal = 0.0912291335\n[solver]\ntolerance = 1e-6\n'; } > held.scene
@@ -292,25 +232,11 @@ END
     gmsh_body 2 finer < <(sed 's/, 14}/, 7}/g; s/, 9}/, 4.5}/g' stack.geo)
     mtled held.scene finer.mts > u.dat
     rows reactions u.dat | awk 'NR == 1 { d = $2 / 706.76168 - 1; print $2; exit !(d < 1e-3 && -d < 1e-3) }'
-    # At .05 it depends on the mesh: of six 1 stalls and 1 folds.
-    for push in 0.04 0.045; do
-        sed "s/-0.05/-$push/; s/= low/= */; s/= up/= */" half.scene > free.scene
-        run -0 --separate-stderr mtled free.scene stack.mts
-        [[ $stderr == 'mtled: free.scene: '*' of the load on, xmax at (0.1, 0.0'*') has creased: there are other states, '* ||
-            $stderr == 'mtled: free.scene: at the whole load, xmax at (0.1, 0.0'*') has creased: there are other states, '* ]]
-        [ "$(wc -l <<< "$stderr")" -eq 1 ]
-    done
 }
 
-@test "a lip of a block that turns round the corner of the one of equal width is told; a punch that sinks in between sides of a wider body is not" {
+@test "a punch that sinks in between sides of a wider body presses on both" {
     stack
-    sed -i 's/, 14}/, 5}/g; s/, 9}/, 3.1}/g' stack.geo
-    gmsh_body 2 fine < stack.geo
     stack_scene | sed 's/^nu = .*/nu = 0.49/; s/-0.005/-0.03/; s/= low/= */; s/= up/= */' > free.scene
-    run -0 --separate-stderr mtled free.scene fine.mts
-    [[ $stderr == 'mtled: free.scene: '*', a lip of another body has turned round the corner of xmax at (0.1, 0.05'*'), where both '* ]]
-    [ "$(wc -l <<< "$stderr")" -eq 1 ]
-    rows reactions <<< "$output" | awk 'NR == 1 { print $2; exit !($2 < 0.98 * 215.61 && $2 > 0.9 * 215.61) }' # the closed form
     gmsh_body 2 punch << 'END'
 Point(1) = {0, 0, 0, 6}; Point(2) = {100, 0, 0, 6}; Point(3) = {100, 60, 0, 6}; Point(4) = {0, 60, 0, 2.5};
 Point(5) = {0, 60, 0, 3}; Point(6) = {30, 60, 0, 3}; Point(7) = {30, 100, 0, 4}; Point(8) = {0, 100, 0, 4};

@@ -184,13 +184,11 @@ static void prepare(struct run *run)
 
 static void compute(struct run *run)
 {
-    do {
-        if (run->scene->analysis == SCENE_DYNAMIC) {
-            run_dynamic(run);
-        } else {
-            run_quasi_static(run);
-        }
-    } while (run_again(run));
+    if (run->scene->analysis == SCENE_DYNAMIC) {
+        run_dynamic(run);
+    } else {
+        run_quasi_static(run);
+    }
     run_checkpoint_end();
 }
 

@@ -12,7 +12,7 @@ way=-.12
 status=0
 
 # told NAME FILE: what stands behind the tab of a line of a report.
-told() { [ -s "$2" ] || { echo -; return; }; awk -F '\t' -v name="$1" '$1 == name { value = $2 } $1 == name " without contact of the body with itself" { before = $2 } END { print (value == "" ? "-" : value + before) }' "$2"; }
+told() { [ -s "$2" ] || { echo -; return; }; awk -F '\t' -v name="$1" '$1 == name { value = $2 } END { print (value == "" ? "-" : value) }' "$2"; }
 
 fail() {
     printf '%s\t%s\t%s\t%s\t%s\t%s\t%.1f\t%s\t%s\n' "$name" "${nodes:--}" "${cells:--}" "${quality:--}" "$status" \
@@ -56,8 +56,17 @@ reactions = yes
 END
 shapefn "$work/named.mts" > "$work/table.mts" 2> "$work/said" || { status=$?; fail "$(last "$work/said")"; }
 TIMEFORMAT=%U
-{ time (ulimit -S -t "$seconds" && mtled -v "$work/push.scene" "$work/table.mts" > "$work/u.dat" 2> "$work/log"); } 2> "$work/time" ||
-    status=$?
+solve() {
+    status=0
+    { time (ulimit -S -t "$seconds" && mtled -v "$work/push.scene" "$work/table.mts" > "$work/u.dat" 2> "$work/log"); } 2> "$work/time" ||
+        status=$?
+}
+solve
+# What passes through itself is computed again, with contact of the boundary with itself.
+if grep -aq 'let it touch itself' "$work/log"; then
+    printf '[contact itself]\nfacets = *\nagainst = *\n' >> "$work/push.scene"
+    solve
+fi
 [ "$status" -ne 152 ] || fail "not done after $seconds s of the processor"
 [ "$status" -eq 0 ] || fail "$(last <(grep -a '^mtled: ' "$work/log"))"
 fail "force $(mts print reactions "$work/u.dat" | awk 'NR == 1 { printf "%.3g N", sqrt($1 ^ 2 + $2 ^ 2 + $3 ^ 2) }')"

@@ -39,14 +39,19 @@ push=$(mts print nodes.x "$work/named.mts" | awk '
     printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n'
     printf '[displacement pushed]\nfacets = pushed\ncomponents = %s\n' "$push"
 } > "$work/push.scene"
-: > "$work/log"
-shapefn "$work/named.mts" 2> "$work/shapefn" | mtled -v "$work/push.scene" > "$work/u.dat" 2> "$work/log" || status=$?
-# A body whose crevices the push closes is computed once more, with contact: both runs' steps count.
-message=$(grep -a '^mtled: ' "$work/log" | sed 's/^mtled: [^ ]*push.scene: //' | awk '{ last = $0 } /folds from/ { fold = $0 }
-    END { print fold != "" ? fold : last }' | tr '\t' ' ' | cut -c 1-160)
-steps=$(awk -F '\t' '/^steps/ { sum += $2; ended = ended || $1 == "steps" } END { print ended ? sum : "-" }' "$work/log")
+shapefn "$work/named.mts" > "$work/table.mts" 2> "$work/shapefn"
+solve() { status=0; mtled -v "$work/push.scene" "$work/table.mts" > "$work/u.dat" 2> "$work/log" || status=$?; }
+solve
+first=$(grep -ao 'folds from [0-9.]* of the load on: .*' "$work/log" | sed 's/: let it touch itself.*//') || true
+# A body whose crevices the push closes is computed again, with contact of the boundary with itself.
+if grep -aq 'let it touch itself' "$work/log"; then
+    printf '[contact itself]\nfacets = *\nagainst = *\n' >> "$work/push.scene"
+    solve
+fi
+message=$(grep -a '^mtled: ' "$work/log" | sed 's/^mtled: [^ ]*push.scene: //' | tail -n 1 | tr '\t' ' ' | cut -c 1-160)
+steps=$(told steps)
 printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\n' "$name" \
     "$(seen '^voxels: spacing .*: ([0-9]+) nodes, .*')" "$(seen '^voxels: spacing .* nodes, ([0-9]+) cells.*')" "$valid" \
     "$(seen '^voxels: spacing .* from ([0-9.]+) to .*')" "$(seen '^voxels: spacing .* to ([0-9.]+) degrees')" "$worst" "$lost" \
     "$(seen '^voxels: nodes of interfaces: farthest ([0-9.e+-]+) voxels.*')" "$(seen '^voxels: nodes of .* off, ([0-9]+) of .*')" \
-    "$(cat "$work/seconds")" "$status" "$steps" "$(told 'least J')" "$message"
+    "$(cat "$work/seconds")" "$status" "$steps" "$(told 'least J')" "${first:+the body $first}${first:+${message:+; }}$message"

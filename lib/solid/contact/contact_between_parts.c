@@ -48,24 +48,15 @@ struct average contact_between_corner(const struct contact *contact, int64_t cor
     return average_of_boundary(&contact->between->opposite.rows, corner);
 }
 
-void contact_between_mark(const struct contact *contact, double share, bool *marked, bool *turned)
+void contact_between_mark(const struct contact *contact, double share, bool *marked)
 {
     const struct contact_between *between = contact->between;
-    int dim = contact->dim;
     for (int64_t p = 0; p < contact->count && between != NULL; p++) {
         const struct opposite *opposite = &between->opposite;
         int64_t facet = between->view[p].facet;
-        if (facet < 0 || !(contact->gap[p] < share * contact_width(contact, p))) {
-            continue;
-        }
-        const double *normal = opposite->rest_normal + facet * dim;
-        bool faced = vector_dot(dim, contact->points->normal + p * dim, normal) < OPPOSED;
-        for (int k = 0; k < dim; k++) {
-            int32_t own = contact->points->node[p - p % between->per_facet + k];
-            int32_t other = opposite->rows.node[opposite->surface.facet[facet * dim + k]];
-            marked[other] = true;
-            turned[other] |= !faced;
-            turned[own] |= !faced;
+        for (int k = 0; k < contact->dim && facet >= 0 && contact->gap[p] < share * contact_width(contact, p);
+             k++) {
+            marked[opposite->rows.node[opposite->surface.facet[facet * contact->dim + k]]] = true;
         }
     }
 }

@@ -4,19 +4,10 @@
 #include "approx/cells/parts.h"
 #include "base/keyed.h"
 #include "base/memory.h"
-#include "base/sets.h"
 #include "solid/folds/folds_private.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Facets belong to one plane support when the scalar product of their unit normals is at least 1 minus this.
- */
-static const double plane_tolerance = 1e-6;
-
-/* A free facet continues its support unless it turns back from it by more than this sine: that of 22.5
- * degrees. */
-static const double least_turn = 0.382683;
 
 static int compare_rings(const void *left, const void *right)
 {
@@ -72,87 +63,26 @@ static enum status list_cells(struct folds *folds, struct error *error)
     return STATUS_OK;
 }
 
-static bool meet(const struct ridge *side, const struct ridge *next)
+static enum status build_rings(struct folds *folds, struct error *error)
 {
-    return compare_numbers(2, side->node, next->node) == 0;
-}
-
-static enum status build_rings(struct folds *folds, const struct ridge *sides, struct error *error)
-{
-    int64_t count = folds->input.facet_count * folds->input.dim;
+    const struct fold_input *input = &folds->input;
+    int64_t count = input->facet_count * input->dim;
+    NEW_SCRATCH(struct ridge, sides, count, error);
+    ridges_list(input->dim, input->facet_count, input->facet, sides);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->rings, count, error));
-    for (int64_t i = 0; i < count; i++) {
-        if (i == 0 || !meet(&sides[i - 1], &sides[i])) {
-            folds->rings[folds->ring_count++] = (struct fold_ring){
-                .node = {sides[i].node[0], sides[i].node[1]}, .facet = sides[i].facet, .other = -1};
-        } else {
-            folds->rings[folds->ring_count - 1].other = sides[i].facet;
-        }
+    for (int64_t i = 0; i < count; i = ridges_end(count, sides, i)) {
+        folds->rings[folds->ring_count++] =
+            (struct fold_ring){.node = {sides[i].node[0], sides[i].node[1]}, .facet = sides[i].facet};
     }
     return list_cells(folds, error);
 }
 
-/* Whether two facets lie in one plane at rest, turned the same way. */
-static bool in_one_plane(const struct fold_input *input, int64_t f, int64_t g)
-{
-    double a[3], b[3];
-    int dim = input->dim;
-    face_area_vector(dim, input->x, input->facet + f * dim, a);
-    face_area_vector(dim, input->x, input->facet + g * dim, b);
-    double size = sqrt(vector_dot(dim, a, a) * vector_dot(dim, b, b));
-    return vector_dot(dim, a, b) >= (1.0 - plane_tolerance) * size;
-}
-
-/* Held facets that meet in one plane are one support, numbered by its first facet. */
-static enum status find_supports(struct folds *folds, const struct ridge *sides, struct error *error)
+static enum status mark_held(struct folds *folds, struct error *error)
 {
     const struct fold_input *input = &folds->input;
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->support, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->is_held, input->node_count, error));
-    for (int64_t f = 0; f < input->facet_count; f++) {
-        folds->support[f] = input->held[f] ? (int32_t)f : -1;
-        for (int k = 0; k < input->dim && input->held[f]; k++) {
-            folds->is_held[input->facet[f * input->dim + k]] = true;
-        }
-    }
-    for (int64_t i = 1; i < input->facet_count * input->dim; i++) {
-        int64_t f = sides[i - 1].facet, g = sides[i].facet;
-        if (meet(&sides[i - 1], &sides[i]) && input->held[f] && input->held[g] && in_one_plane(input, f, g)) {
-            set_join(folds->support, (int32_t)f, (int32_t)g);
-        }
-    }
-    for (int64_t f = 0; f < input->facet_count; f++) {
-        if (input->held[f]) {
-            folds->support[f] = set_first(folds->support, (int32_t)f);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Add the rim between a free facet, by its side, and a support, which meet in a node or an edge. */
-static void add_rim(struct folds *folds, const struct ridge *side, int64_t support_facet)
-{
-    double reach;
-    struct fold_rim rim = {.facet = side->facet,
-                           .support_facet = support_facet,
-                           .node = side->opposite,
-                           .on_rim = side->node[0]};
-    if (folds_rim_beyond(folds, &rim, folds->input.x, &reach) < -least_turn * reach) {
-        folds->rims[folds->rim_count++] = rim;
-    }
-}
-
-static enum status find_rims(struct folds *folds, const struct ridge *sides, struct error *error)
-{
-    const struct fold_input *input = &folds->input;
-    int64_t count = input->facet_count * input->dim;
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->rims, 2 * count, error));
-    folds_fill_planes(folds, input->x);
-    for (int64_t i = 1; i < count; i++) {
-        int64_t f = sides[i - 1].facet, g = sides[i].facet;
-        if (meet(&sides[i - 1], &sides[i]) && input->held[f] != input->held[g]) {
-            add_rim(folds, &sides[input->held[f] ? i : i - 1], input->held[f] ? f : g);
-        }
+    for (int64_t i = 0; i < input->facet_count * input->dim; i++) {
+        folds->is_held[input->facet[i]] |= input->held[i / input->dim];
     }
     return STATUS_OK;
 }
@@ -171,13 +101,9 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->upright, input->cell_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->plane, input->facet_count * 7, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
-    NEW_SCRATCH(struct ridge, sides, input->facet_count * input->dim, error);
-    ridges_list(input->dim, input->facet_count, input->facet, sides);
-    RETURN_IF_ERROR(build_rings(folds, sides, error));
-    RETURN_IF_ERROR(find_supports(folds, sides, error));
-    RETURN_IF_ERROR(find_rims(folds, sides, error));
+    RETURN_IF_ERROR(build_rings(folds, error));
+    RETURN_IF_ERROR(mark_held(folds, error));
     NEW_SCRATCH(double, u, size, error);
     NEW_SCRATCH(bool, stopped, input->node_count, error);
     RETURN_IF_ERROR(folds_find_bodies(folds, error));
@@ -194,8 +120,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 
 void folds_free(struct folds *folds)
 {
-    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->rims, folds->upright, folds->support,
-             folds->is_held, folds->part, folds->node_part, folds->bodies, folds->y, folds->boxes,
-             folds->plane, folds->found);
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->upright, folds->is_held, folds->part,
+             folds->bodies, folds->y, folds->boxes, folds->found);
     *folds = (struct folds){0};
 }

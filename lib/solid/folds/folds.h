@@ -14,10 +14,7 @@
  * facets that continue each other. Such a cell is no fold if the gradient of the field itself keeps its
  * orientation (approx/field/field_turning.h).
  *
- * A facet that slides on a plane can turn over only if the body passes through the plane.
- *
- * A further check finds free facets that have turned at the rim of a plane support through its plane. The
- * model admits this, a real plate would not. */
+ * A facet that slides on a plane can turn over only if the body passes through the plane. */
 #pragma once
 
 #include "approx/cells/crossing.h"
@@ -29,26 +26,19 @@
 
 enum fold_kind {
     FOLD_NONE,
-    FOLD_REVERSED, /* a facet that slides on its plane shows its back there: the body went through the plane
-                    */
     FOLD_CELL,   /* a cell is turned over: a node is beyond the opposite side by a tenth of the cell's size */
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
     FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_FLAT, /* cells are inverted that are no folds: by less than that, as slivers are within the error of
-                  the field; or flat ones in which the field is not */
-    FOLD_SUPPORT, /* a free facet at the rim of a plane support has gone through its plane */
-    FOLD_CLOSED,  /* a side has creased: facets that meet there face each other */
-    FOLD_WRAPPED  /* a side of one body presses on both sides of a corner of another */
+    FOLD_REVERSED /* a facet that slides on its plane shows its back there: the body went through the plane */
 };
 
 struct fold {
     enum fold_kind kind;
     int64_t count;    /* of that kind */
-    int64_t cell;     /* FOLD_CELL, FOLD_FLAT: the first one; FOLD_WITHIN: the one within; else -1 */
-    int64_t facet[2]; /* of other kinds: the input's facets of the first fold, -1: none; FOLD_SUPPORT: the
-                         free one, then that of the support */
+    int64_t cell;     /* FOLD_CELL: the first one; FOLD_WITHIN: the one within; else -1 */
+    int64_t facet[2]; /* of other kinds: the input's facets of the first fold, -1: none */
     double place[3];  /* at rest, m: middle of the cell or of the first facet */
 };
 
@@ -69,15 +59,7 @@ struct fold_input {
 /* A node (2D) or an edge (3D) of the boundary, where facets meet. */
 struct fold_ring {
     int32_t node[2]; /* ascending; in 2D the second is -1 */
-    int64_t facet;   /* one of those that meet there, */
-    int64_t other;   /* and another one; -1: none */
-};
-
-/* A free facet that shares a node or an edge with a plane support and is turned back from its plane by more
- * than 22.5 degrees at rest. */
-struct fold_rim {
-    int64_t facet, support_facet; /* the free one, and that of the support */
-    int32_t node, on_rim;         /* a node of the free one off the support, and one that both have */
+    int64_t facet;   /* one of those that meet there */
 };
 
 /* A cell of a connected body (see cells_parts), sorted by the first coordinate of its middle as deformed. */
@@ -89,22 +71,16 @@ struct fold_body {
 struct folds {
     struct fold_input input; /* the caller's arrays, which must outlive it */
     const bool
-        *in_contact;    /* node_count, the caller's: nodes where a contact of the body with itself presses,
-                        and facets that meet may pass through each other by a twentieth; NULL: none */
-    const bool *turned; /* node_count, the caller's: those where it presses on what it did not face at rest;
-                           NULL: none */
+        *in_contact; /* node_count, the caller's: nodes where a contact of the body with itself presses,
+                     and facets that meet may pass through each other by a twentieth; NULL: none */
     struct fold_ring *rings; /* ring_count, ordered by their nodes */
     int64_t ring_count;
-    int64_t *ring_ptr;     /* ring_count + 1: the cells around each, */
-    int32_t *ring_cell;    /* by their dim + 1 nodes, in a positive order, those of the ring first */
-    struct fold_rim *rims; /* rim_count */
-    int64_t rim_count;
+    int64_t *ring_ptr;  /* ring_count + 1: the cells around each, */
+    int32_t *ring_cell; /* by their dim + 1 nodes, in a positive order, those of the ring first */
     bool *upright; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
     bool *is_held; /* node_count: of a held facet */
-    int32_t *support;         /* facet_count: the first facet of the plane support that it is in; -1: free */
-    double extent;            /* diagonal of the box around the nodes, m */
-    int32_t *part;            /* cell_count: the connected body of each cell */
-    int32_t *node_part;       /* node_count: of a cell of each node */
+    double extent; /* diagonal of the box around the nodes, m */
+    int32_t *part; /* cell_count: the connected body of each cell */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold
@@ -115,9 +91,7 @@ struct folds {
     double *y;               /* node_count * dim: positions */
     double largest;          /* of their coordinates, m */
     struct facet_box *boxes; /* facet_count, ascending */
-    double *plane;      /* facet_count * 7: of the support that begins with each facet: the sum of its area
-                         * vectors, of its corners, their number */
-    struct fold *found; /* of several processes: the folds found by each */
+    struct fold *found;      /* of several processes: the folds found by each */
 };
 
 /* STATUS_SYSTEM for memory. */
@@ -140,18 +114,3 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell);
  * *fold is FOLD_NONE or FOLD_WITHIN; none where bodies interpenetrate at rest. STATUS_SYSTEM for memory. */
 MUST_CHECK enum status folds_find_overlaps(struct folds *folds, const double *u, struct fold *fold,
                                            struct error *error);
-
-/* Look for free facets that have gone through the plane of a support: by more than a thousandth of the body's
- * size and a twentieth of the facet's, as conditions hold averages and not nodes. Nodes that are `stopped` do
- * not count. FOLD_NONE or FOLD_SUPPORT. */
-struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped);
-
-/* Look for facets whose normals enclose less than 60 degrees at rest and 120 degrees or more now: a side that
- * is compressed too far along itself creases. FOLD_NONE or FOLD_CLOSED. */
-struct fold folds_find_closed(struct folds *folds, const double *u);
-
-/* Look for corners that lay on corners of other bodies at rest, where two bodies of the same width meet, and
- * around which a side of that body has wrapped: it presses on facets on both sides of the corner, and faced
- * only one of them at rest. Which body wraps around the other depends on round-off and on the mesh. FOLD_NONE
- * or FOLD_WRAPPED. */
-struct fold folds_find_wrapped(const struct folds *folds);

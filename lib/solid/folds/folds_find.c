@@ -10,7 +10,7 @@ static const double full_turn = 6.28318530717958648;
 
 enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
-static const double beyond_body = 1e-3; /* see folds_find_beyond */
+static const double reversing = -0.5;   /* cosine of 120 degrees, see search_sliding */
 static const double turned_share = 0.1; /* see is_turned_over */
 static const double flat_share = 0.2;   /* see folds_list_flat */
 
@@ -106,7 +106,7 @@ static bool is_turned_over(const struct folds *folds, const int32_t *node)
     return !(flatness(folds->input.dim, folds->y, node) <= turned_share);
 }
 
-/* Search for cells that are turned over, or else inverted. */
+/* Search for cells that are turned over. */
 static struct fold search_cells(const struct folds *folds, int64_t begin, int64_t end)
 {
     const struct fold_input *input = &folds->input;
@@ -114,16 +114,13 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     int dim = input->dim, corners = dim + 1;
     for (int64_t c = begin; c < end; c++) {
         const int32_t *node = input->cell + c * corners;
-        double volume = cell_size(folds, node);
-        if (volume > 0.0 || is_flattened(folds, node)) {
-            continue;
-        }
-        enum fold_kind kind = is_turned_over(folds, node) && !folds->upright[c] ? FOLD_CELL : FOLD_FLAT;
-        if (fold.kind == FOLD_NONE || (fold.kind == FOLD_FLAT && kind == FOLD_CELL)) {
-            fold = (struct fold){.kind = kind, .cell = c, .facet = {-1, -1}};
+        bool folded = !(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) && !folds->upright[c] &&
+                      !is_flattened(folds, node);
+        if (folded && fold.count++ == 0) {
+            fold.kind = FOLD_CELL;
+            fold.cell = c;
             vector_middle(dim, input->x, corners, node, fold.place);
         }
-        fold.count += kind == fold.kind;
     }
     return fold;
 }
@@ -191,45 +188,13 @@ static struct fold search_sliding(const struct folds *folds, int64_t begin, int6
         }
         face_area_vector(dim, folds->y, input->facet + f * dim, now);
         face_area_vector(dim, input->x, input->facet + f * dim, rest);
-        if (fold_cosine(dim, now, rest) < FOLD_REVERSING && fold.count++ == 0) {
+        if (vector_dot(dim, now, rest) < reversing * vector_length(dim, now) * vector_length(dim, rest) &&
+            fold.count++ == 0) {
             fold_name_facets(&folds->input, f, -1, &fold);
         }
     }
     fold.kind = fold.count > 0 ? FOLD_REVERSED : FOLD_NONE;
     return fold;
-}
-
-void folds_fill_planes(struct folds *folds, const double *y)
-{
-    int dim = folds->input.dim;
-    memset(folds->plane, 0, (size_t)folds->input.facet_count * 7 * sizeof *folds->plane);
-    for (int64_t f = 0; f < folds->input.facet_count; f++) {
-        double area[3], *plane = folds->plane + folds->support[f] * 7;
-        if (folds->support[f] < 0) {
-            continue;
-        }
-        face_area_vector(dim, y, folds->input.facet + f * dim, area);
-        for (int i = 0; i < dim; i++) {
-            plane[i] += area[i];
-            for (int k = 0; k < dim; k++) {
-                plane[3 + i] += y[(int64_t)folds->input.facet[f * dim + k] * dim + i];
-            }
-        }
-        plane[6] += dim;
-    }
-}
-
-double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y, double *reach)
-{
-    int dim = folds->input.dim;
-    const double *plane = folds->plane + folds->support[rim->support_facet] * 7;
-    const double *node = y + (int64_t)rim->node * dim;
-    double depth = 0.0;
-    for (int i = 0; i < dim; i++) {
-        depth += plane[i] * (node[i] - plane[3 + i] / plane[6]);
-    }
-    *reach = vector_distance(dim, y + (int64_t)rim->on_rim * dim, node);
-    return depth / vector_length(dim, plane);
 }
 
 void folds_take_positions(struct folds *folds, const double *u)
@@ -259,18 +224,8 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
 {
     folds_take_positions(folds, u);
     folds->stopped = stopped;
-    if (folds->input.slides != NULL) {
-        struct fold sliding = search(folds, folds->input.facet_count, search_sliding);
-        if (sliding.kind != FOLD_NONE) {
-            return sliding;
-        }
-    }
-    struct fold cells = search(folds, folds->input.cell_count, search_cells);
-    if (cells.kind == FOLD_CELL) {
-        return cells;
-    }
-    struct fold fold = FOLD_NOTHING;
-    if (folds->at_rest.kind != FOLD_CREASE) {
+    struct fold fold = search(folds, folds->input.cell_count, search_cells);
+    if (fold.kind == FOLD_NONE && folds->at_rest.kind != FOLD_CREASE) {
         fold = search(folds, folds->ring_count, search_rings);
     }
     if (fold.kind == FOLD_NONE && folds->at_rest.kind == FOLD_NONE) {
@@ -280,22 +235,8 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
             folds_find_within(folds, &fold);
         }
     }
-    return fold.kind != FOLD_NONE ? fold : cells;
-}
-
-struct fold folds_find_beyond(struct folds *folds, const double *u, const bool *stopped)
-{
-    struct fold fold = FOLD_NOTHING;
-    folds_take_positions(folds, u);
-    folds_fill_planes(folds, folds->y);
-    for (int64_t r = 0; r < folds->rim_count; r++) {
-        const struct fold_rim *rim = &folds->rims[r];
-        double reach, depth = folds_rim_beyond(folds, rim, folds->y, &reach);
-        if (!stopped[rim->node] && depth > fmax(beyond_body * folds->extent, FOLD_BEYOND_FACET * reach) &&
-            fold.count++ == 0) {
-            fold_name_facets(&folds->input, rim->facet, rim->support_facet, &fold);
-        }
+    if (fold.kind == FOLD_NONE && folds->input.slides != NULL) {
+        fold = search(folds, folds->input.facet_count, search_sliding);
     }
-    fold.kind = fold.count > 0 ? FOLD_SUPPORT : FOLD_NONE;
     return fold;
 }

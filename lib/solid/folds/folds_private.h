@@ -5,11 +5,8 @@
 #include "base/vector.h"
 #include "solid/folds/folds.h"
 
-/* Two facets face each other if the cosine of their normals is below this, that of 120 degrees. */
-#define FOLD_REVERSING (-0.5)
-
-/* Depth, by the length of a facet, up to which facets that cross each other or the plane of a support are no
- * fold: the field at the nodes is as uncertain. */
+/* Depth, by the length of a facet, up to which facets that cross each other are no fold: the field at the
+ * nodes is as uncertain. */
 #define FOLD_BEYOND_FACET 0.05
 
 #define FOLD_NOTHING ((struct fold){.kind = FOLD_NONE, .cell = -1, .facet = {-1, -1}})
@@ -23,20 +20,6 @@ static inline const double *fold_position(const struct folds *folds, int32_t nod
 /* Set the two facets of a fold, `other` -1 where there is none, and its place, the middle of the first facet
  * at rest. */
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold);
-
-static inline double fold_cosine(int dim, const double *one, const double *other)
-{
-    return vector_dot(dim, one, other) / (vector_length(dim, one) * vector_length(dim, other));
-}
-
-/* The cosine of the angle between the normals of two facets, at positions y. */
-static inline double fold_facet_cosine(const struct fold_input *input, const double *y, int64_t f, int64_t g)
-{
-    double one[3], other[3];
-    face_area_vector(input->dim, y, input->facet + f * input->dim, one);
-    face_area_vector(input->dim, y, input->facet + g * input->dim, other);
-    return fold_cosine(input->dim, one, other);
-}
 
 /* Find the parts and bodies of the cells. */
 MUST_CHECK enum status folds_find_bodies(struct folds *folds, struct error *error);
@@ -61,11 +44,3 @@ MUST_CHECK enum status folds_look_for_overlaps(struct folds *folds, bool of_bodi
 
 /* Set folds->y to the positions displaced by u. */
 void folds_take_positions(struct folds *folds, const double *u);
-
-/* Sums over the facets of each plane support, into folds->plane. */
-void folds_fill_planes(struct folds *folds, const double *y);
-
-/* The distance of the rim's node beyond the plane of the support, m; *reach receives its distance from the
- * rim. */
-double folds_rim_beyond(const struct folds *folds, const struct fold_rim *rim, const double *y,
-                        double *reach);

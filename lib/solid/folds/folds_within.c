@@ -19,15 +19,11 @@ enum status folds_find_bodies(struct folds *folds, struct error *error)
     struct cells cells = {input->dim, input->node_count, input->x, input->cell_count, input->cell};
     int32_t count;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->part, input->cell_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->node_part, input->node_count, error));
     RETURN_IF_ERROR(cells_parts(&cells, folds->part, &count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->bodies, count, error));
     folds->body_count = count;
     for (int64_t c = input->cell_count; c-- > 0;) {
         folds->bodies[folds->part[c]].cell.item = c;
-        for (int k = 0; k <= input->dim; k++) {
-            folds->node_part[input->cell[c * (input->dim + 1) + k]] = folds->part[c];
-        }
     }
     return STATUS_OK;
 }

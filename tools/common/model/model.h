@@ -64,9 +64,6 @@ MUST_CHECK enum status model_nodes(struct model *model, const struct scene_label
 MUST_CHECK enum status model_between(struct model *model, const struct scene_contact *section,
                                      struct contact_condition *contact, struct error *error);
 
-/* Build the contacts again in their initial state, with those that were added to the scene since. */
-MUST_CHECK enum status model_renew_contacts(struct model *model, struct error *error);
-
 /* u, v[node_count * dim]: the initial state given by the scene's [initial], as parameters, m and m/s. */
 MUST_CHECK enum status model_initial(const struct model *model, double *u, double *v, struct error *error);
 

@@ -208,13 +208,6 @@ enum status model_conditions(struct model *model, struct error *error)
     return add_contacts(model, error);
 }
 
-enum status model_renew_contacts(struct model *model, struct error *error)
-{
-    RETURN_IF_ERROR(add_contacts(model, error));
-    system_free_contacts(&model->system);
-    return assembly_add_contacts(&model->assembly, &model->system, error);
-}
-
 enum status model_initial(const struct model *model, double *u, double *v, struct error *error)
 {
     const struct scene_initial *initial = &model->scene->initial;

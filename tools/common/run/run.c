@@ -21,9 +21,6 @@ bool run_progress(void *context, const struct progress *progress)
 {
     struct run *run = context;
     show_progress(&run->display, progress);
-    if (run->again) {
-        return false;
-    }
     run_folds_check(run, progress->u, progress->time, false);
     run_stability_follow(run, progress);
     return run_checkpoint_step(run, progress);
@@ -45,12 +42,10 @@ void run_fail(struct run *run, enum status status, const char *format, ...)
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
     if (status == STATUS_VERDICT && !run->folds.reported) {
-        run_folds_describe(run, FOLDED, folds, sizeof folds);
+        run_folds_describe(run, folds, sizeof folds);
     }
     /* fail() makes one line of it, whatever the names in it contain. */
-    bool in_part = folds[0] != '\0' && run_folds_touch_in_part(run);
-    fail(&reason, status, "%s%s%s%s", text, folds[0] != '\0' ? "; " : "", folds,
-         in_part ? ": let all of it touch (facets = *, against = *)" : "");
+    fail(&reason, status, "%s%s%s", text, folds[0] != '\0' ? "; " : "", folds);
     tool_note(run->tool, "%s", reason.text);
     (void)process_fails_alone(); /* the others wait while the first one writes */
     run_frames_stop(run, reason.text);

@@ -47,33 +47,23 @@ struct run_frames {
     int64_t kept_bytes, kept_sections;
 };
 
-/* Consecutive searches that find a fold. */
-struct fold_spell {
-    bool seen;
-    double since, until; /* times as in struct progress; until: INFINITY while it lasts */
-    struct fold fold;    /* at the first of them */
-    bool counts;         /* reported also when it has ended: a frame shows it, or the run is dynamic */
-    int64_t kept[5];     /* the fold's whole numbers, as they are kept in a checkpoint: never negative */
-};
-
-/* FOLDED: the map of the body is no longer one-to-one, a verdict. NOTED: cells that are
- * just inverted, or else a free side beyond the plane of a support, which the scene as it is does not forbid.
- */
-enum { FOLDED, NOTED, FOLD_SPELLS };
-
 struct run_folds {
     struct folds folds;
-    bool *held, *slides; /* whether the displacement is prescribed at each face of the boundary; along its
-                            normal alone */
-    double *field;       /* scratch: node_count * dim */
-    int64_t *node_first; /* the nodes at which each process evaluates it */
-    bool *stopped, *in_contact, *turned; /* scratch: node_count */
-    int32_t *flat;                       /* scratch: cell_count */
+    bool *held, *slides;        /* whether the displacement is prescribed at each face of the boundary; along
+                                   its normal alone */
+    double *field;              /* scratch: node_count * dim */
+    int64_t *node_first;        /* the nodes at which each process evaluates it */
+    bool *stopped, *in_contact; /* scratch: node_count */
+    int32_t *flat;              /* scratch: cell_count */
     bool has_space;
     struct support_space space; /* for the field within cells, made when it is needed */
     bool reported;              /* in the message that ends the run */
-    struct fold_spell now[FOLD_SPELLS];
-    struct fold_spell past[FOLD_SPELLS]; /* the first one that ended and counts */
+    /* The fold that was found last, or one that stays. */
+    bool seen;
+    bool stays;   /* it is in a state that is given, or the run is dynamic */
+    double since; /* time as in struct progress */
+    struct fold fold;
+    int64_t kept[5]; /* its whole numbers, as they are kept in a checkpoint: never negative */
 };
 
 /* Whether the equilibria of a quasi-static run are stable: a body that is compressed far enough buckles,
@@ -100,7 +90,7 @@ struct run_stability {
 
 struct run {
     const struct tool *tool;
-    struct scene *scene; /* see run_again */
+    const struct scene *scene;
     struct model *model;
     struct stream *stream; /* receives what the scene's [output] requests */
     struct display display;
@@ -109,8 +99,6 @@ struct run {
     struct run_folds folds;
     struct run_stability stability;
     bool verbose;
-    bool again;             /* the run ended so that run_again can repeat it */
-    bool touches_itself;    /* run_again has added a contact of the body with itself; state of the run */
     const char *start_file; /* result from whose field the run starts; NULL: none */
     struct side start;      /* that result */
     double *u;              /* parameters, node_count * dim, m */
@@ -134,17 +122,9 @@ _Noreturn void run_fail(struct run *run, enum status status, const char *format,
 void run_start_read(struct run *run);
 void run_start(struct run *run);
 
-/* If parts of a body have passed through each other (run->again), and the scene has no contact between them:
- * add to the scene a contact of the whole boundary with itself, `facets = *, against = *`, remove the
- * results, and return true: the scene is computed again. */
-bool run_again(struct run *run);
-
 /* For an equilibrium at this share of the load, which was evaluated last: exits with a verdict where the
  * material law is not strongly elliptic in a large part of the body. In the final state notes a small one. */
 void run_stability_elliptic(struct run *run, double load, bool final);
-
-/* Add that contact to the scene. */
-void run_touch_itself(struct run *run);
 
 /* Exits with a verdict where a body has a free rigid-body mode and no contact acts on it; with -v, reports
  * the modes that only contacts prevent. */
@@ -163,14 +143,8 @@ void run_contacts_begin(const struct run *run);
  * motion, forces to the motion itself. In the final state notes a penetration larger than `allowed`, m. */
 void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final);
 
-/* For the final state: exits with a verdict where a rigid surface has penetrated the body by more than
- * `slack`, m, and `share` of a facet's width, and no contact node is active. Notes contacts whose active set
- * is less than three nodes across, and contacts that were never active. */
-void run_contacts_judge(struct run *run, double slack, double share);
-
-/* Notes displacements all of whose components are prescribed on patches of less than three facets across (2D:
- * two), if the scene requests forces: these are too large. */
-void run_displacements_judge(const struct run *run);
+/* For the final state: notes rigid surfaces that the body has never touched. */
+void run_contacts_touch(const struct run *run);
 
 /* For the final state: notes a curved side whose displacement is prescribed along its normal, and that slides
  * so far that it leaves its surface. */
@@ -195,8 +169,8 @@ void run_frames_check(const struct run *run);
 /* Before the first step, if the scene asks for frames: begin the output, with those of a checkpoint. */
 void run_frames_begin(struct run *run);
 
-/* Write the sections of frame `number`, unless they have been written before the run began anew or it is to
- * (run_folds_let_touch), and remove them from run->stream. Collective. */
+/* Write the sections of frame `number`, unless they have been written before, and remove them from
+ * run->stream. Collective. */
 void run_frames_write(struct run *run, int64_t number);
 
 /* Write the final state, as run->stream has it, and end the output. */
@@ -290,22 +264,8 @@ void run_folds_check(struct run *run, const double *u, double time, bool is_fram
 /* What was seen, as state of the run. */
 MUST_CHECK enum status run_folds_state(struct run *run, const struct state *state, struct error *error);
 
-/* Where and from when on, for FOLDED or NOTED, into text[size]; empty when that was not seen. */
-void run_folds_describe(const struct run *run, int which, char *text, size_t size);
-
-/* Whether the scene lets parts of the boundary touch, and not all of it. */
-bool run_touches_in_part(const struct run *run);
-
-/* Whether parts of the boundary have passed through each other though the scene lets some touch: it should
- * let all. */
-bool run_folds_touch_in_part(const struct run *run);
-
-/* Forget what was seen. */
-void run_folds_forget(struct run *run);
-
-/* Whether parts of the boundary have passed through each other, and contact would hold them apart: notes so
- * once, and the run is to end without a verdict (run->again). */
-bool run_folds_let_touch(struct run *run);
+/* Where and from when on, with the remedy, into text[size]; empty when no fold was seen. */
+void run_folds_describe(const struct run *run, char *text, size_t size);
 
 /* After the last step: a body that folds ends the run with a verdict, unless the scene allows it; what is to
  * be noted is. */

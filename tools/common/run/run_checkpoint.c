@@ -76,14 +76,6 @@ static void compare_processes(const struct run *run)
     }
 }
 
-/* The state of this program, without what a model must be built for. */
-static enum status visit_own(struct run *run, const struct state *state, struct error *error)
-{
-    const struct state_value value = {"touches_itself", STATE_FLAGS, &run->touches_itself, 1};
-    RETURN_IF_ERROR(state_visit(state, NULL, &value, 1, error));
-    return run_frames_state(run, state, error);
-}
-
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
@@ -104,10 +96,7 @@ static void resume(struct run *run)
     checkpoint->is_restored = true;
     checkpoint->is_ours = source == CHECKPOINT_NEWEST;
     take_tables(run);
-    TOOL_TRY(run->tool, visit_own(run, &checkpoint->state, &error));
-    if (run->touches_itself) {
-        run_touch_itself(run);
-    }
+    TOOL_TRY(run->tool, run_frames_state(run, &checkpoint->state, &error));
 }
 
 void run_checkpoint_begin(struct run *run)
@@ -167,7 +156,7 @@ static enum status visit_whole(void *owner, const struct state *state, struct er
     RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
     RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
     RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
-    return visit_own(whole->run, state, error);
+    return run_frames_state(whole->run, state, error);
 }
 
 static enum status write_now(struct run *run, const struct progress *progress, struct error *error)

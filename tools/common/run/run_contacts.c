@@ -1,10 +1,8 @@
-/* Notes and verdicts on contacts: penetration, and contacts and prescribed displacements for which the body's
- * facets are too large. */
+/* Notes and verdicts on contacts: where they begin, penetration, and sides that slide. */
 #include "run/run.h"
 
 #include "approx/field/field_compare.h"
 #include "base/box.h"
-#include "solid/contact/contact_patch.h"
 #include "solid/system/energy.h"
 
 #include <float.h>
@@ -12,26 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A contact or condition is reported if more than this share of its force, or of its facets, is on patches
- * less than three nodes across. */
-static const double most_thin = 0.5;
-
 /* A result of which more than this share of the forces is missing, because of the remaining penetration, is
  * refused; sliding sides are reported if they leave their surface by more than this share of how far they
  * slide. */
 static const double most_missing = 0.01;
-
-/* Positions of the nodes. */
-static double *deformed(const struct run *run)
-{
-    const struct solid_system *system = &run->model->system;
-    double *x = run_new_values(run, system->node_count * system->dim);
-    assembly_nodal_field(&run->model->assembly, run->u, x);
-    for (int64_t i = 0; i < system->node_count * system->dim; i++) {
-        x[i] += system->X[i];
-    }
-    return x;
-}
 
 /* The largest displacement prescribed by rows of conditions, m. */
 static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
@@ -135,12 +117,6 @@ void run_contacts_begin(const struct run *run)
     }
 }
 
-/* Whether the scene requests results that are inaccurate on such patches. */
-static bool wants_forces(const struct scene_output *output)
-{
-    return output->reactions || output->moments || output->gaps;
-}
-
 /* The displacement that moves a facet of a contact, or NULL. */
 static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
 {
@@ -212,136 +188,16 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
     }
 }
 
-/* Exits where a surface has gone into the body between its nodes. */
-static void judge_patch(struct run *run, const struct contact *contact, const struct contact_patch *patch,
-                        double slack)
+void run_contacts_touch(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
-    const char *name = run->scene->contacts[contact->section].label.name;
-    char place[96];
-    if (patch->inside > slack) {
-        point_text(system->dim, patch->place, place);
-        run->last_good = -1.0; /* all frames have been given */
-        run_fail(
-            run, STATUS_VERDICT,
-            "%s: [contact %s]: the rigid surface is %.2g m inside the body at %s, between its nodes, and "
-            "nothing presses: begin with the surface outside, and refine the body there until its facets are "
-            "smaller than the contact",
-            run->scene->path, name, patch->inside, place);
-    }
-    if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
-        tool_note(run->tool,
-                  "%s: [contact %s]: the body never touches the rigid surface: has that the right unit and "
-                  "place?",
-                  run->scene->path, name);
-    }
-    /* Bodies that stand against each other at rest press a little also where they are pulled apart. */
-    double unknown = run->scene->solver.tolerance * field_largest(system->node_count, system->dim, run->u);
-    if (contact->deepest > unknown && patch->force == 0.0 && !run->model->assembly.in_time &&
-        wants_forces(&run->scene->output)) {
-        tool_note(
-            run->tool,
-            "%s: [contact %s]: pressed on the way, and does not in the end: did the body slip off it? frames "
-            "([output]) show when",
-            run->scene->path, name);
-    }
-    if (patch->thin > most_thin && wants_forces(&run->scene->output)) {
-        point_text(system->dim, system->X + (int64_t)patch->node * system->dim, place);
-        tool_note(run->tool,
-                  "%s: [contact %s]: presses on %.0lld%s, most of it about %s, where that is less than three "
-                  "across: the force may be off by tens of percent: refine the body there to a third of the "
-                  "contact's radius",
-                  run->scene->path, name, (long long)patch->pressing,
-                  patch->pressing == 0   ? "less than a node"
-                  : patch->pressing == 1 ? " node"
-                                         : " nodes",
-                  place);
-    }
-}
-
-void run_contacts_judge(struct run *run, double slack, double share)
-{
-    struct solid_system *system = &run->model->system;
-    SCRATCH double *x = system->contact_count > 0 ? deformed(run) : NULL;
-    struct cells cells = run->model->assembly.cells;
-    cells.x = x;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct facet_set *set = &run->model->assembly.contacts[contact->section].facets;
-        struct contact_patch patch;
-        TOOL_TRY(run->tool, contact_patch_find(contact, set, &cells, &patch, &error));
-        judge_patch(run, contact, &patch, fmax(slack, share * patch.width));
-    }
-}
-
-/* core[node_count]: nodes inside what is held, all of whose faces on the boundary are; in 3D, those of facets
- * with all nodes inside. */
-static enum status find_core(const struct run *run, bool **core, struct error *error)
-{
-    const struct assembly *input = &run->model->assembly;
-    const struct faces *boundary = &input->boundary;
-    int dim = run->scene->dim;
-    int64_t node_count = input->cells.node_count;
-    SCRATCH bool *held = NULL;
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &held, error));
-    NEW_SCRATCH(bool, inside, node_count, error);
-    RETURN_IF_ERROR(NEW_ARRAY(core, node_count, error));
-    memset(inside, true, (size_t)node_count * sizeof *inside);
-    for (int64_t i = 0; i < boundary->count * dim; i++) {
-        inside[boundary->node[i]] = inside[boundary->node[i]] && held[i / dim];
-    }
-    for (int64_t f = 0; f < boundary->count; f++) {
-        const int32_t *node = boundary->node + f * dim;
-        bool all = dim == 2 || (inside[node[0]] && inside[node[1]] && inside[node[2]]);
-        for (int k = 0; k < dim; k++) {
-            (*core)[node[k]] = (*core)[node[k]] || (all && inside[node[k]]);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* A condition most of whose facets are on patches that are too narrow to have such nodes. */
-static void note_narrow(const struct run *run, const struct condition *condition, const bool *core)
-{
-    const struct facet_set *set = &condition->facets;
-    int dim = run->scene->dim;
-    int64_t narrow = 0, at = 0;
-    char place[96];
-    for (int64_t f = 0; f < set->count; f++) {
-        bool any = false;
-        for (int k = 0; k < dim; k++) {
-            any = any || core[set->facet[f * dim + k]];
-        }
-        narrow += !any;
-        at = narrow == 1 && !any ? f : at;
-    }
-    if ((double)narrow > most_thin * (double)set->count) {
-        point_text(dim, run->model->assembly.cells.x + (int64_t)set->facet[at * dim] * dim, place);
-        tool_note(
-            run->tool,
-            "%s: [displacement %s]: %lld of its %lld facets, such as that at %s, are on patches of less than "
-            "%s facets across: the force may be %s too large: refine the body there",
-            run->scene->path, condition->name, (long long)narrow, (long long)set->count, place,
-            dim == 2 ? "two" : "three", dim == 2 ? "several percent" : "tens of percent");
-    }
-}
-
-void run_displacements_judge(const struct run *run)
-{
-    const struct assembly *input = &run->model->assembly;
-    SCRATCH bool *core = NULL;
-    if (!wants_forces(&run->scene->output)) {
-        return;
-    }
-    TOOL_TRY(run->tool, find_core(run, &core, &error));
-    for (int64_t i = 0; i < input->condition_count; i++) {
-        const struct condition *condition = &input->conditions[i];
-        bool whole = condition->kind == CONDITION_TABLE || condition->kind == CONDITION_COMPONENTS;
-        for (int k = 0; k < input->cells.dim; k++) {
-            whole = whole && !condition->is_free[k];
-        }
-        if (whole) {
-            note_narrow(run, condition, core);
+        if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
+            tool_note(run->tool,
+                      "%s: [contact %s]: the body never touches the rigid surface: has that the right unit "
+                      "and place, and does it begin outside the body?",
+                      run->scene->path, run->scene->contacts[contact->section].label.name);
         }
     }
 }

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A surface that has left the body may be inside of the chords of a curved boundary by less than this share
- * of a facet's width. */
-static const double most_inside = 0.1;
-
 /* Largest penetration of contacts at the end, as a share of the largest displacement, as in quasi-static
  * scenes. */
 static const double most_given = 1e-3;
@@ -39,9 +35,6 @@ static void judge(struct run *run, const struct dynamics_report *report)
     double largest_move = field_largest(system->node_count, system->dim, run->u);
     bool inverted = report->outcome == DYNAMICS_INVERTED;
     char place[96];
-    if (run->again || (report->outcome != DYNAMICS_STOPPED && run_folds_let_touch(run))) {
-        return;
-    }
     point_text(scene->dim,
                inverted ? run->model->assembly.x + report->point * scene->dim
                         : run->model->assembly.cells.x + report->node * scene->dim,
@@ -54,7 +47,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
         }
         run_folds_judge(run);
         run_contacts_penetrate(run, largest_move, most_given * largest_move, true);
-        run_contacts_judge(run, 0.0, most_inside);
+        run_contacts_touch(run);
         run_sliding_judge(run);
         return;
     case DYNAMICS_INVERTED:
@@ -151,7 +144,7 @@ void run_dynamic(struct run *run)
     run_folds_check(run, run->u, report.time, true);
     judge(run, &report);
     energy_log_free(&log);
-    if (run->verbose && !run->again) {
+    if (run->verbose) {
         print_report(run, &report);
     }
 }

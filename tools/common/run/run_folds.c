@@ -28,12 +28,10 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, cells->node_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->turned, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->flat, cells->count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
     folds->folds.in_contact = folds->in_contact;
-    folds->folds.turned = folds->turned;
     return STATUS_OK;
 }
 
@@ -51,27 +49,19 @@ void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
     FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
-             run->folds.in_contact, run->folds.turned, run->folds.flat);
+             run->folds.in_contact, run->folds.flat);
     support_space_free(&run->folds.space);
-}
-
-void run_folds_forget(struct run *run)
-{
-    memset(run->folds.now, 0, sizeof run->folds.now);
-    memset(run->folds.past, 0, sizeof run->folds.past);
 }
 
 /* A surface counts as in contact if it is no further away than this share of a facet's size. */
 static const double near_share = 0.25;
 
-/* Mark nodes in contact with a rigid surface, nodes in contact with another part of the body, and of the
- * latter those that did not face it at rest. */
-static void mark_stopped(const struct run *run, bool *stopped, bool *touched, bool *turned)
+/* Mark nodes in contact with a rigid surface, and nodes in contact with another part of the body. */
+static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
     memset(touched, 0, (size_t)system->node_count * sizeof *touched);
-    memset(turned, 0, (size_t)system->node_count * sizeof *turned);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
@@ -80,27 +70,8 @@ static void mark_stopped(const struct run *run, bool *stopped, bool *touched, bo
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
             marked[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
-        contact_between_mark(contact, near_share, touched, turned);
+        contact_between_mark(contact, near_share, touched);
     }
-}
-
-/* Record what a search at `time` has found: a spell begins, lasts or ends. */
-static void note(struct run_folds *folds, int which, const struct fold *fold, double time, bool counts)
-{
-    struct fold_spell *now = &folds->now[which], *past = &folds->past[which];
-    if (fold->kind == FOLD_NONE) {
-        if (now->seen && now->counts && !past->seen) {
-            *past = *now;
-            past->until = time;
-        }
-        *now = (struct fold_spell){.seen = false};
-        return;
-    }
-    bool graver = now->fold.kind == FOLD_FLAT && fold->kind != FOLD_FLAT;
-    if (!now->seen || graver) {
-        *now = (struct fold_spell){.seen = true, .since = time, .until = INFINITY, .fold = *fold};
-    }
-    now->counts = now->counts || counts;
 }
 
 /* The field at the nodes; each process computes a share of it. */
@@ -156,55 +127,44 @@ static struct fold find(struct run *run, const double *u)
 void run_folds_check(struct run *run, const double *u, double time, bool is_frame)
 {
     struct run_folds *folds = &run->folds;
-    bool counts = is_frame || run->scene->analysis == SCENE_DYNAMIC;
     evaluate_field(&run->model->assembly, u, folds);
-    mark_stopped(run, folds->stopped, folds->in_contact, folds->turned);
+    mark_stopped(run, folds->stopped, folds->in_contact);
     struct fold fold = find(run, u);
-    if (is_frame && (fold.kind == FOLD_NONE || fold.kind == FOLD_FLAT)) {
-        struct fold overlap;
-        TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &overlap, &error));
-        fold = overlap.kind != FOLD_NONE ? overlap : fold;
+    if (is_frame && fold.kind == FOLD_NONE) {
+        TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &fold, &error));
     }
-    struct fold none = {.kind = FOLD_NONE};
-    struct fold beyond = folds_find_beyond(&folds->folds, folds->field, folds->stopped);
-    note(folds, FOLDED, fold.kind == FOLD_FLAT ? &none : &fold, time, counts);
-    if (beyond.kind == FOLD_NONE) {
-        beyond = fold.kind == FOLD_FLAT ? fold : folds_find_closed(&folds->folds, folds->field);
+    if (folds->stays) {
+        return;
     }
-    if (beyond.kind == FOLD_NONE) {
-        beyond = folds_find_wrapped(&folds->folds);
+    bool found = fold.kind != FOLD_NONE;
+    if (!folds->seen || !found) {
+        folds->since = time;
+        folds->fold = fold;
     }
-    note(folds, NOTED, &beyond, time, counts);
+    folds->seen = found;
+    folds->stays = found && (is_frame || run->scene->analysis == SCENE_DYNAMIC);
 }
 
-/* A spell as state of the run. */
-static enum status spell_state(struct fold_spell *spell, const char *prefix, const struct state *state,
-                               struct error *error)
+enum status run_folds_state(struct run *run, const struct state *state, struct error *error)
 {
-    struct fold *fold = &spell->fold;
-    int64_t *counts = spell->kept;
+    struct run_folds *folds = &run->folds;
+    struct fold *fold = &folds->fold;
+    int64_t *counts = folds->kept;
     counts[0] = (int64_t)fold->kind;
     counts[1] = fold->count;
     counts[2] = fold->cell + 1;
     counts[3] = fold->facet[0] + 1;
     counts[4] = fold->facet[1] + 1;
-    const struct state_value values[] = {
-        {"seen", STATE_FLAGS, &spell->seen, 1},     {"since", STATE_NUMBERS, &spell->since, 1},
-        {"until", STATE_NUMBERS, &spell->until, 1}, {"fold", STATE_COUNTS, counts, 5},
-        {"place", STATE_NUMBERS, fold->place, 3},   {"counts", STATE_FLAGS, &spell->counts, 1}};
-    RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    const struct state_value values[] = {{"seen", STATE_FLAGS, &folds->seen, 1},
+                                         {"stays", STATE_FLAGS, &folds->stays, 1},
+                                         {"since", STATE_NUMBERS, &folds->since, 1},
+                                         {"fold", STATE_COUNTS, counts, 5},
+                                         {"place", STATE_NUMBERS, fold->place, 3}};
+    RETURN_IF_ERROR(state_visit(state, "folds", values, sizeof values / sizeof *values, error));
     fold->kind = (enum fold_kind)counts[0];
     fold->count = counts[1];
     fold->cell = counts[2] - 1;
     fold->facet[0] = counts[3] - 1;
     fold->facet[1] = counts[4] - 1;
     return STATUS_OK;
-}
-
-enum status run_folds_state(struct run *run, const struct state *state, struct error *error)
-{
-    RETURN_IF_ERROR(spell_state(&run->folds.now[FOLDED], "folds.now", state, error));
-    RETURN_IF_ERROR(spell_state(&run->folds.past[FOLDED], "folds.past", state, error));
-    RETURN_IF_ERROR(spell_state(&run->folds.now[NOTED], "noted.now", state, error));
-    return spell_state(&run->folds.past[NOTED], "noted.past", state, error);
 }

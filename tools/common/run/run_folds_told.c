@@ -51,162 +51,75 @@ void run_folds_at_rest(const struct run *run)
     tool_note(run->tool, "%s: %s; whether others do later is not looked for", run->scene->path, text);
 }
 
-/* That of now, or else that of before. */
-static const struct fold_spell *spell_of(const struct run *run, int which)
+/* Whether a contact of the scene lets all of the boundary touch itself. */
+static bool touches_itself(const struct scene *scene)
 {
-    const struct run_folds *folds = &run->folds;
-    return folds->now[which].seen ? &folds->now[which] : &folds->past[which];
+    bool whole = false;
+    for (int64_t c = 0; c < scene->contact_count; c++) {
+        whole = whole ||
+                (model_is_whole(&scene->contacts[c].facets) && model_is_whole(&scene->contacts[c].against));
+    }
+    return whole;
 }
 
-/* Words for a kind of fold: between the time and the cell or facet, between that and its place, and behind.
- * With `last` the second facet is named, between the two. */
+/* Words for a kind of fold: before and behind the place; contact would prevent it. */
 static const struct {
-    const char *first, *second, *third, *last;
-} words[] = {
-    [FOLD_CELL] = {": ", " at ", " is turned over", NULL},
-    [FOLD_CREASE] = {": facets of ", " that meet at ", " pass through each other", NULL},
-    [FOLD_CROSSING] = {": ", " at ", " goes through ", ""},
-    [FOLD_WITHIN] = {": ", " at ", " is within another one", NULL},
-    [FOLD_REVERSED] = {": ", " at ", " is turned over, through the plane that it slides on", NULL},
-    [FOLD_FLAT] =
-        {", cells are inverted between their nodes, by less than a tenth of their size, or flat ones "
-         "across which the field bends: ",
-         " at ", "", NULL},
-    [FOLD_SUPPORT] = {", ", " at ", " is beyond the plane of ", ", where nothing in the scene stops it"},
-    [FOLD_CLOSED] =
-        {", ", " at ",
-         " has creased: there are other states, with more or fewer creases, whose forces differ by "
-         "some percent",
-         NULL},
-    [FOLD_WRAPPED] = {
-        ", a lip of another body has turned round the corner of ", " at ",
-        ", where both ended at rest: there are other states, with lips elsewhere or none, whose "
-        "forces differ by some percent",
-        NULL}};
+    const char *before, *behind;
+    bool touches;
+} words[] = {[FOLD_CELL] = {"cell ", " is turned over", false},
+             [FOLD_CREASE] = {"facets of ", " pass through each other", true},
+             [FOLD_CROSSING] = {"", " goes through ", true},
+             [FOLD_WITHIN] = {"cell ", " is within another one", true},
+             [FOLD_REVERSED] = {"", " is turned over, through the plane that it slides on", false}};
 
-void run_folds_describe(const struct run *run, int which, char *text, size_t size)
+void run_folds_describe(const struct run *run, char *text, size_t size)
 {
-    const struct fold_spell *spell = spell_of(run, which);
-    const struct fold *fold = &spell->fold;
+    const struct run_folds *folds = &run->folds;
+    const struct fold *fold = &folds->fold;
     bool dynamic = run->scene->analysis == SCENE_DYNAMIC;
     char place[96], one[64], other[64] = "", when[96];
     text[0] = '\0';
-    if (!spell->seen || fold->kind == FOLD_NONE) {
+    if (!folds->seen) {
         return;
     }
     point_text(run->scene->dim, fold->place, place);
     snprintf(when, sizeof when,
              dynamic              ? "from t = %.4g s on"
-             : spell->since < 1.0 ? "from %.4g of the load on"
+             : folds->since < 1.0 ? "from %.4g of the load on"
                                   : "at the whole load",
-             spell->since);
-    if (isfinite(spell->until)) {
-        snprintf(when, sizeof when, dynamic ? "from t = %.4g to %.4g s" : "from %.4g to %.4g of the load",
-                 spell->since, spell->until);
-    }
-    if (fold->kind == FOLD_FLAT) {
-        snprintf(one, sizeof one, "%lld, the first one cell %lld", (long long)fold->count,
-                 (long long)fold->cell);
-    } else if (fold->kind == FOLD_CELL || fold->kind == FOLD_WITHIN) {
-        snprintf(one, sizeof one, "cell %lld", (long long)fold->cell);
-    } else {
+             folds->since);
+    snprintf(one, sizeof one, "%lld", (long long)fold->cell);
+    if (fold->facet[0] >= 0) {
         name_facet(run, fold->facet[0], one, sizeof one);
     }
-    if (words[fold->kind].last != NULL && fold->facet[1] >= 0) {
+    if (fold->kind == FOLD_CROSSING) {
         name_facet(run, fold->facet[1], other, sizeof other);
     }
-    snprintf(text, size, "%s%s%s%s%s%s%s%s%s", which == FOLDED ? "the body folds " : "", when,
-             words[fold->kind].first, one, words[fold->kind].second, place, words[fold->kind].third, other,
-             words[fold->kind].last != NULL ? words[fold->kind].last : "");
-}
-
-/* Whether parts of the boundary pass through each other, which contact stops. */
-static bool is_crossed(const struct run *run)
-{
-    enum fold_kind kind = spell_of(run, FOLDED)->fold.kind;
-    return kind == FOLD_CREASE || kind == FOLD_CROSSING || kind == FOLD_WITHIN;
-}
-
-/* How many of the scene's contacts let parts of the boundary touch; `whole`: whether one of them lets all. */
-static int64_t count_touching(const struct scene *scene, bool *whole)
-{
-    int64_t count = 0;
-    *whole = false;
-    for (int64_t c = 0; c < scene->contact_count; c++) {
-        const struct name_list *facets = &scene->contacts[c].facets, *against = &scene->contacts[c].against;
-        count += against->count > 0;
-        *whole = *whole || (model_is_whole(against) && model_is_whole(facets));
-    }
-    return count;
-}
-
-/* Whether a free side has gone through a support and its plane, where a rigid surface would stop it. */
-static bool is_through_support(const struct run *run)
-{
-    const struct fold *fold = &spell_of(run, FOLDED)->fold;
-    const bool *held = run->folds.held;
-    return spell_of(run, NOTED)->fold.kind == FOLD_SUPPORT && fold->kind == FOLD_CROSSING &&
-           (held[fold->facet[0]] || held[fold->facet[1]]);
-}
-
-bool run_folds_let_touch(struct run *run)
-{
-    char text[400];
-    bool whole;
-    if (run->again) {
-        return true;
-    }
-    if (run->scene->output.folds_allowed || count_touching(run->scene, &whole) > 0 || !is_crossed(run) ||
-        is_through_support(run)) {
-        return false;
-    }
-    run_folds_describe(run, FOLDED, text, sizeof text);
-    tool_note(run->tool, "%s: %s: once more, with contact of the body with itself", run->scene->path, text);
-    run->again = true;
-    return true;
-}
-
-bool run_touches_in_part(const struct run *run)
-{
-    bool whole;
-    return count_touching(run->scene, &whole) > 0 && !whole;
-}
-
-bool run_folds_touch_in_part(const struct run *run)
-{
-    bool is_through = is_crossed(run) || spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED;
-    return is_through && run_touches_in_part(run);
+    snprintf(text, size, "the body folds %s: %s%s at %s%s%s: %spress less, refine there", when,
+             words[fold->kind].before, one, place, words[fold->kind].behind, other,
+             words[fold->kind].touches && !touches_itself(run->scene)
+                 ? "let it touch itself ([contact] with facets = *, against = *), "
+                 : "");
 }
 
 void run_folds_judge(struct run *run)
 {
-    char text[400];
-    run_folds_describe(run, FOLDED, text, sizeof text);
-    const char *remedy = "press less, refine there";
-    if (spell_of(run, FOLDED)->fold.kind == FOLD_REVERSED) {
-        remedy = "let a rigid surface in place of that support stop it, press less";
+    static const char press_less[] = ": press less, hold it there";
+    char text[500];
+    run_folds_describe(run, text, sizeof text);
+    const char *remedy = "";
+    if (text[0] == '\0' && run_stability_describe(run, text, sizeof text)) {
+        tool_note(run->tool, "%s: %s", run->scene->path, text);
+        return;
     }
-    if (run_folds_touch_in_part(run)) {
-        remedy = "let all of it touch (facets = *, against = *), press less, refine there";
-    }
-    if (is_through_support(run)) {
-        remedy = "let a rigid surface beside the support stop it, press less, refine there";
-    }
-    if (text[0] == '\0') {
-        if (run_stability_describe(run, text, sizeof text)) {
-            tool_note(run->tool, "%s: %s", run->scene->path, text);
-            text[0] = '\0';
-        }
-        remedy = "press less, hold it there";
+    if (!run->folds.seen) {
+        remedy = press_less;
     }
     if (text[0] != '\0' && !run->scene->output.folds_allowed) {
         run->folds.reported = true;
         run->last_good = -1.0; /* the frames are all there */
-        run_fail(run, STATUS_VERDICT, "%s: %s: %s, or allow it ([output] folds = allowed)", run->scene->path,
+        run_fail(run, STATUS_VERDICT, "%s: %s%s, or allow it ([output] folds = allowed)", run->scene->path,
                  text, remedy);
-    }
-    if (text[0] == '\0') {
-        run_folds_describe(run, NOTED, text, sizeof text);
     }
     if (text[0] != '\0') {
         tool_note(run->tool, "%s: %s", run->scene->path, text);

@@ -188,7 +188,7 @@ void run_frames_write(struct run *run, int64_t number)
     struct run_frames *frames = &run->frames;
     struct error error = {""};
     size_t length;
-    if (number == frames->next && !run_folds_let_touch(run)) {
+    if (number == frames->next) {
         check(run, process_speaks() ? append(run, number, &error) : STATUS_OK, &error);
         frames->next++;
     }

@@ -11,9 +11,6 @@ static void judge(struct run *run, const struct relaxation_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "", load[48] = "";
-    if (run->again || (report->outcome != RELAXATION_STOPPED && run_folds_let_touch(run))) {
-        return;
-    }
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
@@ -28,18 +25,14 @@ static void judge(struct run *run, const struct relaxation_report *report)
         run_stability_elliptic(run, 1.0, true);
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
-        run_contacts_judge(run, report->penetration_allowed, 0.0);
-        run_displacements_judge(run);
+        run_contacts_touch(run);
         run_sliding_judge(run);
         return;
     }
     point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
     if (report->outcome == RELAXATION_STALLED) {
         const char *remedy =
-            run_folds_touch_in_part(run) ? "" /* it is named with the fold */
-            : run_touches_in_part(run)
-                ? ": to let all of it touch (facets = *, against = *), a larger tolerance, "
-                  "a finer cloud at the contacts, or supports against rigid motion may help"
+            run->folds.seen ? "" /* it is named with the fold */
             : run->model->system.contact_count > 0
                 ? ": a larger tolerance, a finer cloud at the contacts, or supports against rigid motion may "
                   "help"
@@ -93,18 +86,17 @@ void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     const struct body *body = &run->model->system.body;
-    struct relaxation_options options = {
-        .tolerance = solver->tolerance,
-        .time_step_margin = solver->time_step_margin,
-        .ramp_steps = solver->ramp_steps,
-        .most_steps = solver->max_steps,
-        .frames = run->scene->output.frames,
-        .frame = run_put_equilibrium,
-        .progress = run_progress,
-        .context = run,
-        .interrupted = run->checkpoint.interrupted,
-        .folded = run->scene->output.folds_allowed ? NULL : &run->folds.now[FOLDED].seen,
-        .restored = run_checkpoint_state(run)};
+    struct relaxation_options options = {.tolerance = solver->tolerance,
+                                         .time_step_margin = solver->time_step_margin,
+                                         .ramp_steps = solver->ramp_steps,
+                                         .most_steps = solver->max_steps,
+                                         .frames = run->scene->output.frames,
+                                         .frame = run_put_equilibrium,
+                                         .progress = run_progress,
+                                         .context = run,
+                                         .interrupted = run->checkpoint.interrupted,
+                                         .folded = run->scene->output.folds_allowed ? NULL : &run->folds.seen,
+                                         .restored = run_checkpoint_state(run)};
     struct relaxation_report report;
     struct error error;
     run_check_rigid_modes(run);
@@ -120,12 +112,6 @@ void run_quasi_static(struct run *run)
     run_folds_check(run, run->u, report.load, true);
     run_stability_check(run, report.load);
     judge(run, &report);
-    if (run->again) {
-        if (run->verbose) {
-            fprintf(stderr, "steps without contact of the body with itself\t%lld\n", (long long)report.steps);
-        }
-        return;
-    }
     put_error(run);
     if (run->verbose) {
         fprintf(stderr,

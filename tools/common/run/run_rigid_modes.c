@@ -89,7 +89,6 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
 {
     const struct cells *cells = &model->assembly.cells;
     const struct solid_system *system = &model->system;
-    bool complete;
     *bodies = (struct bodies){0};
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
     join_cells(cells, bodies);
@@ -100,8 +99,7 @@ static enum status bodies_find(const struct model *model, struct bodies *bodies,
         bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
-    RETURN_IF_ERROR(
-        system_rigid_modes(system, bodies->count, bodies->of_node, 0, NULL, bodies->modes, &complete, error));
+    RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->modes, error));
     return find_touching(system, bodies, error);
 }
 
@@ -166,79 +164,6 @@ static enum status body_text(const struct model *model, const struct bodies *bod
     return STATUS_OK;
 }
 
-/* Parts of bodies (cells_parts) that share only nodes, at corners and edges of cells. */
-struct hinged {
-    int64_t *cell; /* one of each part */
-    struct joint *joint;
-    int64_t joint_count, joint_room;
-    struct rigid_modes *modes; /* of each part */
-    bool complete;
-};
-
-/* Find the parts and their joints; several cells of a part may find the same joint. */
-static enum status hinged_find(const struct model *model, const struct folds *folds, struct hinged *hinged,
-                               struct error *error)
-{
-    const struct cells *cells = &model->assembly.cells;
-    RETURN_IF_ERROR(NEW_ARRAY(&hinged->cell, folds->body_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&hinged->modes, folds->body_count, error));
-    for (int64_t i = 0; i < cells->count * (cells->dim + 1); i++) {
-        int32_t node = cells->node[i], part = folds->part[i / (cells->dim + 1)];
-        hinged->cell[part] = i / (cells->dim + 1);
-        if (part != folds->node_part[node]) {
-            RETURN_IF_ERROR(GROW_ARRAY(&hinged->joint, hinged->joint_count + 1, &hinged->joint_room, error));
-            hinged->joint[hinged->joint_count++] = (struct joint){part, node};
-        }
-    }
-    return hinged->joint_count == 0 ? STATUS_OK
-                                    : system_rigid_modes(&model->system, (int32_t)folds->body_count,
-                                                         folds->node_part, hinged->joint_count, hinged->joint,
-                                                         hinged->modes, &hinged->complete, error);
-}
-
-static void hinged_free(struct hinged *hinged)
-{
-    FREE_ALL(hinged->cell, hinged->joint, hinged->modes);
-}
-
-/* Note the largest part that may move at the nodes that join it to others, and the number of others. Parts on
- * which a contact acts do not count. */
-static void note_hinged(const struct run *run, const struct bodies *bodies)
-{
-    FREED_BY(hinged_free) struct hinged hinged = {0};
-    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
-    const struct model *model = run->model;
-    const struct cells *cells = &model->assembly.cells;
-    int32_t first = -1, count = 0;
-    TOOL_TRY(run->tool, hinged_find(model, &run->folds.folds, &hinged, &error));
-    for (int32_t p = 0; p < run->folds.folds.body_count; p++) {
-        int32_t node = cells->node[hinged.cell[p] * (cells->dim + 1)];
-        if (hinged.modes[p].translations + hinged.modes[p].turns > 0 &&
-            !bodies->touches[bodies->of_node[node]]) {
-            first = count++ == 0 ? p : first;
-        }
-    }
-    if (count > 0 && !hinged.complete) {
-        tool_note(run->tool,
-                  "%s: very many parts have nodes in common with each other, but no face: whether all are "
-                  "held is not known: join them by faces",
-                  run->scene->path);
-    } else if (count > 0) {
-        char what[512], place[96], more[64] = "";
-        modes_text(cells->dim, model->assembly.extent, &hinged.modes[first], what, sizeof what);
-        point_text(cells->dim, hinged.modes[first].centre, place);
-        TOOL_TRY(run->tool, stream_regions(model->stream, &regions, &error));
-        if (count > 1) {
-            snprintf(more, sizeof more, "; %d such parts in all", count);
-        }
-        tool_note(run->tool,
-                  "%s: a part (region %s, near %s) has nodes in common with the rest of its body, but no "
-                  "face: it %s: hold it, or join it by faces%s",
-                  run->scene->path, regions.names.name[regions.of_cell[hinged.cell[first]]], place, what,
-                  more);
-    }
-}
-
 /* The number of bodies from `first` on that may move or turn, and on which no contact acts. */
 static int64_t count_free(const struct bodies *bodies, int64_t first)
 {
@@ -276,8 +201,5 @@ void run_check_rigid_modes(struct run *run)
         if (run->verbose) {
             tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
         }
-    }
-    if (run->folds.folds.part != NULL) {
-        note_hinged(run, &bodies);
     }
 }

@@ -45,7 +45,5 @@ void run_start(struct run *run)
         tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
                   run->start.name);
     }
-    if (system->rows.start == NULL) { /* only once if it is computed again */
-        TOOL_TRY(run->tool, system_start(system, run->u, &error));
-    }
+    TOOL_TRY(run->tool, system_start(system, run->u, &error));
 }
