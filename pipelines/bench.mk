@@ -3,8 +3,7 @@
 # Each program of pipelines/bench (but bench.c and problem.c, which they share) prints the rows of some kernels. Times
 # in ns per pair of point and neighbour (streams: per row), least and percentiles over the repeats; bytes are those read
 # and written (force loop: those of its table). One thread is timed by its CPU time, several by the clock: compare
-# threads on an idle machine only. pipelines/bench/PROFILE.md tells where a step's time goes, what was tried, and what it
-# brought.
+# threads on an idle machine only.
 
 BENCH := $(OUT)/bench
 BENCH_SECONDS := 1

@@ -5,7 +5,7 @@
  * grad N_j over the edges e from k to other vertices j; its mean F = F_h + R. The mean over a face on the
  * boundary is that of its own row (approx/cells/face_edges.h) in place of the interpolant's, so that
  * gradients agree with integrals over the boundary. What is exact for linear fields stays so, as J and det F
- * differ by the square of F_h - F only. What was tried: pipelines/convergence/DEFAULTS.md. */
+ * differ by the square of F_h - F only. */
 #pragma once
 
 #include "solid/operators/field_averages.h"
