@@ -17,11 +17,17 @@
 #   bench  estimate             speed of the kernels; what the estimate of the iteration's error is worth
 # make refine SCENE=... GEO=... TOL=0.1mm    a scene of your own, on meshes refined where it must be (pipelines/refine.mk)
 # make install PREFIX=/usr/local    make deb    make clean    (pipelines/install.mk)
+# V=1 with any of them: the commands as they are run
 
 # Waiting threads sleep, so that other programs on the same cores do not slow tests and studies down.
 export OMP_WAIT_POLICY ?= passive
 
-SHELL := /bin/bash
+# A line for each file that is made; V=1: the commands instead. The shell is asked for at each line of a recipe: the first one tells.
+ifndef V
+.SILENT:
+told = $(if $(told-$@),,$(eval told-$@ := 1)$(info $(if $(filter %.o,$@),CC   $<,MAKE $@)))
+endif
+SHELL = $(if $(findstring /,$@),$(told))/bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := all
@@ -34,6 +40,8 @@ ifeq ($(strip $(BUILD)),)
 $(error BUILD is empty: name a folder, else what is built would lie in /bin)
 endif
 OUT := build/out
+# The last line of a study's recipe: the pictures that it needed.
+PICTURES = @printf '%s\n' '' $(filter %.png %.gif,$^)
 
 WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla
 HARDENING := -fstack-protector-strong -fPIE -Wformat -Wformat-security

@@ -14,6 +14,7 @@ BRAIN2D_CONVERGENCE_NAMES := $(BRAIN2D_CONVERGENCE_EVEN) $(BRAIN2D_CONVERGENCE_E
 .PHONY: brain2d-convergence
 brain2d-convergence: $(BRAIN2D_CONVERGENCE)/convergence.tsv $(BRAIN2D_CONVERGENCE)/brain2d-convergence.png
 	@awk -F '\t' '{ printf "%-5s %-6s %11s %15s %9s %9s %9s %6s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $<
+	$(PICTURES)
 
 $(BRAIN2D_CONVERGENCE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

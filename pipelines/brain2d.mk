@@ -26,6 +26,7 @@ default.title := default
 .PHONY: brain2d
 brain2d: $(BRAIN2D)/compare.tsv $(BRAIN2D)/section.png $(BRAIN2D)/difference.png $(BRAIN2D)/u.dat $(BRAIN2D)/u.vtu
 	@awk -F '\t' '{ printf "%-98s %6s %6s %8s %8s %6s %8s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
+	$(PICTURES)
 
 $(BRAIN2D)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

@@ -32,6 +32,7 @@ brain3d: $(BRAIN3D)/compare.tsv $(BRAIN3D)/balance.tsv $(BRAIN3D)/meshes.tsv $(B
 	    $(BRAIN3D)/balance.tsv
 	@echo
 	@awk -F '\t' '{ printf "%-74s %16s %8s %9s %8s %7s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(BRAIN3D)/meshes.tsv
+	$(PICTURES)
 
 $(BRAIN3D)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

@@ -77,6 +77,7 @@ calculix.title := CalculiX CPE6
 .PHONY: convergence convergence-references
 convergence: $(CONVERGENCE)/convergence.tsv $(CONVERGENCE)/convergence.png
 	@awk -F '\t' '{ printf "%-14s %-20s %9s %7s %9s %9s %7s %7s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $<
+	$(PICTURES)
 
 $(CONVERGENCE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

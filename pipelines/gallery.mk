@@ -17,6 +17,7 @@ $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 liver: $(GALLERY)/liver.png
 	@grep -E '^(steps|estimated error|least J)' $(GALLERY)/liver.log
+	$(PICTURES)
 
 $(GALLERY)/liver_surface.stl: $(LIVER)/liver_surface.stl.gz
 	@mkdir -p $(@D)
@@ -43,6 +44,7 @@ $(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/stream.awk pipelines/plot/b
 
 phantom: $(GALLERY)/phantom.tsv $(GALLERY)/phantom.png
 	@awk -F '\t' '{ printf "%-28s %6s %10s %10s %8s\n", $$1, $$2, $$3, $$4, $$5 }' $<
+	$(PICTURES)
 
 $(PHANTOM_SIZES:%=$(GALLERY)/phantom-%.dat): $(GALLERY)/phantom-%.dat: $(PHANTOM)/beam.geo $(PHANTOM)/beam.scene $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)
@@ -63,6 +65,7 @@ $(GALLERY)/phantom.png: $(GALLERY)/phantom-2.5.dat pipelines/gallery/phantom.gp
 
 indentation: $(GALLERY)/indentation.tsv $(GALLERY)/indentation.png
 	@cat $<
+	$(PICTURES)
 
 $(GALLERY)/indentation.dat: examples/indentation/tissue.geo examples/indentation/indentation.scene examples/indentation/probe.tsv $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)

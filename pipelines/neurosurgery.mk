@@ -66,6 +66,7 @@ neurosurgery-one: $(addprefix $(NEURO)/,neurosurgery.tsv seconds.tsv slices.png)
 	@[ ! -f $(NEURO)/volumes.tsv ] || { echo; awk -F '\t' '{ printf "%-18s %12s %12s %12s %12s %12s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(NEURO)/volumes.tsv; }
 	@echo
 	@awk -F '\t' '{ printf "%-18s %12s\n", $$1, $$2 }' $(NEURO)/seconds.tsv
+	$(PICTURES)
 
 $(NEURO)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

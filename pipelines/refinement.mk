@@ -76,6 +76,7 @@ adaptive: $(ADAPTIVE)/effectivity.tsv $(ADAPTIVE)/effectivity-summary.tsv $(ADAP
 	@cat $(word 2,$^)
 	@awk -F '\t' '{ printf "%-12s %8s %10s %12s %11s %8s %8s %12s %14s %12s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' $(word 4,$^)
 	@cat $(word 5,$^)
+	$(PICTURES)
 
 $(ADAPTIVE)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

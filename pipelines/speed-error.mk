@@ -17,6 +17,7 @@ speed-error: $(SPEED_ERROR)/speed-error.tsv $(SPEED_ERROR)/reach.tsv $(SPEED_ERR
 	@awk -F '\t' '{ printf "%-14s %-9s %7s %7s %10s %8s %8s %14s %10s %9s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8, $$9, $$10 }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-14s %-13s %14s %16s %16s %16s\n", $$1, $$2, $$3, $$4, $$5, $$6 }' $(SPEED_ERROR)/reach.tsv
+	$(PICTURES)
 
 $(SPEED_ERROR)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

@@ -6,6 +6,7 @@ TABLE1_TOOLS := $(addprefix $(BUILD)/bin/,cloud ipoints support shapefn interp f
 .PHONY: table1
 table1: $(TABLE1)/table1.tsv $(TABLE1)/beside.tsv $(TABLE1)/surface.png
 	@awk -f pipelines/table1.awk pipelines/table1-paper.tsv $<
+	$(PICTURES)
 
 $(TABLE1)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

@@ -13,6 +13,7 @@ UNCERTAINTY_PLACE := awk -f pipelines/stream.awk -f $(UNCERTAINTY_SCRIPTS)/perce
 .PHONY: uncertainty
 uncertainty: $(UNCERTAINTY)/uncertainty.tsv $(UNCERTAINTY)/uncertainty.png
 	@awk -F '\t' '{ printf "%-74s %-4s %7s %9s %9s %14s %15s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7 }' $<
+	$(PICTURES)
 
 $(UNCERTAINTY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 

@@ -121,12 +121,14 @@ few_solutions=(CONVERGENCE_CASES=block20 SPEED_ERROR_CASES=cube square.sizes=0.0
     goal=$fake/out/brain2d/default.dat
     with_stand_ins "$goal"
     [ -e build/out/brain2d/default.dat ]
+    [ "$(grep -v '^make\|^# mts' log | xargs)" = "MAKE $fake/out/brain2d/body.msh MAKE $goal" ] # a line for each file, no command
     touch -d tomorrow build/out/brain2d/body.msh
     export FAILED=$PWD/failures
     stand_in bad > build/bin/mtled
     run -2 with_stand_ins "$goal"
     [ ! -e build/out/brain2d/default.dat ]
     stand_in good > build/bin/mtled
-    with_stand_ins "$goal"
+    with_stand_ins V=1 "$goal"
     [ -e build/out/brain2d/default.dat ]
+    grep -q '^(nodes -u mm .* | mtled -v ' log
 }
