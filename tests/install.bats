@@ -125,7 +125,7 @@ complete_words() {
     [ "$(dpkg-deb -f mtled.deb Version)" = "$(mts --version | cut -d ' ' -f 2)" ]
     rm -rf root/usr/share/doc
     gunzip root/usr/share/man/man*/*
-    DERIVE=1 bash "$top/pipelines/install/deb.sh" root 0.1.0 derived.deb
+    DERIVE=1 bash "$top/pipelines/install/deb.sh" root 0.2.0 derived.deb
     # By the libraries' own packages: without those that dpkg-shlibdeps knows to be in the C library's.
     dpkg-deb -f derived.deb Depends | tr ',' '\n' | sed 's/^ *//; s/ .*//' | sort -u > derived
     for name in $(cat names); do grep -qx "$name" derived || { echo "no $name in: $(cat derived)"; false; }; done

@@ -4,7 +4,7 @@ load common.bash
 
 setup() {
     enter_loosely
-    texts="README.md examples/README.md pipelines/README.md"
+    texts="README.md CONTRIBUTING.md examples/README.md pipelines/README.md"
 }
 
 same() { awk -v tolerance=0.25 "${@:3}" -f "$BATS_TEST_DIRNAME/same.awk" "$1" "$2"; }

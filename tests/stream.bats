@@ -74,15 +74,15 @@ large() {
     mts keep -o out 'u' 'in put'
     mts keep u < 'in put' | cmp - out
     mts keep 'u*,node?.x' < 'in put' | mts list -v > list
-    grep -qxF "# @ mts 0.1.0 mts keep 'u*,node?.x'" list
+    grep -qxF "# @ $(mts --version) mts keep 'u*,node?.x'" list
     mts keep -to out u 'in put'
     mts keep -tonot u 'in put'
     mts keep -t u --output=nut < 'in put'
     mts keep u --output nit -t 'in put'
     cmp out not
     cmp out nut
-    [ "$(sed -n 3p out)" = '# @ mts 0.1.0 mts keep -t u' ]
-    [ "$(sed -n 3p nit)" = '# @ mts 0.1.0 mts keep u -t' ]
+    [ "$(sed -n 3p out)" = "# @ $(mts --version) mts keep -t u" ]
+    [ "$(sed -n 3p nit)" = "# @ $(mts --version) mts keep u -t" ]
     grep -qxF "# @ test 1 test 'a b'" list
 }
 

@@ -23,6 +23,9 @@ setup() {
         [[ $output =~ ^$tool\ [0-9]+\.[0-9]+\.[0-9]+$ ]]
         refused 2 no-such-option "$tool" --no-such-option
     done
+    version=$(mts --version | cut -d ' ' -f 2)
+    [ "$(sed -n 's/^version: //p' "$top/CITATION.cff")" = "$version" ]
+    [ "$(grep -m 1 '^## ' "$top/CHANGELOG.md" | cut -d ' ' -f 2)" = "$version" ]
 }
 
 @test "every option of the usage line is explained, and every explained option is in the usage line" {

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MTS_VERSION "0.1.0"
+#define MTS_VERSION "0.2.0"
 
 enum { STREAM_SECTION_LIMIT = 1 << 14 }; /* sections of a stream */
 
