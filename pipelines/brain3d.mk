@@ -157,9 +157,6 @@ brain3d-fine: $(BRAIN3D)/small.dat $(BRAIN3D)/large.dat $(BRAIN3D)/fine.dat $(BU
 $(BRAIN3D)/brain3d.vtu: $(BRAIN3D)/large.dat $(BUILD)/bin/tovtk
 	tovtk -o $@ $<
 
-$(BRAIN3D)/surface.plot $(BRAIN3D)/slice.plot: $(BRAIN3D)/%.plot: pipelines/brain3d/%.awk $(BRAIN3D)/large.dat \
-        pipelines/stream.awk $(BRAIN3D_TABLES)
-	awk -f pipelines/stream.awk -f $< -v field=$(BRAIN3D)/large.dat -v skull=$(BRAIN3D_INPUT)/skull.tsv > $@
-
-$(BRAIN3D)/brain3d.png: pipelines/brain3d/picture.gp $(BRAIN3D)/surface.plot $(BRAIN3D)/slice.plot
-	gnuplot -e "surface='$(BRAIN3D)/surface.plot'; slice='$(BRAIN3D)/slice.plot'; out='$@'" $<
+$(BRAIN3D)/brain3d.png: $(BRAIN3D)/large.dat $(BRAIN3D_INPUT)/skull.tsv pipelines/render.py
+	pipelines/render.py --most 10 --view=0.9798,0.1591,0.1212 --rim craniotomy --title 'seen from the craniotomy, its rim in black' \
+	    --cut=0,0,1,20 --cut-title 'z = 20 mm, from above; black: skull' --rigid $(BRAIN3D_INPUT)/skull.tsv $< $@

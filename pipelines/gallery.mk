@@ -5,7 +5,7 @@ GALLERY := $(OUT)/gallery
 LIVER := examples/liver
 PHANTOM := examples/phantom
 PHANTOM_SIZES := 3.5 2.5 1.8
-GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes tag ipoints support shapefn mtled mts)
+GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
 .PHONY: gallery liver phantom indentation
@@ -15,30 +15,17 @@ $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
 # ---- liver -----------------------------------------------------------------------------------------------------------
 
-liver: $(GALLERY)/liver.png
-	@grep -E '^(steps|estimated error|least J)' $(GALLERY)/liver.log
+liver: $(GALLERY)/liver.dat $(GALLERY)/liver.png
+	@printf 'forces, N: what is held, the kidney, what is lifted\n'; PATH=$(abspath $(BUILD))/bin:$$PATH mts print reactions $<
 	$(PICTURES)
 
-$(GALLERY)/liver_surface.stl: $(LIVER)/liver_surface.stl.gz
+$(GALLERY)/liver.dat: $(addprefix $(LIVER)/,labels.nii.gz labels.tsv liver.scene) $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)
-	gzip -dc $< > $@
+	(voxels -h 12mm -l $(LIVER)/labels.tsv $< | tag -u mm -d 'liver|outside' -f 'tip=low:x,6%' \
+	    -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | shapefn | mtled -v $(LIVER)/liver.scene) > $@ $(GALLERY_LOG)
 
-# The geometry merges the surface beside it.
-$(GALLERY)/liver.msh: $(LIVER)/liver.geo $(GALLERY)/liver_surface.stl
-	cp $< $(@:.msh=.geo)
-	gmsh -3 -nt 1 -v 2 $(@:.msh=.geo) -o $@
-
-$(GALLERY)/liver.dat: $(GALLERY)/liver.msh $(LIVER)/liver.scene $(GALLERY_PROGRAMS)
-	(nodes -u mm $< | tag -f 'held=normal:0,1,0,50 and box:0,0,0.11,0.17,1,0.18' -f 'tip=high:x,6%' | \
-	    shapefn | mtled -v $(LIVER)/liver.scene) > $@ $(GALLERY_LOG)
-
-GALLERY_BODY3D := awk -f pipelines/stream.awk -f pipelines/plot/body3d.awk
-
-$(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/stream.awk pipelines/plot/body3d.awk pipelines/plot/body3d.gp
-	$(GALLERY_BODY3D) -v field=$< -v view=0.3,-1,0.25 -v most=30 > $(@:.png=.whole)
-	$(GALLERY_BODY3D) -v field=$< -v view=0.3,-1,0.25 -v most=30 -v cut=0,-1,0,-85 > $(@:.png=.part)
-	gnuplot -e "whole='$(@:.png=.whole)'; part='$(@:.png=.part)'; most=30; out='$@'; \
-	    title='Left lobe lifted by 32 mm; blue: outline before'; second='the same, cut'" pipelines/plot/body3d.gp
+$(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/render.py
+	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 $< $@
 
 # ---- phantom ---------------------------------------------------------------------------------------------------------
 
@@ -57,9 +44,8 @@ $(PHANTOM_SIZES:%=$(GALLERY)/phantom-%.rows): %.rows: %.dat pipelines/gallery/ti
 $(GALLERY)/phantom.tsv: $(PHANTOM_SIZES:%=$(GALLERY)/phantom-%.rows) pipelines/gallery.mk
 	(printf 'quantity\tnodes\tours\treference\tratio\n'; cat $(filter %.rows,$^)) > $@
 
-$(GALLERY)/phantom.png: $(GALLERY)/phantom-2.5.dat pipelines/gallery/phantom.gp
-	paste <(mts print nodes.x $<) <(mts print u $<) > $(@:.png=.plot)
-	gnuplot -e "data='$(@:.png=.plot)'; out='$@'" pipelines/gallery/phantom.gp
+$(GALLERY)/phantom.png: $(GALLERY)/phantom-2.5.dat pipelines/render.py
+	pipelines/render.py --view=-1,0,0 --up=0,1,0 --mark=0,-116.25,128 --title 'before (blue) and after; cross: the tip as measured' $< $@
 
 # ---- indentation -----------------------------------------------------------------------------------------------------
 

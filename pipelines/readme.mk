@@ -38,5 +38,5 @@ readme: all results
 	for picture in $(README_PICTURES) $(NEURO_PICTURES); do \
 	    made=$(OUT)/$$picture.png; kept=examples/brain2d/pictures/$$(basename $$picture).png; \
 	    case $$picture in *=*) made=$(OUT)/neurosurgery/$${picture%=*}.png; kept=examples/neurosurgery/pictures/$${picture#*=}.png ;; esac; \
-	    [ ! $$made -nt $$kept ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 64 -strip PNG8:$$kept; \
+	    [ ! $$made -nt $$kept ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 128 -strip PNG8:$$kept; \
 	done

@@ -47,4 +47,7 @@ fake() {
     fake sudo '"$@"'
     fake dpkg-query 'true'
     PATH=$PWD/bin:$PATH run -100 bash "$deps"
+    fake dpkg-query '[[ $* == *xvfb* ]] || echo "install ok installed"' # what only pictures need
+    PATH=$PWD/bin:$PATH run -0 bash "$deps"
+    [ "${lines[1]}" = "deps: without xvfb bodies are drawn on a display only" ]
 }

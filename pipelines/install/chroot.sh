@@ -29,7 +29,8 @@ while read -r instruction line <&3; do
             mkdir -p "$to"
             tar -C "${word[0]}" --exclude=./build* --exclude=./.git -cf - . | tar -C "$to" -xf -
         else
-            cp -a "$from"${word[0]} "$to" # a pattern
+            # shellcheck disable=SC2086 # a pattern
+            cp -a "$from"${word[0]} "$to"
         fi
         ;;
     esac
