@@ -81,6 +81,14 @@ mesh.write("u.msh", file_format="gmsh22", binary=False)'
     [[ "$(mts list back.mts)" == *ymax* ]]
 }
 
+@test "the lines of README.md" {
+    mkdir build
+    ln -s "$top/examples" .
+    gmsh -2 -v 1 examples/block/block.geo -o build/block.msh
+    awk '/^```/ { on = $0 == "```python"; next } on' "$top/README.md" > lines.py
+    [[ $(/usr/bin/python3 lines.py) == 0.00[34]*" m ['bottom', 'top']" ]]
+}
+
 @test "the parameter study of the examples: forces that grow, a picture" {
     /usr/bin/python3 "$top/examples/block/study.py" study.png > said
     awk '{ if (!($5 > last)) exit bad = 1; last = $5 } END { exit bad || NR != 5 }' said

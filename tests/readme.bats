@@ -14,6 +14,10 @@ without_output() { awk '/^```/ { inside = $0 == "```console" } !inside || /^[$>`
 
 up_to_date() {
     local text=$top/$1 digits=0
+    if [ -z "${DISPLAY:-}" ] && ! command -v xvfb-run > /dev/null; then # no picture of a body
+        grep -v '^[$] pipelines/render.py' "$text" > text
+        text=$PWD/text
+    fi
     grep -qx "gmsh.$(gmsh --version 2>&1)" "$top/pipelines/results/made_with.tsv" && digits=1
     bash "$top/pipelines/readme.sh" < "$text" > new
     diff <(without_output "$text") <(without_output new)
@@ -46,7 +50,8 @@ up_to_date() {
     up_to_date pipelines/README.md
 }
 
-@test "no figure is typed by hand: fractions stand in code, tables made from files, and marked figures only" {
+@test "no figure is typed by hand: fractions stand in code, tables made from files, and marked figures only; no line is too long" {
+    run -1 grep -nE '^.{201}' "$top/README.md"
     for text in README.md pipelines/README.md; do
         sed -e '/^```/,/^```/d; /^<!-- stud/,/^<!-- end -->$/d; /^## References/,/^## /d; /^    /d' \
             -e 's/<!-- figure: [^>]*-->[^<]*<!-- end -->//g; s/`[^`]*`//g; s/\]([^)]*)//g' "$top/$text" > prose
@@ -110,7 +115,7 @@ up_to_date() {
             [ -s "$top/$(dirname "$text")/$link" ] || { echo "$text: no $link"; false; }
         done < links
     done
-    grep -q section.png <(grep -o 'pictures/.*png' "$top/README.md")
+    grep -q liver.png <(grep -o 'pictures/.*png' "$top/README.md")
     cat "$top"/README.md "$top"/*/README.md "$top"/examples/*/README.md > all
     for picture in "$top"/examples/*/pictures/*.png; do
         grep -q "/$(basename "$picture"))" all
