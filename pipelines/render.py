@@ -58,6 +58,9 @@ class Body:
     """The body in mm: `rest` with the vectors u and their lengths, its surface, and the surface moved."""
 
     def __init__(self, stream):
+        for name in ("nodes.x", "cells", "u"):
+            if name not in stream:
+                raise ValueError(f"no section {name}")
         for name in ("nodes.x", "u"):
             stream[name] = MM * stream[name]
         if stream["nodes.x"].shape[1] != 3:
@@ -267,10 +270,13 @@ def draw(given):
     panel.scale_bar()
     legend(window, (ends[-1], 0, 1, 1), colours, step)
     window.Render()
+    vtk.vtkObject.GlobalWarningDisplayOff()  # a picture that cannot be written is told below
     chain_end = made("WindowToImageFilter", Input=window, ReadFrontBuffer=False)
     writer = made("PNGWriter", FileName=given.picture, CompressionLevel=9)
     writer.SetInputConnection(chain_end.GetOutputPort())
     writer.Write()
+    if writer.GetErrorCode():
+        raise OSError(f"{given.picture}: cannot be written")
 
 
 if __name__ == "__main__":
@@ -290,4 +296,5 @@ if __name__ == "__main__":
     try:
         draw(asked)
     except (OSError, ValueError, KeyError, mtled.StreamError) as error:
-        sys.exit(f"render.py: {asked.stream}: {error}")
+        text = error.args[0] if isinstance(error, KeyError) else str(error)
+        sys.exit(f"render.py: {text if asked.stream in text else asked.stream + ': ' + text}")

@@ -16,6 +16,11 @@ load common.bash
         awk '{ v += $2; w += $1 * $2 } END { print w / v; exit !(w / v > 0.99 && w / v < 1.01 && NR > 500) }'
     [ -n "${DISPLAY:-}" ] || command -v xvfb-run > /dev/null || skip "no xvfb-run: the picture is not drawn"
     "$top/pipelines/render.py" --view=-0.3,1,0.25 --cut=0,1,0,45 --most 30 u.dat whole.png
+    mts drop u u.dat > none.dat
+    for bad in "none.dat x.png" "u.dat none/x.png"; do
+        run -1 --separate-stderr "$top/pipelines/render.py" $bad
+        [[ $stderr == "render.py: "* && $(wc -l <<< "$stderr") -eq 1 ]]
+    done
     # What is lifted is dark, what is not is light, around it is white, in both halves.
     /usr/bin/python3 - << 'END'
 from vtkmodules.util.numpy_support import vtk_to_numpy
