@@ -252,6 +252,7 @@ def arguments():
 
 def draw(given):
     body = Body(mtled.read(given.stream))
+    pathlib.Path(given.picture).touch()  # can it be written?
     step = rounded((given.most or body.length.max()) / 4)
     colours = lookup(given.most or step * np.ceil(body.length.max() / step))
     window = made("RenderWindow", OffScreenRendering=1, MultiSamples=8, Size=(1500 if given.cut else 850, 700))
@@ -270,13 +271,12 @@ def draw(given):
     panel.scale_bar()
     legend(window, (ends[-1], 0, 1, 1), colours, step)
     window.Render()
-    vtk.vtkObject.GlobalWarningDisplayOff()  # a picture that cannot be written is told below
     chain_end = made("WindowToImageFilter", Input=window, ReadFrontBuffer=False)
     writer = made("PNGWriter", FileName=given.picture, CompressionLevel=9)
     writer.SetInputConnection(chain_end.GetOutputPort())
     writer.Write()
     if writer.GetErrorCode():
-        raise OSError(f"{given.picture}: cannot be written")
+        raise OSError(f"{given.picture}: not written")
 
 
 if __name__ == "__main__":
@@ -291,10 +291,11 @@ if __name__ == "__main__":
         from vtk.util import numpy_support as support
 
         import mtled
+        vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_ERROR)
     except ImportError as error:
         sys.exit(f"render.py: {error}: apt-get install python3-vtk9 python3-numpy")
     try:
         draw(asked)
     except (OSError, ValueError, KeyError, mtled.StreamError) as error:
         text = error.args[0] if isinstance(error, KeyError) else str(error)
-        sys.exit(f"render.py: {text if asked.stream in text else asked.stream + ': ' + text}")
+        sys.exit(f"render.py: {text if asked.stream in text or asked.picture in text else asked.stream + ': ' + text}")
