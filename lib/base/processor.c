@@ -2,7 +2,7 @@
 
 const char *processor_best_set(void)
 {
-#if defined(__x86_64__)
+#if HAS_SETS
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) {
