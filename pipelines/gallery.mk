@@ -21,7 +21,7 @@ liver: $(GALLERY)/liver.dat $(GALLERY)/liver.png
 
 $(GALLERY)/liver.dat: $(addprefix $(LIVER)/,labels.nii.gz labels.tsv liver.scene) $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)
-	(voxels -h 12mm -l $(LIVER)/labels.tsv $< | tag -u mm -d 'liver|outside' -f 'tip=low:x,6%' \
+	(voxels -h 15mm -l $(LIVER)/labels.tsv $< | tag -u mm -d 'liver|outside' -f 'tip=low:x,6%' \
 	    -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | shapefn | mtled -v $(LIVER)/liver.scene) > $@ $(GALLERY_LOG)
 
 $(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/render.py
