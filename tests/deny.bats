@@ -134,5 +134,9 @@ denied() {
     denied voxels -h 25mm --surface a -l labels.tsv slice.nii
     denied voxels -h 20mm sphere.nii
     denied warp slice.nii u.mts
+    warp -o slice.nrrd slice.nii u.mts
+    warp -o slice.mha slice.nii u.mts
+    denied warp slice.nrrd u.mts
+    denied warp slice.mha u.mts
     denied sample slice.nii points.mts
 }

@@ -378,7 +378,7 @@ END
     cmp <(mts print nodes.x one.mts) <(voxels -h 6mm two.hdr | mts print nodes.x)
     gzip -k two.hdr two.img
     cmp <(mts print nodes.x one.mts) <(voxels -h 6mm two.hdr.gz | mts print nodes.x)
-    refused 2 "two.img: is no NIfTI image: save it as .nii or .nii.gz; of a pair give the .hdr file" voxels -h 6mm two.img
+    refused 2 "two.img: is no image of NIfTI, NRRD or MetaImage: save it as .nii.gz; of a pair give the header's file" voxels -h 6mm two.img
     refused 2 "standard input: is a header whose data are in a file of their own" voxels -h 6mm - < two.hdr
     printf x >> two.img
     refused 2 "two.hdr: its data, two.img: more data than " voxels -h 6mm two.hdr

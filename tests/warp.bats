@@ -64,13 +64,55 @@ setup_file() {
     awk '/inverse map/ { split($0, part, "residual "); exit !(part[2] + 0 < .05) }' <<< "$stderr"
 }
 
+@test "NRRD and MetaImage: the same voxels and places, to plastimatch and from it" {
+    with_u cube.mts 'print 0, 0, 0' > still.dat
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" rgb.nii rgb
+    nifti smooth oblique.nii oblique
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" slice.nii coronal
+    cloud -d 2 -k regular -n 3 --box 0,0.06,0,0.06 > square.mts
+    with_u square.mts 'print 0, 0' > still2.dat
+    for image in rgb oblique slice; do
+        still=still.dat
+        [ $image != slice ] || still=still2.dat
+        warp -o ours.nii $image.nii $still
+        for end in nrrd mha; do
+            warp -o $image.$end $image.nii $still
+            warp $image.$end $still > again.$end # as the input
+            cmp $image.$end again.$end
+            warp -o back.nii again.$end $still
+            nifti same ours.nii back.nii 0
+            [ $image = rgb ] && continue # which they take for something else
+            plastimatch convert --input $image.$end --output-img theirs.nii > said
+            nifti same $image.nii theirs.nii 0
+        done
+        [ $image = rgb ] && continue
+        for end in nrrd nhdr mha mhd; do
+            plastimatch convert --input $image.nii --output-img theirs.$end > said 2>&1
+            warp -o back.nii theirs.$end $still
+            nifti same ours.nii back.nii 0
+        done
+    done
+    for image in oblique.{nii,nrrd,mha}; do sample -p <(echo 30 20 10) -u mm $image | awk 'NR == 2 { printf "%.6f\n", $4 }'; done | uniq > at
+    [ "$(wc -l < at)" = 1 ]
+    nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" scaled.nii scaled
+    warp -o scaled.nrrd scaled.nii still.dat
+    cmp <(nifti value scaled.nii 30 31 32) <(warp -o scaled.nii scaled.nrrd still.dat && nifti value scaled.nii 30 31 32)
+    refused 2 "-o x.nhdr: images are written as .nii, .nii.gz, .nrrd or .mha" warp -o x.nhdr oblique.nii still.dat
+    sed 's|theirs.raw|../theirs.raw|' theirs.mhd > outside.mhd
+    refused 2 "outside.mhd: header: ElementDataFile= ../theirs.raw: not a file in the folder of the header" warp outside.mhd still2.dat
+}
+
 @test "plastimatch applies our field to the scan and gets our image" {
     nifti smooth scan.nii.gz oblique
     warp --fill 0 -o ours.nii.gz scan.nii.gz u.dat
     warp -o open.nii.gz scan.nii.gz u.dat
-    warp --field -o field.nii.gz scan.nii.gz u.dat
-    plastimatch warp --input scan.nii.gz --xf field.nii.gz --output-img theirs.nii.gz > said
-    nifti same open.nii.gz theirs.nii.gz 0.002
+    for end in nii.gz nrrd mha; do
+        warp --field -o field.$end scan.nii.gz u.dat
+        plastimatch warp --input scan.nii.gz --xf field.$end --output-img theirs.nii.gz > said
+        nifti same open.nii.gz theirs.nii.gz 0.002
+    done
+    grep -aqx 'kinds: vector domain domain domain' field.nrrd
+    grep -aqx 'content: displacement, mm, LPS, from result to image' field.nrrd
     run -1 nifti same ours.nii.gz theirs.nii.gz 0.002
     run -1 nifti same scan.nii.gz theirs.nii.gz 5
     # And back: what was moved is brought back by the field of the inverse.
@@ -78,6 +120,15 @@ setup_file() {
     warp -i cubic -o moved.nii.gz scan.nii.gz u.dat
     warp --inverse -o ours.nii.gz moved.nii.gz u.dat
     warp --field --inverse -o field.nii.gz scan.nii.gz u.dat
+    # Points by the field of the inverse, at voxels: theirs are those of the nearest one.
+    warp --field --inverse -o field.nrrd scan.nii.gz u.dat
+    grep -aqx 'content: displacement, mm, LPS, from reference to moved' field.nrrd
+    printf '30 20 25\n31 41 20\n' > points
+    { printf '# CoordinateSystem = 0\n'; awk '{ printf "%d,%g,%g,%g,0,0,0,1,1,1,0,p,,\n", NR, $1, $2, $3 }' points; } > points.fcsv
+    plastimatch warp --input points.fcsv --xf field.nrrd --output-pointset theirs.fcsv > said
+    interp --deformed -p points -u mm -t u.dat > ours.mts
+    paste <(grep -v '^#' theirs.fcsv | tr , ' ') <(mts print x.deformed ours.mts) | awk '
+        { for (k = 2; k < 5; k++) if (($k - 1e3 * $(k + 5))^2 > .01^2) exit 1; n++ } END { exit n != 2 }'
     plastimatch warp --input moved.nii.gz --xf field.nii.gz --output-img theirs.nii.gz > said
     nifti same ours.nii.gz theirs.nii.gz 0.002
     nifti same scan.nii.gz theirs.nii.gz 2.5

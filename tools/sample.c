@@ -7,7 +7,7 @@ static const char usage[] =
     "       sample --material TABLE [...] IMAGE [FILE]\n"
     "       sample --tissue E,NU [--tissue E,NU ...] [...] IMAGE... [FILE]\n"
     "\n"
-    "Reads an image (NIfTI: .nii, .nii.gz, .hdr of a pair; -: standard input) and prints a table with a\n"
+    "Reads an image (NIfTI, NRRD or MetaImage; -: standard input) and prints a table with a\n"
     "row for each point: its coordinates and the image's values there (three for colours). The points are\n"
     "the nodes of a stream, its integration points or other points in it, or the rows of a table. The\n"
     "world axes of the image are those of the points: x to the right, y to the front, z up. Points in 2D\n"

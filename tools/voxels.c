@@ -7,7 +7,7 @@ static const char usage[] =
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "\n"
-    "Reads a label image (NIfTI: .nii, .nii.gz, .hdr of a pair; - or nothing: standard input) and writes\n"
+    "Reads a label image (NIfTI, NRRD or MetaImage; - or nothing: standard input) and writes\n"
     "what nodes writes of a mesh: nodes.x (world coordinates, m; x to the right, y to the front, z up),\n"
     "cells, cells.region with the labels' names, facets of the boundary in groups A|B of the region A and\n"
     "what lies beyond, B: 'outside' or a label that is left out; and as node sets A|B the interfaces.\n"

@@ -5,11 +5,11 @@ static const char usage[] =
     "            [-o FILE] IMAGE [FILE]\n"
     "       warp --field [--inverse] [--frame K] [-v] [-o FILE] GRID [FILE]\n"
     "\n"
-    "Reads an image (NIfTI: .nii, .nii.gz, .hdr of a pair; -: standard input) and a stream with nodes.x\n"
-    "(m), cells and the displacement u (m), and writes the image moved: at each voxel x the value of IMAGE\n"
-    "at the place X that moves to x, X + u(X) = x. The world axes of the image are those of the nodes: x to\n"
-    "the right, y to the front, z up. A body in 2D moves an image of one slice: its x and y are the two\n"
-    "world axes in the slice, in their order.\n"
+    "Reads an image (NIfTI, NRRD or MetaImage; -: standard input) and a stream with nodes.x (m), cells\n"
+    "and the displacement u (m), and writes the image moved: at each voxel x the value of IMAGE at the\n"
+    "place X that moves to x, X + u(X) = x. The world axes of the image are those of the nodes: x to the\n"
+    "right, y to the front, z up. A body in 2D moves an image of one slice: its x and y are the two world\n"
+    "axes in the slice, in their order.\n"
     "Images may be scans, colours (RGB) or labels, of any type, size of voxels, order and direction of\n"
     "axes; values keep their type and scaling.\n"
     "\n"
@@ -20,13 +20,15 @@ static const char usage[] =
     "voxels that the body has left, with a note, unless --vacated or --fill gives them a value. Where X\n"
     "lies outside of IMAGE the value is that of --fill, or 0, and a note counts these voxels.\n"
     "\n"
-    "With --field the displacement field is written on the grid of an image instead: a vector image of\n"
-    "5 dimensions (intent 1007, float32) as programs based on ITK take it (3D Slicer, ANTs, plastimatch).\n"
-    "It maps places of the result back to places of the image, X - x at x, in mm, along ITK's axes: to the\n"
-    "left, to the back, up (LPS). It is 0 outside of the moved body.\n"
+    "With --field the displacement field is written on the grid of an image instead, as a transform for\n"
+    "programs based on ITK (3D Slicer, ANTs, plastimatch): vectors of float32, in mm, to the left, to the\n"
+    "back, up (LPS), in NIfTI of 5 dimensions and intent 1007. It leads from places of the result to places\n"
+    "of the image, X - x at x, and is 0 outside of the moved body. So it moves images; 3D Slicer moves\n"
+    "points by it, too. With --inverse it is u at X, which moves points, and brings moved images back.\n"
     "\n"
-    "The image written is compressed unless FILE ends in .nii. A body of which no voxel is inside, or that\n"
-    "is a hundred times larger than the image, is refused; folded cells are left out, with a note.\n"
+    "The format written is that of the name of FILE, .nii.gz, .nii, .nrrd or .mha, else that of IMAGE.\n"
+    "A body of which no voxel is inside, or that is a hundred times larger than the image, is refused;\n"
+    "folded cells are left out, with a note.\n"
     "\n"
     "Options:\n"
     "  -i, --interpolation METHOD\n"
@@ -37,20 +39,18 @@ static const char usage[] =
     "      --vacated VALUES  the same for voxels where the body was and is no more; labels without a value\n"
     "                     have that of --fill\n"
     "      --field        write the displacement field\n"
-    "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X);\n"
-    "                     with --field that displacement, u at X, along the same axes\n"
+    "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X)\n"
     "      --frame K      take u.frame.K in place of u\n"
     "  -v, --verbose      tell what was moved, how far, and how exact the inverse map is; with\n"
     "                     -i nearest the volumes of labels before and after\n"
-    "  -o, --output FILE  write to FILE (.nii or .nii.gz), none of the inputs, which appears only when\n"
-    "                     whole\n"
+    "  -o, --output FILE  write to FILE, none of the inputs, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"
     "  warp -i nearest --vacated 0 -o moved.nii.gz labels.nii.gz u.dat\n"
     "  warp -i nearest --vacated 1=2 --fill 3=0 labels.nii.gz u.dat > resected.nii.gz\n"
-    "  warp --field T1.nii.gz u.dat > field.nii.gz\n"
-    "  plastimatch warp --input T1.nii.gz --xf field.nii.gz --output-img predicted.nii.gz\n";
+    "  warp --field -o field.nrrd T1.nrrd u.dat\n"
+    "  plastimatch warp --input T1.nrrd --xf field.nrrd --output-img predicted.nrrd\n";
 
 #include "images/image_body.h"
 #include "images/images.h"
@@ -223,22 +223,23 @@ static void check_values(const struct tool *tool, const struct image *image, con
 }
 
 /* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
-static void new_result(const struct tool *tool, const struct image *source, const struct image *grid,
-                       struct image *result)
+static void new_result(const struct tool *tool, const struct warp_request *request,
+                       const struct image *source, const struct image *grid, struct image *result)
 {
-    size_t components = source != NULL ? source->components : 3;
-    TOOL_TRY(tool, image_new(result, grid->size, components, &error));
+    TOOL_TRY(tool, image_new(result, grid->size, request->field ? 3 : source->components, &error));
     double *values = result->values;
-    if (source != NULL) {
+    if (!request->field) {
         *result = *source;
         result->values = values;
-    } else {
-        strcpy(result->description, "displacement, mm, LPS, from result to image");
+        result->unit = grid->unit;
+    } else { /* the vectors are in mm, and ITK reads mm */
+        snprintf(result->description, sizeof result->description, "displacement, mm, LPS, from %s",
+                 request->inverse ? "reference to moved" : "result to image");
     }
     memcpy(result->size, grid->size, sizeof result->size);
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
-    result->unit = source != NULL ? grid->unit : 1e-3; /* the vectors are in mm, and ITK reads mm */
     result->space = grid->space;
+    result->format = grid->format;
     result->version = grid->version;
 }
 
@@ -333,7 +334,7 @@ int main(int argc, char *argv[])
         other = find_owners(&tool, grid, &cells, unseen, &ignored);
         note_not_finite(&tool, &image, tool.operands[0]);
     }
-    new_result(&tool, request.field ? NULL : &image, grid, &result);
+    new_result(&tool, &request, &image, grid, &result);
     struct warp_job job = {.request = &request,
                            .source = request.field ? NULL : &image,
                            .motion = &motion,

@@ -11,7 +11,7 @@ static void require_sound(const struct image *image)
     double inverse[3][4], corner[3], place[3];
     REQUIRE(image->values != NULL && image->components >= 1);
     REQUIRE(image->size[0] >= 1 && image->size[1] >= 1 && image->size[2] >= 1);
-    REQUIRE(image->unit == 1 || image->unit == 1e-3 || image->unit == 1e-6);
+    REQUIRE(image->unit > 0);
     REQUIRE(isfinite(image->slope) && image->slope != 0 && isfinite(image->inter));
     REQUIRE(memchr(image->note, '\n', sizeof image->note) == NULL);
     for (int i = 0; i < 12; i++) {
@@ -42,15 +42,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     close(file);
     require_sound(&image);
-    for (int gzip = 0; gzip < 2; gzip++) {
+    for (int format = 0; format < IMAGE_FORMATS; format++) {
         file = file_of_bytes("", 0, NULL);
-        REQUIRE(image_write(&image, file, gzip, &error) == STATUS_OK);
+        REQUIRE(image_write(&image, file, (enum image_format)format, &error) == STATUS_OK);
         REQUIRE(lseek(file, 0, SEEK_SET) == 0);
         /* Places may overflow the numbers of the header; all else is as it was. */
         if (is_accepted(image_read_from(&again, file, "again", &error), &error)) {
             REQUIRE(memcmp(image.size, again.size, sizeof image.size) == 0);
-            REQUIRE(image.components == again.components && image.datatype == again.datatype);
-            REQUIRE(image.slope == again.slope || image.version == 1);
+            REQUIRE(image.components == again.components);
+            REQUIRE(format > IMAGE_NIFTI || image.datatype == again.datatype);
+            REQUIRE(format > IMAGE_NIFTI || image.slope == again.slope || image.version == 1);
             image_free(&again);
         }
         close(file);

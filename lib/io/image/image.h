@@ -1,5 +1,7 @@
-/* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii, or pairs .hdr and .img), plain or compressed by
- * gzip, of either byte order. */
+/* Images on regular grids: NIfTI-1 and NIfTI-2 files (.nii, or pairs .hdr and .img), NRRD (.nrrd, or .nhdr
+ * and a file of data) and MetaImage (.mha, or .mhd and a file of data), of either byte order, plain or
+ * compressed.
+ */
 #pragma once
 
 #include "base/status.h"
@@ -23,6 +25,9 @@ enum image_datatype {
     IMAGE_RGBA32 = 2304 /* 4 components of 8 bits */
 };
 
+/* The formats that are written; a reader keeps them. */
+enum image_format { IMAGE_NIFTI_GZIP, IMAGE_NIFTI, IMAGE_NRRD, IMAGE_METAIMAGE, IMAGE_FORMATS };
+
 /* Codes of `intent`. */
 enum { IMAGE_INTENT_LABEL = 1002, IMAGE_INTENT_DISPLACEMENT = 1006, IMAGE_INTENT_VECTOR = 1007 };
 
@@ -36,7 +41,8 @@ enum {
 };
 
 /* An image on a regular grid, as a NIfTI file holds it. Lengths in metres, world axes RAS+ (x to the right, y
- * to the front, z up). */
+ * to the front, z up). Vectors of intent VECTOR stand as in NIfTI files of ITK: to the left, to the back, up.
+ */
 struct image {
     size_t size[3];        /* voxels along i, j, k, each >= 1; a slice has size[2] == 1 */
     size_t components;     /* values at a voxel: 1, 3 for RGB (4 with opacity), or those of a vector image */
@@ -45,8 +51,9 @@ struct image {
     double *values;        /* size[2] * size[1] * size[0] * components:
                               values[((k * size[1] + j) * size[0] + i) * components + c], after slope and inter */
     double slope, inter;   /* value = slope * stored + inter; slope 1, inter 0: none; ignored for RGB */
-    double unit;           /* metres in a unit of length of the file: 1, 1e-3 or 1e-6 */
-    int space;   /* IMAGE_SPACE_...: of world coordinates; UNKNOWN: the file states only voxel sizes */
+    double unit;           /* metres in a unit of length of the file */
+    int space; /* IMAGE_SPACE_...: of world coordinates; UNKNOWN: the file states only voxel sizes */
+    enum image_format format;
     int version; /* of NIfTI: 1 or 2; images too large for 1 are written as 2 */
     int intent;  /* NIfTI's code of the meaning of the values; 0: none */
     char intent_name[17];
@@ -59,14 +66,15 @@ struct image {
 MUST_CHECK enum status image_new(struct image *image, const size_t size[3], size_t components,
                                  struct error *error);
 
-/* Read a NIfTI file, compressed or not, from an open descriptor, which stays open; messages begin with
- * `name`. The data of a header NAME.hdr are those of the file NAME.img. The space is that of sform if the
- * file has one, else of qform, else voxel sizes along axes of unknown direction, with a note. Without a unit
- * of length it is mm, with a note. An image of one slice needs no size across. STATUS_INPUT for a file that
- * is not a NIfTI file of one volume (known formats are named, with the remedy), for types other than enum
- * image_datatype, for a truncated or damaged file, and for a header that contradicts itself or the length of
- * the data; STATUS_SYSTEM for read failures and memory. Time and memory are proportional to the data in the
- * file, whatever its header says. On failure the image is empty. */
+/* Read an image file from an open descriptor, which stays open; messages begin with `name`. The data of a
+ * NIfTI header NAME.hdr are those of the file NAME.img; NRRD and MetaImage headers name theirs, which must
+ * lie in the folder of the header or below. The space of NIfTI is that of sform if the file has one, else of
+ * qform, else voxel sizes along axes of unknown direction, with a note; so are spacings of NRRD. Without a
+ * unit of length it is mm, in NIfTI with a note. An image of one slice needs no size across. STATUS_INPUT for
+ * a file that is not of these formats and of one volume (known ones are named, with the remedy), for types
+ * other than enum image_datatype, for a truncated or damaged file, and for a header that contradicts itself
+ * or the length of the data; STATUS_SYSTEM for read failures and memory. Time and memory are proportional to
+ * the data in the file, whatever its header says. On failure the image is empty. */
 MUST_CHECK enum status image_read_from(struct image *image, int descriptor, const char *name,
                                        struct error *error);
 
@@ -74,9 +82,11 @@ MUST_CHECK enum status image_read_from(struct image *image, int descriptor, cons
 void image_range(const struct image *image, double *least, double *most);
 
 /* Write an image to an open descriptor, little-endian. Values are rounded to what the type can hold, NaN is 0
- * in integers. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not fit the type
- * of the components; STATUS_SYSTEM for write errors, with errno's text, and memory. */
-MUST_CHECK enum status image_write(const struct image *image, int descriptor, bool gzip, struct error *error);
+ * in integers. NRRD and MetaImage know no scaling: scaled values become floats. They are written in LPS and
+ * mm. The same image gives the same bytes. Errors: STATUS_INPUT for sizes that do not fit the type of the
+ * components; STATUS_SYSTEM for write errors, with errno's text, and memory. */
+MUST_CHECK enum status image_write(const struct image *image, int descriptor, enum image_format format,
+                                   struct error *error);
 
 /* Release the values; the image becomes empty. */
 void image_free(struct image *image);

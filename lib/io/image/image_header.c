@@ -81,6 +81,12 @@ static void copy_text(char *text, const unsigned char *bytes, size_t size)
     }
 }
 
+void image_describe(struct image *image, const char *text)
+{
+    size_t length = strlen(text), most = sizeof image->description - 1;
+    copy_text(image->description, (const unsigned char *)text, length < most ? length : most);
+}
+
 void nifti_decode(const unsigned char *bytes, int version, bool swapped, struct nifti *header,
                   struct image *image)
 {
@@ -140,6 +146,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
     const struct nifti_type *type = nifti_type(image->datatype);
     int version = version_of(image), size = version == 1 ? NIFTI1_HEADER : NIFTI2_HEADER;
     double dim[8], matrix[3][4], quatern[3], pixdim[4];
+    double unit = image->unit == 1 || image->unit == 1e-6 ? image->unit : 1e-3; /* what NIfTI knows */
     memset(bytes, 0, NIFTI2_HEADER + 4);
     bytes[0] = (unsigned char)(size & 255);
     bytes[1] = (unsigned char)(size >> 8);
@@ -150,7 +157,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
     }
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 4; c++) {
-            matrix[r][c] = image->to_world[r][c] / image->unit;
+            matrix[r][c] = image->to_world[r][c] / unit;
             put(bytes, version, srow_field, 4 * r + c, matrix[r][c]);
         }
     }
@@ -170,7 +177,7 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
     put(bytes, version, intent_field, 0, image->intent);
     put(bytes, version, slope_field, 0, image->slope);
     put(bytes, version, inter_field, 0, image->inter);
-    put(bytes, version, units_field, 0, image->unit > 0.5 ? 1 : image->unit > 0.5e-3 ? 2 : 3);
+    put(bytes, version, units_field, 0, unit > 0.5 ? 1 : unit > 0.5e-3 ? 2 : 3);
     put(bytes, version, offset_field, 0, size + 4);
     memcpy(bytes + description_offset[version - 1], image->description, strlen(image->description));
     memcpy(bytes + intent_name_offset[version - 1], image->intent_name, strlen(image->intent_name));

@@ -4,6 +4,7 @@
 #include "io/image/image.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <zlib.h>
 
 enum { NIFTI1_HEADER = 348, NIFTI2_HEADER = 540 };
@@ -40,6 +41,42 @@ void nifti_get(const struct nifti_type *type, const unsigned char *bytes, bool s
 /* The bytes of a number, little-endian: rounded to what the type can hold, NaN to 0 in integers. */
 void nifti_put(const struct nifti_type *type, double value, unsigned char *bytes);
 
+struct image_source;
+
+/* How the values are stored. */
+enum image_encoding { IMAGE_RAW, IMAGE_PACKED /* by gzip or zlib */, IMAGE_ASCII };
+
+/* Where the values lie behind the header, or in a file of their own, and how. */
+struct image_layout {
+    const struct nifti_type *type;
+    enum image_encoding encoding;
+    bool swapped;        /* the other byte order */
+    bool together;       /* all values of a voxel lie together; else there is a volume for each component */
+    bool mirrored[2];    /* components along x and y have the other sign in memory */
+    int64_t skip_lines;  /* before the values: lines, as they stand, */
+    int64_t skip_bytes;  /* and bytes, of what was compressed; -1: all but the last bytes of the file */
+    char data_file[256]; /* in the folder of the header or below; "": they follow the header */
+};
+
+/* Read a header whose first four bytes have been read: sizes, components, place, and the layout of the
+ * values. STATUS_INPUT, with the key, for what is not read or contradicts itself. */
+MUST_CHECK enum status nrrd_header(struct image_source *source, struct image *image,
+                                   struct image_layout *layout, struct error *error);
+MUST_CHECK enum status metaimage_header(struct image_source *source, const unsigned char begin[4],
+                                        struct image *image, struct image_layout *layout,
+                                        struct error *error);
+
+/* Whether these are the first bytes of a MetaImage header. */
+bool metaimage_begins(const unsigned char bytes[4]);
+
+/* Read the values of an image whose sizes and scaling are set, and check that nothing follows them. */
+MUST_CHECK enum status image_values_read(struct image_source *source, const struct image_layout *layout,
+                                         struct image *image, struct error *error);
+
+/* Print the header of an image whose values follow, little-endian, compressed by gzip in an NRRD file. */
+void nrrd_print(const struct image *image, FILE *file);
+void metaimage_print(const struct image *image, FILE *file);
+
 /* The version and byte order of a header, from its first 4 bytes; 0: not a header. */
 int nifti_version(const unsigned char *bytes, bool *swapped);
 
@@ -53,6 +90,17 @@ size_t nifti_encode(const struct image *image, unsigned char bytes[NIFTI2_HEADER
 
 /* Set image->to_world, unit and space from a header, and note assumptions. */
 MUST_CHECK enum status nifti_space(const struct nifti *header, struct image *image, struct error *error);
+
+/* Set image->to_world to a map to RAS, m; a slice's third step may be zero. STATUS_INPUT, with the name of
+ * its source, for one that is not finite or not invertible. */
+MUST_CHECK enum status image_place(struct image *image, double matrix[3][4], const char *form,
+                                   struct error *error);
+
+/* Add a sentence to image->note. */
+void image_note(struct image *image, const char *text);
+
+/* Set image->description: its beginning, '?' for what is not printable. */
+void image_describe(struct image *image, const char *text);
 
 /* The quaternion (b, c, d), voxel sizes and qfac of the first three columns of a matrix; false if these are
  * not orthogonal. */
@@ -72,6 +120,11 @@ struct image_source {
 /* Begin with an open descriptor, which stays open. */
 MUST_CHECK enum status image_source_open(struct image_source *source, int descriptor, struct error *error);
 void image_source_close(struct image_source *source);
+
+/* What follows is compressed by gzip or zlib, up to the end. STATUS_INPUT in a file that is compressed
+ * itself.
+ */
+MUST_CHECK enum status image_source_unpack(struct image_source *source, struct error *error);
 
 /* Take `size` bytes, or *got fewer at the end of a whole file. */
 MUST_CHECK enum status image_source_take(struct image_source *source, void *bytes, size_t size, size_t *got,

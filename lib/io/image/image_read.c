@@ -1,4 +1,4 @@
-/* Reading NIfTI files: the header is checked before it is used, and memory grows with the data. libnifti is
+/* Reading images: the header is checked before it is used, and memory grows with the data. libnifti is
  * not used: version 3.0.1 accepts a compressed file without checksum and a header with fewer voxels than
  * there are, and it cannot read a pipe. */
 #include "io/image/image_private.h"
@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t block_values = 1 << 16;
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
 static const char pair_magic[] = "ni1";
 
@@ -23,10 +22,8 @@ static enum status fail_foreign(const unsigned char *bytes, size_t size, struct 
         size_t offset;
         const char *text, *what;
     } known[] = {{128, "DICM", "a DICOM file: convert the series with dcm2niix"},
-                 {0, "NRRD", "an NRRD file: save it as NIfTI (.nii.gz)"},
-                 {0, "ObjectType", "a MetaImage file: save it as NIfTI (.nii.gz)"},
-                 {0, "# mts", "an mts stream, where an image (NIfTI) is expected"},
-                 {0, "$MeshFormat", "a mesh, where an image (NIfTI) is expected"}};
+                 {0, "# mts", "an mts stream, where an image is expected"},
+                 {0, "$MeshFormat", "a mesh, where an image is expected"}};
     for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
         size_t length = strlen(known[k].text);
         if (size >= known[k].offset + length && memcmp(bytes + known[k].offset, known[k].text, length) == 0) {
@@ -35,7 +32,8 @@ static enum status fail_foreign(const unsigned char *bytes, size_t size, struct 
     }
     return size == 0 ? fail(error, STATUS_INPUT, "is empty")
                      : fail(error, STATUS_INPUT,
-                            "is no NIfTI image: save it as .nii or .nii.gz; of a pair give the .hdr file");
+                            "is no image of NIfTI, NRRD or MetaImage: save it as .nii.gz; of a pair give the "
+                            "header's file");
 }
 
 /* *pair: the data are in a file of their own. */
@@ -51,14 +49,16 @@ static enum status check_magic(const unsigned char *bytes, int version, bool *pa
                         : fail(error, STATUS_INPUT, "header: no mark of NIfTI-2: damaged");
 }
 
-/* Read and decode the header. */
-static enum status read_header(struct image_source *source, struct nifti *header, struct image *image,
-                               struct error *error)
+/* Read and decode the header, whose first `got` bytes, at most 4, have been read. */
+static enum status read_header(struct image_source *source, unsigned char bytes[NIFTI2_HEADER], size_t got,
+                               struct nifti *header, struct image *image, struct error *error)
 {
-    unsigned char bytes[NIFTI2_HEADER] = {0};
-    size_t got, more;
+    size_t more;
     bool swapped = false;
-    RETURN_IF_ERROR(image_source_take(source, bytes, NIFTI1_HEADER, &got, error));
+    if (got == 4) {
+        RETURN_IF_ERROR(image_source_take(source, bytes + got, NIFTI1_HEADER - got, &more, error));
+        got += more;
+    }
     int version = got >= 4 ? nifti_version(bytes, &swapped) : 0;
     if (version == 0) {
         return fail_foreign(bytes, got, error);
@@ -78,9 +78,9 @@ static enum status read_header(struct image_source *source, struct nifti *header
     return STATUS_OK;
 }
 
-/* Check sizes and components; *count: their product, which fits into memory sizes. */
+/* Check sizes and components: their product fits into memory sizes. */
 static enum status check_sizes(const struct nifti *header, const struct nifti_type *type, struct image *image,
-                               size_t *count, struct error *error)
+                               struct error *error)
 {
     double size[8] = {0, 1, 1, 1, 1, 1, 1, 1};
     if (!(header->dim[0] >= 2 && header->dim[0] <= 7)) {
@@ -106,10 +106,10 @@ static enum status check_sizes(const struct nifti *header, const struct nifti_ty
         return fail(error, STATUS_INPUT, "header: vectors of colours");
     }
     image->components = (size_t)size[5] * (size_t)type->components;
-    *count = image->components;
+    size_t count = image->components;
     for (int i = 0; i < 3; i++) {
         image->size[i] = (size_t)size[1 + i];
-        if (__builtin_mul_overflow(*count, image->size[i], count) || *count > SIZE_MAX / 32) {
+        if (__builtin_mul_overflow(count, image->size[i], &count) || count > SIZE_MAX / 32) {
             return fail(error, STATUS_INPUT, "header: %.0f x %.0f x %.0f voxels: more than any memory",
                         size[1], size[2], size[3]);
         }
@@ -117,21 +117,22 @@ static enum status check_sizes(const struct nifti *header, const struct nifti_ty
     return STATUS_OK;
 }
 
-static enum status check_header(const struct nifti *header, const struct nifti_type **type,
-                                struct image *image, size_t *count, struct error *error)
+/* Check a header; set the image and the layout of the values, which are `taken` bytes further on. */
+static enum status check_header(const struct nifti *header, int64_t taken, struct image *image,
+                                struct image_layout *layout, struct error *error)
 {
+    const struct nifti_type *type = nifti_type(header->datatype);
     double least = header->pair ? 0 : header->version == 1 ? NIFTI1_HEADER + 4 : NIFTI2_HEADER + 4;
-    *type = nifti_type(header->datatype);
-    if (*type == NULL) {
+    if (type == NULL) {
         return fail(
             error, STATUS_INPUT,
             "header: values of type %d: integers of 8 to 64 bits, floats of 32 and 64, RGB and RGBA are read",
             header->datatype);
     }
-    int bits = 8 * (*type)->bytes * (*type)->components;
+    int bits = 8 * type->bytes * type->components;
     if (header->bits != 0 && header->bits != bits) {
-        return fail(error, STATUS_INPUT, "header: %d bits a voxel, but %s has %d", header->bits,
-                    (*type)->name, bits);
+        return fail(error, STATUS_INPUT, "header: %d bits a voxel, but %s has %d", header->bits, type->name,
+                    bits);
     }
     if (header->offset != 0 && !(header->offset >= least && header->offset <= exact_integers &&
                                  header->offset == floor(header->offset))) {
@@ -144,147 +145,102 @@ static enum status check_header(const struct nifti *header, const struct nifti_t
     }
     image->datatype = header->datatype;
     image->slope = 1;
-    if (header->slope != 0 && !isnan(header->slope) && (*type)->components == 1) {
+    if (header->slope != 0 && !isnan(header->slope) && type->components == 1) {
         image->slope = header->slope;
         image->inter = isnan(header->inter) ? 0 : header->inter;
     }
-    return check_sizes(header, *type, image, count, error);
+    layout->type = type;
+    layout->swapped = header->swapped;
+    layout->together = type->components > 1;
+    layout->skip_bytes = (int64_t)fmax(header->offset, least) - (header->pair ? 0 : taken);
+    return check_sizes(header, type, image, error);
 }
 
-/* Skip the extensions between the header and the data. */
-static enum status skip_extensions(struct image_source *source, const struct nifti *header,
-                                   unsigned char *scratch, size_t room, struct error *error)
+/* The file of data of the header NAME.hdr is NAME.img, that of NAME.hdr.gz is NAME.img.gz. */
+static enum status name_partner(const char *name, struct image_layout *layout, struct error *error)
 {
-    int64_t offset = header->offset > 0     ? (int64_t)header->offset
-                     : header->pair         ? 0
-                     : header->version == 1 ? NIFTI1_HEADER + 4
-                                            : NIFTI2_HEADER + 4;
-    while (source->taken < offset) {
-        size_t left = (size_t)(offset - source->taken), got;
-        RETURN_IF_ERROR(image_source_take(source, scratch, left < room ? left : room, &got, error));
-        if (got == 0) {
-            return fail(error, STATUS_INPUT,
-                        "cut short: %lld bytes, the header says that data begin at byte %lld",
-                        (long long)source->taken, (long long)offset);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Read the data: `count` values, and nothing behind them. */
-static enum status read_values(struct image_source *source, const struct nifti *header,
-                               const struct nifti_type *type, size_t count, struct image *image,
-                               struct error *error)
-{
-    size_t size = (size_t)type->bytes, done_count = 0, capacity = 0, got;
-    NEW_SCRATCH(unsigned char, block, (int64_t)(block_values * size + 8), error);
-    RETURN_IF_ERROR(skip_extensions(source, header, block, block_values * size, error));
-    while (done_count < count) {
-        size_t wanted = count - done_count < block_values ? count - done_count : block_values;
-        RETURN_IF_ERROR(image_source_take(source, block, wanted * size, &got, error));
-        if (got < wanted * size) {
-            return fail(error, STATUS_INPUT, "cut short: data of %zu bytes, the header says %zu",
-                        done_count * size + got, count * size);
-        }
-        if (done_count + wanted > capacity) {
-            capacity = 2 * capacity < count ? 2 * capacity + 4 * block_values : count;
-            capacity = capacity < count ? capacity : count;
-            RETURN_IF_ERROR(RESIZE_ARRAY(&image->values, (int64_t)capacity, error));
-        }
-        nifti_get(type, block, header->swapped, wanted, image->values + done_count);
-        done_count += wanted;
-    }
-    RETURN_IF_ERROR(image_source_take(source, block, 1, &got, error));
-    if (got > 0) {
-        return fail(error, STATUS_INPUT,
-                    "more data than %zu bytes, as the header says: it lies about size or type", count * size);
-    }
-    return STATUS_OK;
-}
-
-/* Refuse integers that a double cannot represent. */
-static enum status check_exact(const struct nifti_type *type, size_t count, const double *values,
-                               struct error *error)
-{
-    for (size_t i = 0; i < count && type->most > exact_integers; i++) {
-        if (fabs(values[i]) > exact_integers) {
-            return fail(error, STATUS_INPUT, "a value of %.0f: whole numbers beyond 2^53 are not read",
-                        values[i]);
-        }
-    }
-    return STATUS_OK;
-}
-
-/* Reorder from one volume for each component to all components of each voxel. */
-static enum status interleave(struct image *image, struct error *error)
-{
-    size_t voxels = image_voxels(image), components = image->components;
-    double *values = NULL;
-    RETURN_IF_ERROR(RESIZE_ARRAY(&values, (int64_t)(voxels * components), error));
-    for (size_t c = 0; c < components; c++) {
-        for (size_t v = 0; v < voxels; v++) {
-            values[v * components + c] = image->values[c * voxels + v];
-        }
-    }
-    free(image->values);
-    image->values = values;
-    return STATUS_OK;
-}
-
-static enum status read_data(struct image_source *source, const struct nifti *header,
-                             const struct nifti_type *type, size_t count, struct image *image,
-                             struct error *error)
-{
-    RETURN_IF_ERROR(read_values(source, header, type, count, image, error));
-    RETURN_IF_ERROR(check_exact(type, count, image->values, error));
-    if (image->components > (size_t)type->components) {
-        RETURN_IF_ERROR(interleave(image, error));
-    }
-    for (size_t i = 0; i < count && (image->slope != 1 || image->inter != 0); i++) {
-        image->values[i] = image->slope * image->values[i] + image->inter;
-    }
-    return STATUS_OK;
-}
-
-/* Read the data of the header NAME.hdr from NAME.img, those of NAME.hdr.gz from NAME.img.gz. */
-static enum status read_partner(const char *name, const struct nifti *header, const struct nifti_type *type,
-                                size_t count, struct image *image, struct error *error)
-{
-    size_t length = strlen(name),
-           end = length > 3 && strcmp(name + length - 3, ".gz") == 0 ? length - 3 : length;
-    struct image_source source;
-    if (end < 4 || strncmp(name + end - 4, ".hdr", 4) != 0) {
+    const char *base = strrchr(name, '/') != NULL ? strrchr(name, '/') + 1 : name,
+               *end = strstr(base, ".hdr");
+    if (end == NULL || strlen(base) >= sizeof layout->data_file ||
+        !(strcmp(end, ".hdr") == 0 || strcmp(end, ".hdr.gz") == 0)) {
         return fail(error, STATUS_INPUT,
                     "is a header whose data are in a file of their own: give its name, which ends in .hdr");
     }
-    SCRATCH char *partner = strdup(name);
-    if (partner == NULL) {
-        return fail_memory(error, "the name of a file");
-    }
-    memcpy(partner + end - 4, ".img", 4);
+    snprintf(layout->data_file, sizeof layout->data_file, "%s", base);
+    memcpy(layout->data_file + (end - base), ".img", 4);
+    return STATUS_OK;
+}
+
+/* Read data that are in a file of their own, beside the header `name`. */
+static enum status read_partner(const char *name, const struct image_layout *layout, struct image *image,
+                                struct error *error)
+{
+    struct image_source source;
+    size_t folder = strrchr(name, '/') != NULL ? (size_t)(strrchr(name, '/') + 1 - name) : 0;
+    NEW_SCRATCH(char, partner, (int64_t)(folder + sizeof layout->data_file), error);
+    memcpy(partner, name, folder);
+    memcpy(partner + folder, layout->data_file, sizeof layout->data_file);
     FREED_BY(descriptor_close) int descriptor = open(partner, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
         return fail(error, STATUS_INPUT, "its data, %s: %s", partner, strerror(errno));
     }
     enum status status = image_source_open(&source, descriptor, error);
     if (status == STATUS_OK) {
-        status = read_data(&source, header, type, count, image, error);
+        status = image_values_read(&source, layout, image, error);
     }
     image_source_close(&source);
     return fail_in(error, status, "its data, %s", partner);
 }
 
+/* Read a NIfTI header, whose first `got` bytes, at most 4, have been read. */
+static enum status nifti_header(struct image_source *source, const char *name,
+                                unsigned char bytes[NIFTI2_HEADER], size_t got, struct image *image,
+                                struct image_layout *layout, struct error *error)
+{
+    struct nifti header;
+    RETURN_IF_ERROR(read_header(source, bytes, got, &header, image, error));
+    RETURN_IF_ERROR(check_header(&header, source->taken, image, layout, error));
+    RETURN_IF_ERROR(nifti_space(&header, image, error));
+    return header.pair ? name_partner(name, layout, error) : STATUS_OK;
+}
+
+/* A header of text that names another file is a file itself. */
+static enum status check_detached(const struct image *image, const struct image_layout *layout,
+                                  const char *name, struct error *error)
+{
+    bool known = text_ends(name, ".nhdr") || text_ends(name, ".nrrd") || text_ends(name, ".mhd") ||
+                 text_ends(name, ".mha");
+    return layout->data_file[0] == '\0' || image->format == IMAGE_NIFTI_GZIP || known
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT,
+                      "is a header whose data are in a file of their own: give its name, which ends in .nhdr "
+                      "or .mhd");
+}
+
 static enum status read_source(struct image_source *source, const char *name, struct image *image,
                                struct error *error)
 {
-    struct nifti header;
-    const struct nifti_type *type;
-    size_t count = 0;
-    RETURN_IF_ERROR(read_header(source, &header, image, error));
-    RETURN_IF_ERROR(check_header(&header, &type, image, &count, error));
-    RETURN_IF_ERROR(nifti_space(&header, image, error));
-    return header.pair ? read_partner(name, &header, type, count, image, error)
-                       : read_data(source, &header, type, count, image, error);
+    unsigned char bytes[NIFTI2_HEADER] = {0};
+    struct image_layout layout = {0};
+    size_t got;
+    image->slope = 1;
+    image->version = 1;
+    RETURN_IF_ERROR(image_source_take(source, bytes, 4, &got, error));
+    if (memcmp(bytes, "NRRD", 4) == 0) {
+        image->format = IMAGE_NRRD;
+        RETURN_IF_ERROR(nrrd_header(source, image, &layout, error));
+    } else if (metaimage_begins(bytes)) {
+        image->format = IMAGE_METAIMAGE;
+        RETURN_IF_ERROR(metaimage_header(source, bytes, image, &layout, error));
+    } else {
+        RETURN_IF_ERROR(nifti_header(source, name, bytes, got, image, &layout, error));
+    }
+    if (layout.skip_bytes < 0 && layout.encoding != IMAGE_RAW) {
+        return fail(error, STATUS_INPUT, "header: a skip of -1 goes with raw data only");
+    }
+    RETURN_IF_ERROR(check_detached(image, &layout, name, error));
+    return layout.data_file[0] != '\0' ? read_partner(name, &layout, image, error)
+                                       : image_values_read(source, &layout, image, error);
 }
 
 enum status image_read_from(struct image *image, int descriptor, const char *name, struct error *error)

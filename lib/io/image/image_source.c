@@ -19,6 +19,18 @@ static enum status fill(struct image_source *source, struct error *error)
     return STATUS_OK;
 }
 
+enum status image_source_unpack(struct image_source *source, struct error *error)
+{
+    if (source->gzip) {
+        return fail(error, STATUS_INPUT, "a compressed file with compressed data in it: decompress it first");
+    }
+    if (inflateInit2(&source->stream, 15 + 32) != Z_OK) {
+        return fail_memory(error, "compressed image");
+    }
+    source->gzip = true;
+    return STATUS_OK;
+}
+
 /* The first two bytes tell whether the file is compressed. */
 enum status image_source_open(struct image_source *source, int descriptor, struct error *error)
 {
@@ -28,10 +40,7 @@ enum status image_source_open(struct image_source *source, int descriptor, struc
     source->taken = 0;
     RETURN_IF_ERROR(fill(source, error));
     if (source->stream.avail_in >= 2 && source->buffer[0] == 0x1f && source->buffer[1] == 0x8b) {
-        if (inflateInit2(&source->stream, 15 + 16) != Z_OK) {
-            return fail_memory(error, "compressed image");
-        }
-        source->gzip = true;
+        return image_source_unpack(source, error);
     }
     return STATUS_OK;
 }

@@ -45,8 +45,7 @@ void image_to_voxel(const struct image *image, double inverse[3][4])
     }
 }
 
-/* Add a sentence to image->note. */
-static void add_note(struct image *image, const char *text)
+void image_note(struct image *image, const char *text)
 {
     text_append(image->note, sizeof image->note, "%s%s", image->note[0] != '\0' ? "; " : "", text);
 }
@@ -153,6 +152,19 @@ static double disagreement(const struct image *image, double a[3][4], double b[3
     return most;
 }
 
+enum status image_place(struct image *image, double matrix[3][4], const char *form, struct error *error)
+{
+    if (image->size[2] == 1) {
+        complete_slice(matrix);
+    }
+    if (!is_sound(matrix)) {
+        return fail(error, STATUS_INPUT, "header: %s gives the voxels no place: not finite, or no volume",
+                    form);
+    }
+    memcpy(image->to_world, matrix, sizeof image->to_world);
+    return STATUS_OK;
+}
+
 static void from_sizes(const struct nifti *header, double m[3][4])
 {
     for (int i = 0; i < 3; i++) {
@@ -171,7 +183,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
                     units);
     }
     if (units == 0) {
-        add_note(image, "no unit of length: millimetres taken");
+        image_note(image, "no unit of length: millimetres taken");
     }
     image->unit = unit[units];
     if (header->sform > 0) {
@@ -184,29 +196,21 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
         image->space = header->qform;
     } else {
         from_sizes(header, matrix);
-        add_note(image, "tells neither sform nor qform: first voxel at the origin, axes taken to be RAS");
-    }
-    if (image->size[2] == 1) {
-        complete_slice(matrix);
-    }
-    if (!is_sound(matrix)) {
-        return fail(error, STATUS_INPUT, "header: %s gives the voxels no place: not finite, or no volume",
-                    form);
+        image_note(image, "tells neither sform nor qform: first voxel at the origin, axes taken to be RAS");
     }
     if (header->sform > 0 && header->qform > 0) {
         from_qform(header, other);
         if (image->size[2] == 1) {
             complete_slice(other);
+            complete_slice(matrix);
         }
         double half = 0.5 * fmin(column_length(matrix, 0), column_length(matrix, 1));
         if (!(disagreement(image, matrix, other) <= half)) {
-            add_note(image, "sform and qform differ by more than half a voxel: sform taken");
+            image_note(image, "sform and qform differ by more than half a voxel: sform taken");
         }
     }
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 4; c++) {
-            image->to_world[r][c] = matrix[r][c] * image->unit;
-        }
+    for (int i = 0; i < 12; i++) {
+        matrix[i / 4][i % 4] *= image->unit;
     }
-    return STATUS_OK;
+    return image_place(image, matrix, form, error);
 }

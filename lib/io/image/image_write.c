@@ -1,4 +1,4 @@
-/* Writing NIfTI files. */
+/* Writing images. */
 #include "io/image/image_private.h"
 
 #include "base/memory.h"
@@ -28,11 +28,17 @@ void image_range(const struct image *image, double *least, double *most)
     *most = fmax(ends[0], ends[1]);
 }
 
-/* Store all values, in the order of the file. */
-static void store_values(const struct image *image, const struct nifti_type *type, unsigned char *bytes)
+static bool is_scaled(const struct image *image, const struct nifti_type *type)
+{
+    return type->components == 1 && (image->slope != 1 || image->inter != 0);
+}
+
+/* Store all values, those of a voxel together or a volume for each component. */
+static void store_values(const struct image *image, const struct nifti_type *type, bool together,
+                         unsigned char *bytes)
 {
     int64_t voxels = (int64_t)image_voxels(image), components = (int64_t)image->components;
-    bool together = type->components > 1, scaled = !together && (image->slope != 1 || image->inter != 0);
+    bool scaled = is_scaled(image, type);
 #pragma omp parallel for schedule(static)
     for (int64_t v = 0; v < voxels; v++) {
         for (int64_t c = 0; c < components; c++) {
@@ -65,7 +71,37 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     return status;
 }
 
-enum status image_write(const struct image *image, int descriptor, bool gzip, struct error *error)
+/* Write a header of text, and the values. */
+static enum status write_text(const struct image *image, const struct nifti_type *type, int descriptor,
+                              enum image_format format, struct error *error)
+{
+    SCRATCH char *text = NULL;
+    SCRATCH unsigned char *bytes = NULL;
+    size_t length, size = image_voxels(image) * image->components * (size_t)type->bytes;
+    FILE *file = open_memstream(&text, &length);
+    if (file == NULL) {
+        return fail_memory(error, "header of the image");
+    }
+    format == IMAGE_NRRD ? nrrd_print(image, file) : metaimage_print(image, file);
+    bool failed = ferror(file) != 0;
+    if (fclose(file) != 0 || failed) {
+        return fail_memory(error, "header of the image");
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
+    store_values(image, type, true, bytes);
+    RETURN_IF_ERROR(descriptor_write(descriptor, text, length, error));
+    return format == IMAGE_NRRD ? write_gzip(bytes, size, descriptor, error)
+                                : descriptor_write(descriptor, bytes, size, error);
+}
+
+/* A type that holds scaled values of a type. */
+static int real_type(const struct nifti_type *type)
+{
+    return type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
+}
+
+enum status image_write(const struct image *image, int descriptor, enum image_format format,
+                        struct error *error)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
     unsigned char header[NIFTI2_HEADER + 4];
@@ -74,11 +110,18 @@ enum status image_write(const struct image *image, int descriptor, bool gzip, st
         return fail(error, STATUS_INPUT, "%zu components do not fit values of type %d", image->components,
                     image->datatype);
     }
+    if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {
+        struct image plain = *image;
+        plain.datatype = is_scaled(image, type) ? real_type(type) : image->datatype;
+        plain.slope = 1;
+        plain.inter = 0;
+        return write_text(&plain, nifti_type(plain.datatype), descriptor, format, error);
+    }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;
     RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
     memcpy(bytes, header, offset);
-    store_values(image, type, bytes + offset);
-    return gzip ? write_gzip(bytes, size, descriptor, error)
-                : descriptor_write(descriptor, bytes, size, error);
+    store_values(image, type, type->components > 1, bytes + offset);
+    return format == IMAGE_NIFTI_GZIP ? write_gzip(bytes, size, descriptor, error)
+                                      : descriptor_write(descriptor, bytes, size, error);
 }

@@ -22,14 +22,30 @@ enum image_method tool_image_method(const struct tool *tool)
                                           IMAGE_LINEAR);
 }
 
+/* The format that the end of a file's name asks for, or `other`. */
+static int format_of(const char *name, int other)
+{
+    static const char *const ends[IMAGE_FORMATS] = {[IMAGE_NIFTI_GZIP] = ".nii.gz",
+                                                    [IMAGE_NIFTI] = ".nii",
+                                                    [IMAGE_NRRD] = ".nrrd",
+                                                    [IMAGE_METAIMAGE] = ".mha"};
+    for (int f = 0; f < IMAGE_FORMATS; f++) {
+        if (text_ends(name, ends[f])) {
+            return f;
+        }
+    }
+    return other;
+}
+
 void tool_check_image_output(const struct tool *tool)
 {
     if (tool->output == NULL && isatty(STDOUT_FILENO)) {
         tool_fail(tool, STATUS_INPUT, "no image to a terminal: redirect it, or name a file with -o");
     }
-    if (tool->output != NULL && !text_ends(tool->output, ".nii") && !text_ends(tool->output, ".nii.gz") &&
-        strchr(tool->output, '.') != NULL && strncmp(tool->output, "/dev/", 5) != 0) {
-        tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii or .nii.gz", tool->output);
+    const char *name = tool->output;
+    if (name != NULL && format_of(name, IMAGE_FORMATS) == IMAGE_FORMATS && strchr(name, '.') != NULL &&
+        strncmp(name, "/dev/", 5) != 0) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii, .nii.gz, .nrrd or .mha", name);
     }
 }
 
@@ -37,9 +53,10 @@ void tool_write_image(const struct tool *tool, const struct image *image)
 {
     struct target target;
     struct error error;
-    bool gzip = tool->output == NULL || !text_ends(tool->output, ".nii");
+    int format = tool->output != NULL ? format_of(tool->output, (int)image->format) : (int)image->format;
     target_open(tool, &target, tool->output);
-    target_close(tool, &target, image_write(image, target.output.descriptor, gzip, &error), &error);
+    target_close(tool, &target,
+                 image_write(image, target.output.descriptor, (enum image_format)format, &error), &error);
 }
 
 const char *image_text(const struct image *image, char text[128])

@@ -1,0 +1,76 @@
+/* The headers of text that are written. */
+#include "io/image/text_header.h"
+
+#include <string.h>
+
+/* The first name of a type; that of a colour's components. */
+static const char *text_type(const struct header_type *types, int code, char name[32])
+{
+    size_t t = 0;
+    for (size_t k = 0; k < IMAGE_TYPES; k++) {
+        t = types[k].code == code ? k : t; /* the first one is uint8, as colours are */
+    }
+    snprintf(name, 32, "%.*s", (int)strcspn(types[t].names, "|"), types[t].names);
+    return name;
+}
+
+/* A column of to_world, in LPS and mm. */
+static void print_vector(FILE *file, const struct image *image, int column)
+{
+    fprintf(file, " (%.15g,%.15g,%.15g)", 0.0 - 1e3 * image->to_world[0][column],
+            0.0 - 1e3 * image->to_world[1][column], 0.0 + 1e3 * image->to_world[2][column]);
+}
+
+void nrrd_print(const struct image *image, FILE *file)
+{
+    char type[32];
+    bool several = image->components > 1;
+    bool vector = image->intent == IMAGE_INTENT_VECTOR || image->intent == IMAGE_INTENT_DISPLACEMENT;
+    const char *kind = image->datatype == IMAGE_RGB24    ? " RGB-color"
+                       : image->datatype == IMAGE_RGBA32 ? " RGBA-color"
+                       : vector                          ? " vector"
+                                                         : " list";
+    fprintf(file, "NRRD0004\n# http://teem.sourceforge.net/nrrd/format.html\n");
+    if (image->description[0] != '\0') {
+        fprintf(file, "content: %s\n", image->description);
+    }
+    fprintf(file, "type: %s\ndimension: %d\nspace: left-posterior-superior\nsizes:",
+            text_type(nrrd_types, image->datatype, type), several ? 4 : 3);
+    if (several) {
+        fprintf(file, " %zu", image->components);
+    }
+    fprintf(file, " %zu %zu %zu\nspace directions:%s", image->size[0], image->size[1], image->size[2],
+            several ? " none" : "");
+    for (int a = 0; a < 3; a++) {
+        print_vector(file, image, a);
+    }
+    fprintf(file, "\nkinds:%s domain domain domain\nendian: little\nencoding: gzip\nspace origin:",
+            several ? kind : "");
+    print_vector(file, image, 3);
+    fprintf(file, "\nspace units: \"mm\" \"mm\" \"mm\"\n\n");
+}
+
+void metaimage_print(const struct image *image, FILE *file)
+{
+    char type[32];
+    fprintf(file, "ObjectType = Image\nNDims = 3\n");
+    if (image->description[0] != '\0') {
+        fprintf(file, "Comment = %s\n", image->description);
+    }
+    fprintf(file,
+            "BinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nTransformMatrix =");
+    for (int a = 0; a < 3; a++) {
+        double step = image_step(image, a);
+        fprintf(file, " %.15g %.15g %.15g", 0.0 - image->to_world[0][a] / step,
+                0.0 - image->to_world[1][a] / step, 0.0 + image->to_world[2][a] / step);
+    }
+    fprintf(file, "\nOffset = %.15g %.15g %.15g\nElementSpacing = %.15g %.15g %.15g\nDimSize = %zu %zu %zu\n",
+            0.0 - 1e3 * image->to_world[0][3], 0.0 - 1e3 * image->to_world[1][3],
+            0.0 + 1e3 * image->to_world[2][3], 1e3 * image_step(image, 0), 1e3 * image_step(image, 1),
+            1e3 * image_step(image, 2), image->size[0], image->size[1], image->size[2]);
+    if (image->components > 1) {
+        fprintf(file, "ElementNumberOfChannels = %zu\n", image->components);
+    }
+    fprintf(file, "ElementType = %s\nElementDataFile = LOCAL\n",
+            text_type(metaimage_types, image->datatype, type));
+}

@@ -1,0 +1,399 @@
+/* NRRD headers (teem.sourceforge.net/nrrd/format.html), and segmentations as 3D Slicer writes them. */
+#include "io/image/text_header.h"
+
+#include "base/options.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { AXES = 4 };
+
+/* What an axis of the array is. */
+enum kind { DOMAIN, LIST, VECTOR, COLOUR };
+
+/* The fields of a header as they stand. */
+struct nrrd {
+    struct image *image;
+    struct image_layout *layout;
+    int dimension, space_dimension;
+    double size[AXES], direction[AXES][3], spacing[AXES], first[AXES], origin[3];
+    bool has_sizes, has_direction[AXES], has_directions, has_endian;
+    enum kind kind[AXES];
+    double sign[3];      /* of the space's axes, to RAS */
+    double unit[3];      /* of the space's axes, m */
+    double length[AXES]; /* unit of an axis, m */
+};
+
+const struct header_type nrrd_types[IMAGE_TYPES] = {
+    {IMAGE_UINT8, "uint8|uchar|unsigned char|uint8_t"},
+    {IMAGE_INT8, "int8|signed char|int8_t"},
+    {IMAGE_INT16, "int16|short|short int|signed short|signed short int|int16_t"},
+    {IMAGE_UINT16, "uint16|ushort|unsigned short|unsigned short int|uint16_t"},
+    {IMAGE_INT32, "int32|int|signed int|int32_t"},
+    {IMAGE_UINT32, "uint32|uint|unsigned int|uint32_t"},
+    {IMAGE_INT64, "int64|longlong|long long|long long int|signed long long|signed long long int|int64_t"},
+    {IMAGE_UINT64, "uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t"},
+    {IMAGE_FLOAT32, "float"},
+    {IMAGE_FLOAT64, "double"},
+};
+
+static enum status set_type(void *context, const struct text_header *header, struct error *error)
+{
+    return header_type(header, nrrd_types, ((struct nrrd *)context)->layout, error);
+}
+
+static enum status set_dimension(void *context, const struct text_header *header, struct error *error)
+{
+    int64_t number;
+    RETURN_IF_ERROR(header_integer(header, 2, AXES, &number, error));
+    ((struct nrrd *)context)->dimension = (int)number;
+    return STATUS_OK;
+}
+
+static enum status set_space_dimension(void *context, const struct text_header *header, struct error *error)
+{
+    int64_t number;
+    RETURN_IF_ERROR(header_integer(header, 2, 3, &number, error));
+    ((struct nrrd *)context)->space_dimension = (int)number;
+    return STATUS_OK;
+}
+
+static enum status set_space(void *context, const struct text_header *header, struct error *error)
+{
+    static const struct {
+        const char *name, *letters;
+        double sign[3];
+        int space;
+    } spaces[] = {{"right-anterior-superior", "RAS", {1, 1, 1}, IMAGE_SPACE_SCANNER},
+                  {"left-anterior-superior", "LAS", {-1, 1, 1}, IMAGE_SPACE_SCANNER},
+                  {"left-posterior-superior", "LPS", {-1, -1, 1}, IMAGE_SPACE_SCANNER},
+                  {"scanner-xyz", "scanner-xyz", {1, 1, 1}, IMAGE_SPACE_UNKNOWN},
+                  {"3D-right-handed", "3D-right-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN},
+                  {"3D-left-handed", "3D-left-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN}};
+    struct nrrd *nrrd = context;
+    for (size_t s = 0; s < sizeof spaces / sizeof *spaces; s++) {
+        if (strcasecmp(header->value, spaces[s].name) == 0 ||
+            strcasecmp(header->value, spaces[s].letters) == 0) {
+            memcpy(nrrd->sign, spaces[s].sign, sizeof nrrd->sign);
+            nrrd->image->space = spaces[s].space;
+            nrrd->space_dimension = 3;
+            return STATUS_OK;
+        }
+    }
+    return header_fail(header,
+                       text_ends(header->value, "time") || text_ends(header->value, "T")
+                           ? "choose one volume and save it as an image of its own"
+                           : "spaces of left, right, anterior, posterior and superior are read",
+                       error);
+}
+
+static enum status set_sizes(void *context, const struct text_header *header, struct error *error)
+{
+    struct nrrd *nrrd = context;
+    nrrd->has_sizes = true;
+    return header_vector(header, nrrd->dimension, nrrd->size, error);
+}
+
+static enum status set_spacings(void *context, const struct text_header *header, struct error *error)
+{
+    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->spacing, error);
+}
+
+static enum status set_first(void *context, const struct text_header *header, struct error *error)
+{
+    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->first, error);
+}
+
+/* Take a vector "(1,0,0)" of the space. */
+static bool take_vector(const struct nrrd *nrrd, const char **at, double vector[3])
+{
+    *at += strspn(*at, " \t");
+    bool whole = nrrd->space_dimension > 0 && *(*at)++ == '(' &&
+                 header_numbers(at, nrrd->space_dimension, vector) && **at == ')';
+    *at += whole;
+    return whole;
+}
+
+static enum status set_directions(void *context, const struct text_header *header, struct error *error)
+{
+    struct nrrd *nrrd = context;
+    const char *at = header->value;
+    for (int a = 0; a < nrrd->dimension; a++) {
+        at += strspn(at, " \t");
+        if (strncasecmp(at, "none", 4) == 0) {
+            at += 4;
+            continue;
+        }
+        if (!take_vector(nrrd, &at, nrrd->direction[a])) {
+            return header_fail(
+                header, "a vector (X,Y,Z) of the space, or none, for each dimension is expected", error);
+        }
+        nrrd->has_direction[a] = nrrd->has_directions = true;
+    }
+    return nrrd->has_directions && *at == '\0'
+               ? STATUS_OK
+               : header_fail(header, "a vector of the space for each dimension is expected", error);
+}
+
+static enum status set_origin(void *context, const struct text_header *header, struct error *error)
+{
+    struct nrrd *nrrd = context;
+    const char *at = header->value;
+    return take_vector(nrrd, &at, nrrd->origin) && *at == '\0'
+               ? STATUS_OK
+               : header_fail(header, "a vector (X,Y,Z) of the space is expected", error);
+}
+
+/* Take words in quotes, each a unit of length; "" is mm. */
+static enum status take_units(const struct text_header *header, int count, double *unit, struct error *error)
+{
+    const char *at = header->value;
+    for (int i = 0; i < count; i++) {
+        char word[16];
+        struct error why;
+        at += strcspn(at, "\"");
+        size_t length = *at == '"' ? strcspn(at + 1, "\"") : 0;
+        if (*at == '\0' || at[1 + length] != '"' || length >= sizeof word) {
+            return header_fail(header, "a unit in quotes for each dimension is expected, as \"mm\"", error);
+        }
+        memcpy(word, at + 1, length);
+        word[length] = '\0';
+        at += length + 2;
+        if (length > 0 && parse_length_unit(word, "unit", &unit[i], &why) != STATUS_OK) {
+            return header_fail(header, "\"m\", \"cm\", \"mm\" and \"um\" are read", error);
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status set_space_units(void *context, const struct text_header *header, struct error *error)
+{
+    return take_units(header, ((struct nrrd *)context)->space_dimension, ((struct nrrd *)context)->unit, error);
+}
+
+static enum status set_units(void *context, const struct text_header *header, struct error *error)
+{
+    return take_units(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->length, error);
+}
+
+/* Kinds that are not here are lists of values. */
+static enum status set_kinds(void *context, const struct text_header *header, struct error *error)
+{
+    static const struct {
+        const char *name;
+        enum kind kind;
+    } kinds[] = {{"domain", DOMAIN},   {"space", DOMAIN},      {"???", DOMAIN},
+                 {"none", DOMAIN},     {"vector", VECTOR},     {"covariant-vector", VECTOR},
+                 {"normal", VECTOR},   {"3-vector", VECTOR},   {"3-gradient", VECTOR},
+                 {"3-normal", VECTOR}, {"2-vector", VECTOR},   {"RGB-color", COLOUR},
+                 {"3-color", COLOUR},  {"RGBA-color", COLOUR}, {"4-color", COLOUR}};
+    struct nrrd *nrrd = context;
+    const char *at = header->value;
+    for (int a = 0; a < nrrd->dimension; a++) {
+        size_t length = strcspn(at, " \t");
+        nrrd->kind[a] = LIST;
+        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+            if (strlen(kinds[k].name) == length && strncasecmp(at, kinds[k].name, length) == 0) {
+                nrrd->kind[a] = kinds[k].kind;
+            }
+        }
+        if (length == 0) {
+            return header_fail(header, "a word for each dimension is expected", error);
+        }
+        if (length == 4 && strncasecmp(at, "time", length) == 0) {
+            return header_fail(header, "choose one volume and save it as an image of its own", error);
+        }
+        at += length + strspn(at + length, " \t");
+    }
+    return STATUS_OK;
+}
+
+static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
+{
+    static const char *const names[][3] = {
+        {"raw", "raw", "raw"}, {"gzip", "gz", "gz"}, {"ascii", "text", "txt"}};
+    struct image_layout *layout = ((struct nrrd *)context)->layout;
+    for (int e = 0; e < 9; e++) {
+        if (strcasecmp(names[e / 3][e % 3], header->value) == 0) {
+            layout->encoding = (enum image_encoding)(e / 3);
+            return STATUS_OK;
+        }
+    }
+    return header_fail(header, "raw, gzip and ascii are read: save it with one of these", error);
+}
+
+static enum status set_endian(void *context, const struct text_header *header, struct error *error)
+{
+    struct nrrd *nrrd = context;
+    nrrd->layout->swapped = strcasecmp(header->value, "big") == 0;
+    nrrd->has_endian = nrrd->layout->swapped || strcasecmp(header->value, "little") == 0;
+    return nrrd->has_endian ? STATUS_OK : header_fail(header, "little and big are read", error);
+}
+
+static enum status set_line_skip(void *context, const struct text_header *header, struct error *error)
+{
+    return header_integer(header, 0, INT32_MAX, &((struct nrrd *)context)->layout->skip_lines, error);
+}
+
+static enum status set_byte_skip(void *context, const struct text_header *header, struct error *error)
+{
+    return header_integer(header, -1, (int64_t)1 << 50, &((struct nrrd *)context)->layout->skip_bytes, error);
+}
+
+static enum status set_data_file(void *context, const struct text_header *header, struct error *error)
+{
+    return header_data_file(header, ((struct nrrd *)context)->layout, error);
+}
+
+static enum status set_content(void *context, const struct text_header *header, struct error *error)
+{
+    (void)error;
+    image_describe(((struct nrrd *)context)->image, header->value);
+    return STATUS_OK;
+}
+
+static const struct header_field fields[] = {
+    {"type", set_type},
+    {"dimension", set_dimension},
+    {"space dimension", set_space_dimension},
+    {"space", set_space},
+    {"sizes", set_sizes},
+    {"spacings", set_spacings},
+    {"axis mins", set_first},
+    {"axismins", set_first},
+    {"space directions", set_directions},
+    {"space origin", set_origin},
+    {"space units", set_space_units},
+    {"units", set_units},
+    {"kinds", set_kinds},
+    {"encoding", set_encoding},
+    {"endian", set_endian},
+    {"line skip", set_line_skip},
+    {"lineskip", set_line_skip},
+    {"byte skip", set_byte_skip},
+    {"byteskip", set_byte_skip},
+    {"data file", set_data_file},
+    {"datafile", set_data_file},
+    {"content", set_content},
+};
+
+/* Find the axis of the values at a voxel, -1: none; the others are those of the voxels. */
+static enum status find_component(const struct nrrd *nrrd, int *component, struct error *error)
+{
+    int places = 0;
+    *component = -1;
+    for (int a = 0; a < nrrd->dimension; a++) {
+        bool is_place = nrrd->kind[a] == DOMAIN && (!nrrd->has_directions || nrrd->has_direction[a]);
+        if (is_place ? ++places > 3 : *component >= 0) {
+            return fail(error, STATUS_INPUT,
+                        "header: dimension %d: two or three of voxels and one of the values there are read: "
+                        "choose one volume and save it as an image of its own",
+                        a + 1);
+        }
+        *component = is_place ? *component : a;
+    }
+    if (places < 2) {
+        return fail(error, STATUS_INPUT, "header: %d dimensions of voxels: an image has 2 or 3", places);
+    }
+    return *component > 0 && *component < nrrd->dimension - 1
+               ? fail(error, STATUS_INPUT,
+                      "header: dimension %d holds the values at a voxel: the first or last can",
+                      *component + 1)
+               : STATUS_OK;
+}
+
+/* Vectors in space have the axes of the space; in memory they are LPS, as in NIfTI files of ITK. */
+static void set_values(struct nrrd *nrrd, int component)
+{
+    struct image *image = nrrd->image;
+    nrrd->layout->together = component == 0;
+    if (component < 0 || nrrd->kind[component] != VECTOR) {
+        return;
+    }
+    image->intent = IMAGE_INTENT_VECTOR;
+    for (int r = 0; r < 2; r++) {
+        nrrd->layout->mirrored[r] = image->space != IMAGE_SPACE_UNKNOWN && nrrd->sign[r] > 0;
+    }
+}
+
+/* The image's sizes and place. */
+static enum status place(struct nrrd *nrrd, struct error *error)
+{
+    double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
+    struct image *image = nrrd->image;
+    int component, places = 0;
+    RETURN_IF_ERROR(find_component(nrrd, &component, error));
+    image->unit = nrrd->has_directions ? nrrd->unit[0] : nrrd->length[component == 0 ? 1 : 0];
+    if (!nrrd->has_directions) {
+        image->space = IMAGE_SPACE_UNKNOWN;
+    }
+    set_values(nrrd, component);
+    for (int a = 0; a < nrrd->dimension; a++) {
+        if (a == component) {
+            continue;
+        }
+        size[places] = nrrd->size[a];
+        for (int r = 0; r < 3 && nrrd->has_directions; r++) {
+            matrix[r][places] = nrrd->sign[r] * nrrd->unit[r] * nrrd->direction[a][r];
+            matrix[r][3] = nrrd->sign[r] * nrrd->unit[r] * nrrd->origin[r];
+        }
+        if (!nrrd->has_directions) {
+            matrix[places][places] = nrrd->length[a] * nrrd->spacing[a];
+            matrix[places][3] = nrrd->length[a] * nrrd->first[a];
+        }
+        places++;
+    }
+    if (image->space == IMAGE_SPACE_UNKNOWN) {
+        image_note(image, "tells no anatomical space: axes taken to be RAS");
+    }
+    RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
+                                 component >= 0 && nrrd->kind[component] == COLOUR, nrrd->layout, image,
+                                 error));
+    return image_place(image, matrix, nrrd->has_directions ? "space directions" : "spacings", error);
+}
+
+static enum status check(const struct nrrd *nrrd, const struct text_header *header, struct error *error)
+{
+    const struct image_layout *layout = nrrd->layout;
+    if (layout->type == NULL || !nrrd->has_sizes) {
+        return fail(error, STATUS_INPUT, "header: no %s: cut short?",
+                    layout->type == NULL ? "type" : "sizes");
+    }
+    if (header->cut && layout->data_file[0] == '\0') {
+        return fail(error, STATUS_INPUT, "cut short: the header ends without an empty line");
+    }
+    if (layout->type->bytes > 1 && layout->encoding != IMAGE_ASCII && !nrrd->has_endian) {
+        return fail(error, STATUS_INPUT, "header: no endian: the byte order of %s is not known",
+                    layout->type->name);
+    }
+    return STATUS_OK;
+}
+
+enum status nrrd_header(struct image_source *source, struct image *image, struct image_layout *layout,
+                        struct error *error)
+{
+    struct text_header header = {.source = source, .separator = ':', .line = "NRRD", .begun = 4};
+    struct nrrd nrrd = {.image = image,
+                        .layout = layout,
+                        .sign = {1, 1, 1},
+                        .spacing = {1, 1, 1, 1},
+                        .unit = {1e-3, 1e-3, 1e-3},
+                        .length = {1e-3, 1e-3, 1e-3, 1e-3}};
+    RETURN_IF_ERROR(header_line(&header, error));
+    if (strlen(header.line) != 8 || strncmp(header.line, "NRRD000", 7) != 0 ||
+        strchr("123456", header.line[7]) == NULL) {
+        return fail(error, STATUS_INPUT, "begins with '%.20s': NRRD0001 to NRRD0006 are read", header.line);
+    }
+    for (;;) {
+        RETURN_IF_ERROR(header_next(&header, error));
+        if (header.key == NULL) {
+            break;
+        }
+        if (!header.is_pair) {
+            RETURN_IF_ERROR(header_set(&header, fields, sizeof fields / sizeof *fields, &nrrd, error));
+        }
+    }
+    RETURN_IF_ERROR(check(&nrrd, &header, error));
+    return place(&nrrd, error);
+}

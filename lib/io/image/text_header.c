@@ -1,0 +1,184 @@
+#include "io/image/text_header.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum status header_line(struct text_header *header, struct error *error)
+{
+    char *line = header->line;
+    size_t length = header->begun, got = 1;
+    header->begun = 0;
+    for (;; length++) {
+        RETURN_IF_ERROR(image_source_take(header->source, line + length, 1, &got, error));
+        if (got == 0 || line[length] == '\n') {
+            break;
+        }
+        if (line[length] == '\0' || length == HEADER_LINE - 2) {
+            return fail(error, STATUS_INPUT, "header: damaged: %s",
+                        line[length] == '\0' ? "a byte of value 0" : "a line of more than 4000 bytes");
+        }
+    }
+    header->cut = got == 0;
+    while (length > 0 && strchr(" \t\r", line[length - 1]) != NULL) {
+        length--;
+    }
+    line[length] = '\0';
+    return header->source->taken <= HEADER_BYTES
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "header: damaged: more than 4 MiB");
+}
+
+enum status header_next(struct text_header *header, struct error *error)
+{
+    header->key = NULL;
+    do {
+        RETURN_IF_ERROR(header_line(header, error));
+    } while (header->line[0] == '#' && header->separator == ':' && !header->cut);
+    char *end = strchr(header->line, header->separator);
+    if (header->line[0] == '\0' || header->line[0] == '#') {
+        return STATUS_OK;
+    }
+    if (end == NULL) {
+        return fail(error, STATUS_INPUT, "header: '%.60s': no '%c' behind a key", header->line,
+                    header->separator);
+    }
+    header->is_pair = header->separator == ':' && end[1] == '=';
+    header->value = end + (header->is_pair ? 2 : 1);
+    header->value += strspn(header->value, " \t");
+    while (end > header->line && isblank((unsigned char)end[-1])) {
+        end--;
+    }
+    *end = '\0';
+    header->key = header->line;
+    return STATUS_OK;
+}
+
+enum status header_set(const struct text_header *header, const struct header_field *fields, size_t count,
+                       void *context, struct error *error)
+{
+    for (size_t f = 0; f < count; f++) {
+        if (strcasecmp(header->key, fields[f].key) == 0) {
+            return fields[f].set(context, header, error);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status header_fail(const struct text_header *header, const char *why, struct error *error)
+{
+    return fail(error, STATUS_INPUT, "header: %.40s%c %.80s: %s", header->key, header->separator,
+                header->value, why);
+}
+
+bool header_numbers(const char **at, int count, double *numbers)
+{
+    for (int i = 0; i < count; i++) {
+        char *end;
+        *at += strspn(*at, " \t,");
+        numbers[i] = strtod(*at, &end);
+        if (end == *at || isinf(numbers[i])) {
+            return false;
+        }
+        *at = end;
+    }
+    *at += strspn(*at, " \t");
+    return true;
+}
+
+enum status header_vector(const struct text_header *header, int count, double *numbers, struct error *error)
+{
+    const char *at = header->value;
+    if (count == 0) {
+        return header_fail(header, "stands in front of the number of dimensions", error);
+    }
+    return header_numbers(&at, count, numbers) && *at == '\0'
+               ? STATUS_OK
+               : header_fail(header, "a finite number for each dimension is expected", error);
+}
+
+enum status header_integer(const struct text_header *header, int64_t least, int64_t most, int64_t *number,
+                           struct error *error)
+{
+    double value;
+    const char *at = header->value;
+    char why[80];
+    if (header_numbers(&at, 1, &value) && *at == '\0' && value >= (double)least && value <= (double)most &&
+        value == floor(value)) {
+        *number = (int64_t)value;
+        return STATUS_OK;
+    }
+    snprintf(why, sizeof why, "from %lld to %lld is possible", (long long)least, (long long)most);
+    return header_fail(header, why, error);
+}
+
+enum status header_type(const struct text_header *header, const struct header_type *types,
+                        struct image_layout *layout, struct error *error)
+{
+    size_t length = strlen(header->value), name;
+    for (int t = 0; t < IMAGE_TYPES; t++) {
+        for (const char *at = types[t].names; *at != '\0'; at += name + (at[name] == '|')) {
+            name = strcspn(at, "|");
+            if (name == length && strncasecmp(at, header->value, name) == 0) {
+                layout->type = nifti_type(types[t].code);
+                return STATUS_OK;
+            }
+        }
+    }
+    return header_fail(header, "integers of 8 to 64 bits and floats of 32 and 64 are read", error);
+}
+
+/* Whether a part of the path is "..". */
+static bool leads_up(const char *path)
+{
+    for (; *path != '\0'; path += strcspn(path, "/")) {
+        path += strspn(path, "/");
+        if (strcspn(path, "/") == 2 && strncmp(path, "..", 2) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+enum status header_data_file(const struct text_header *header, struct image_layout *layout,
+                             struct error *error)
+{
+    const char *file = header->value;
+    if (strncmp(file, "LIST", 4) == 0 || strchr(file, '%') != NULL) {
+        return header_fail(header, "the data lie in several files: save the image as one file", error);
+    }
+    if (file[0] == '\0' || file[0] == '/' || leads_up(file) || strlen(file) >= sizeof layout->data_file) {
+        return header_fail(header, "not a file in the folder of the header", error);
+    }
+    snprintf(layout->data_file, sizeof layout->data_file, "%s", file);
+    return STATUS_OK;
+}
+
+enum status header_sizes(const double size[3], double components, bool colour,
+                         const struct image_layout *layout, struct image *image, struct error *error)
+{
+    size_t count = 1;
+    const double sizes[4] = {size[0], size[1], size[2], components};
+    for (int i = 0; i < 4; i++) {
+        if (!(sizes[i] >= 1 && sizes[i] <= INT32_MAX && sizes[i] == floor(sizes[i]))) {
+            return fail(error, STATUS_INPUT, "header: size %g: a whole number from 1 to 2^31 - 1 is possible",
+                        sizes[i]);
+        }
+        if (__builtin_mul_overflow(count, (size_t)sizes[i], &count) || count > SIZE_MAX / 32) {
+            return fail(error, STATUS_INPUT, "header: %.0f x %.0f x %.0f voxels: more than any memory",
+                        size[0], size[1], size[2]);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        image->size[i] = (size_t)size[i];
+    }
+    image->components = (size_t)components;
+    image->datatype = layout->type->code;
+    if (colour && image->datatype == IMAGE_UINT8 && (components == 3 || components == 4)) {
+        image->datatype = components == 3 ? IMAGE_RGB24 : IMAGE_RGBA32;
+        image->intent = 0;
+    }
+    return STATUS_OK;
+}

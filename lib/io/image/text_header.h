@@ -1,0 +1,73 @@
+/* Headers of text, `key: value` (NRRD) or `key = value` (MetaImage), in front of the values or in a file of
+ * their own; private to lib/io. */
+#pragma once
+
+#include "io/image/image_private.h"
+
+#include <stdio.h>
+
+enum { HEADER_LINE = 4096, HEADER_BYTES = 1 << 22 };
+
+/* A header that is read line by line. */
+struct text_header {
+    struct image_source *source;
+    char separator; /* ':' or '=' */
+    char line[HEADER_LINE];
+    size_t begun; /* bytes of the next line that line[] holds already */
+    char *key;    /* of the field read last, in line[]; NULL: the header has ended */
+    char *value;
+    bool is_pair; /* it is KEY:=VALUE */
+    bool cut;     /* the file has ended without an empty line */
+};
+
+/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 4096
+ * bytes and a header of more than 4 MiB. */
+MUST_CHECK enum status header_line(struct text_header *header, struct error *error);
+
+/* Read the next field; comment lines of NRRD are skipped. */
+MUST_CHECK enum status header_next(struct text_header *header, struct error *error);
+
+/* A key, in any case, and the function that takes its value. */
+struct header_field {
+    const char *key;
+    enum status (*set)(void *context, const struct text_header *header, struct error *error);
+};
+
+/* Give the field read last to the function of its key, if there is one. */
+MUST_CHECK enum status header_set(const struct text_header *header, const struct header_field *fields,
+                                  size_t count, void *context, struct error *error);
+
+/* fail() with STATUS_INPUT for the field read last: "header: KEY: VALUE: WHY". */
+enum status header_fail(const struct text_header *header, const char *why, struct error *error);
+
+/* Take `count` numbers, NAN among them, separated by blanks or commas, from *at on. */
+bool header_numbers(const char **at, int count, double *numbers);
+
+/* The value of the field is `count` numbers; 0: the dimension, which stands behind it. */
+MUST_CHECK enum status header_vector(const struct text_header *header, int count, double *numbers,
+                                     struct error *error);
+
+/* The value is a whole number from least to most. */
+MUST_CHECK enum status header_integer(const struct text_header *header, int64_t least, int64_t most,
+                                      int64_t *number, struct error *error);
+
+/* A type of values and its names, A|B; the first one is written. */
+enum { IMAGE_TYPES = 10 };
+struct header_type {
+    int code;
+    const char *names;
+};
+extern const struct header_type nrrd_types[IMAGE_TYPES], metaimage_types[IMAGE_TYPES];
+
+/* Set layout->type from the value. */
+MUST_CHECK enum status header_type(const struct text_header *header, const struct header_type *types,
+                                   struct image_layout *layout, struct error *error);
+
+/* The value is the name of a file in the folder of the header or below. */
+MUST_CHECK enum status header_data_file(const struct text_header *header, struct image_layout *layout,
+                                        struct error *error);
+
+/* Set the sizes of an image, checked, and its type: components of 3 or 4 bytes are a colour if `colour`. */
+MUST_CHECK enum status header_sizes(const double size[3], double components, bool colour,
+                                    const struct image_layout *layout, struct image *image,
+                                    struct error *error);
