@@ -138,5 +138,7 @@ denied() {
     warp -o slice.mha slice.nii u.mts
     denied warp slice.nrrd u.mts
     denied warp slice.mha u.mts
+    nifti segments sphere.nii sphere.seg.nrrd 1 sphere
+    denied voxels -h 20mm sphere.seg.nrrd
     denied sample slice.nii points.mts
 }

@@ -99,6 +99,31 @@ END
     gunzip -c image.nii.gz | voxels - -h 5mm 2> said | mts print cells | cmp cells -
 }
 
+@test "a segmentation of 3D Slicer names its labels: the stream is that of the same labels with a table" {
+    nifti ball ball.nii.gz
+    printf '2 Left_lung\n5 tumour__solid\n' > names
+    voxels -h 6mm -l names ball.nii.gz | mts text | bare > expected
+    for layers in 1 2; do
+        shared=$(nifti segments ball.nii.gz ball.seg.nrrd $layers 'Left lung' 'tumour, solid')
+        voxels -h 6mm ball.seg.nrrd 2> said | mts text | bare | cmp expected -
+        grep -q "names are changed to what scenes can hold, as 'Left lung' to Left_lung" said
+        [ $layers = 1 ] || grep -q "segments 'Left lung' and 'tumour, solid' share $shared voxels: 'tumour, solid', the later, is taken" said
+    done
+    voxels -h 6mm -l <(printf '1 Left_lung\n2 tumour__solid\n') ball.seg.nrrd 2> said | mts text | bare | cmp expected -
+    nifti segments ball.nii.gz ball.seg.nrrd 1 lung lung
+    [ "$(voxels -h 6mm ball.seg.nrrd 2> said | names cells.region - | xargs)" = "lung lung_2" ]
+    sed 's/^Segment1_LabelValue:=5/Segment1_LabelValue:=6/' ball.seg.nrrd > other.seg.nrrd
+    voxels -h 6mm other.seg.nrrd 2> said | mts check
+    grep -q "segment 'lung' has no voxel; .* voxels have a label of no segment: left out" said
+    refused 2 "ball.seg.nrrd: a segmentation on top of others: give it first" voxels -h 6mm ball.nii.gz ball.seg.nrrd
+    sed 's/^Segment1_LabelValue:=5/Segment1_LabelValue:=2/' ball.seg.nrrd > other.seg.nrrd
+    refused 2 "segments 'lung' and 'lung' have the same label, 2" voxels -h 6mm other.seg.nrrd
+    sed 's/^Segment1_Layer:=0/Segment1_Layer:=1/' ball.seg.nrrd > other.seg.nrrd
+    refused 2 "segment 'lung' is in layer 1 of 1 (from 0)" voxels -h 6mm other.seg.nrrd
+    sed 's/:=Binary/:=Fractional/' ball.seg.nrrd > other.seg.nrrd
+    refused 2 "convert it to a binary labelmap" voxels -h 6mm other.seg.nrrd
+}
+
 @test "an atlas of 50 labels merged to 5 by a table; labels dropped, cavities named" {
     phantom atlas > atlas.nii.gz
     printf '# regions\n1-10 a\n11,12-20 b # all of them\n21-30 c\n31-40\td\n* e\n' > five

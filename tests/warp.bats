@@ -97,6 +97,10 @@ setup_file() {
     nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" scaled.nii scaled
     warp -o scaled.nrrd scaled.nii still.dat
     cmp <(nifti value scaled.nii 30 31 32) <(warp -o scaled.nii scaled.nrrd still.dat && nifti value scaled.nii 30 31 32)
+    nifti segments "$BATS_FILE_TMPDIR/ball.nii.gz" ball.seg.nrrd 2 'Left lung' tumour > shared
+    run -0 --separate-stderr warp -i nearest -o moved.seg.nrrd ball.seg.nrrd u.dat
+    [[ $stderr == *"share $(cat shared) voxels"* ]]
+    [ "$(grep -aE '_(Name|LabelValue|Layer):' moved.seg.nrrd | cut -d= -f2 | xargs)" = "Left lung 1 0 tumour 2 0" ]
     refused 2 "-o x.nhdr: images are written as .nii, .nii.gz, .nrrd or .mha" warp -o x.nhdr oblique.nii still.dat
     sed 's|theirs.raw|../theirs.raw|' theirs.mhd > outside.mhd
     refused 2 "outside.mhd: header: ElementDataFile= ../theirs.raw: not a file in the folder of the header" warp outside.mhd still2.dat

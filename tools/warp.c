@@ -224,13 +224,15 @@ static void check_values(const struct tool *tool, const struct image *image, con
 
 /* Make the result, all zero: an image like the source on the grid of another one, or the field there. */
 static void new_result(const struct tool *tool, const struct warp_request *request,
-                       const struct image *source, const struct image *grid, struct image *result)
+                       struct image *source, const struct image *grid, struct image *result)
 {
     TOOL_TRY(tool, image_new(result, grid->size, request->field ? 3 : source->components, &error));
     double *values = result->values;
     if (!request->field) {
         *result = *source;
         result->values = values;
+        source->segment_count = 0; /* the result has them */
+        source->segment = NULL;
         result->unit = grid->unit;
     } else { /* the vectors are in mm, and ITK reads mm */
         snprintf(result->description, sizeof result->description, "displacement, mm, LPS, from %s",

@@ -13,6 +13,9 @@ static void require_sound(const struct image *image)
     REQUIRE(image->size[0] >= 1 && image->size[1] >= 1 && image->size[2] >= 1);
     REQUIRE(image->unit > 0);
     REQUIRE(isfinite(image->slope) && image->slope != 0 && isfinite(image->inter));
+    for (size_t s = 0; s < image->segment_count; s++) {
+        REQUIRE(image->components == 1 && image->segment[s].label > 0 && image->segment[s].name[0] != '\0');
+    }
     REQUIRE(memchr(image->note, '\n', sizeof image->note) == NULL);
     for (int i = 0; i < 12; i++) {
         REQUIRE(isfinite(image->to_world[i / 4][i % 4]));

@@ -9,9 +9,11 @@ nifti.py moved SCAN RESULT     rms error of the moved test image, and that of th
 nifti.py fields TO BACK        largest distance from x of the place that TO and then BACK lead to, in voxels, inside the cube
 nifti.py volumes FILE          label and ml
 nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, as NIfTI-2, big-endian, of 4 dimensions, with a NaN, a middle slice
+nifti.py segments IN OUT LAYERS NAME...   labels as 3D Slicer writes a segmentation; in 2 layers the first segment overlaps the second
 nifti.py value FILE I J K ...   the values of voxels, a line each
 """
 
+import gzip
 import sys
 
 import nibabel as nib
@@ -214,6 +216,31 @@ def change(source, path, what):
     nib.save(image, path)
 
 
+def segments(source, path, layers, *names):
+    a, layers = nib.load(source), int(layers)
+    labels = np.asarray(a.dataobj).astype(np.uint8)
+    numbers = np.unique(labels)[1:]
+    data = np.zeros((layers, *labels.shape), np.uint8)
+    head = []
+    for s, number in enumerate(numbers):
+        layer, value = (s % 2, s // 2 + 1) if layers == 2 else (0, number)
+        data[layer][labels == number] = value
+        pairs = {"ID": f"id{s}", "Name": names[s], "LabelValue": value, "Layer": layer, "Color": "1 0 0", "Extent": "0 9 0 9 0 9"}
+        head += [f"Segment{s}_{key}:={pair}" for key, pair in pairs.items()]
+    if layers == 2:
+        data[0][:50][labels[:50] == numbers[1]] = 1
+        print(np.sum(labels[:50] == numbers[1]))
+    lps = np.diag([-1, -1, 1]) @ a.affine[:3]
+    columns = ["(%.17g,%.17g,%.17g)" % tuple(lps[:, c]) for c in range(4)]
+    first = (["list"], ["none"], [layers]) if layers == 2 else ([], [], [])
+    head = ["NRRD0004", "type: unsigned char", f"dimension: {3 + len(first[0])}", "space: left-posterior-superior",
+            "sizes: " + " ".join(map(str, first[2] + list(labels.shape))), "space directions: " + " ".join(first[1] + columns[:3]),
+            "kinds: " + " ".join(first[0] + ["domain"] * 3), "encoding: gzip", "space origin: " + columns[3],
+            "Segmentation_MasterRepresentation:=Binary labelmap", *head, "", ""]
+    with open(path, "wb") as file:
+        file.write("\n".join(head).encode() + gzip.compress((data if layers == 2 else data[0]).tobytes("F")))
+
+
 def value(path, *voxels):
     image = nib.load(path)
     values = image.get_fdata()
@@ -224,4 +251,4 @@ def value(path, *voxels):
 
 if __name__ == "__main__":
     {"smooth": smooth, "ball": ball, "step": step, "same": same, "moved": moved, "fields": fields, "volumes": volumes,
-     "change": change, "value": value}[sys.argv[1]](*sys.argv[2:])
+     "change": change, "segments": segments, "value": value}[sys.argv[1]](*sys.argv[2:])

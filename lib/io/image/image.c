@@ -101,7 +101,7 @@ double image_whole(const struct image *image, double value)
 
 void image_free(struct image *image)
 {
-    free(image->values);
+    FREE_ALL(image->values, image->segment);
     *image = (struct image){0};
 }
 

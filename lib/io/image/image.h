@@ -40,6 +40,15 @@ enum {
     IMAGE_SPACE_MNI
 };
 
+/* A segment of a segmentation: the voxels that have its label. */
+struct image_segment {
+    char name[128];
+    int64_t label;
+    int64_t layer; /* in the file */
+    int number;    /* in the file's header, which orders the segments */
+    size_t voxels; /* when it was read */
+};
+
 /* An image on a regular grid, as a NIfTI file holds it. Lengths in metres, world axes RAS+ (x to the right, y
  * to the front, z up). Vectors of intent VECTOR stand as in NIfTI files of ITK: to the left, to the back, up.
  */
@@ -58,7 +67,9 @@ struct image {
     int intent;  /* NIfTI's code of the meaning of the values; 0: none */
     char intent_name[17];
     char description[81];
-    char note[256]; /* assumptions made in reading, in one line, for tools to print; "": none */
+    size_t segment_count;
+    struct image_segment *segment; /* segment_count: of a segmentation (.seg.nrrd) */
+    char note[512]; /* assumptions made in reading, in one line, for tools to print; "": none */
 };
 
 /* An image with all values zero: of type float32, in mm, of unknown space, with voxels of 1 mm.
@@ -88,7 +99,7 @@ void image_range(const struct image *image, double *least, double *most);
 MUST_CHECK enum status image_write(const struct image *image, int descriptor, enum image_format format,
                                    struct error *error);
 
-/* Release the values; the image becomes empty. */
+/* Release values and segments; the image becomes empty. */
 void image_free(struct image *image);
 
 /* The whole number that a value of the image stands for: the nearest one, if what separates them is less than

@@ -47,7 +47,9 @@ void nrrd_print(const struct image *image, FILE *file)
     fprintf(file, "\nkinds:%s domain domain domain\nendian: little\nencoding: gzip\nspace origin:",
             several ? kind : "");
     print_vector(file, image, 3);
-    fprintf(file, "\nspace units: \"mm\" \"mm\" \"mm\"\n\n");
+    fprintf(file, "\nspace units: \"mm\" \"mm\" \"mm\"\n");
+    image_segments_print(image, file);
+    fprintf(file, "\n");
 }
 
 void metaimage_print(const struct image *image, FILE *file)

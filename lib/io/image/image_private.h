@@ -73,6 +73,11 @@ bool metaimage_begins(const unsigned char bytes[4]);
 MUST_CHECK enum status image_values_read(struct image_source *source, const struct image_layout *layout,
                                          struct image *image, struct error *error);
 
+/* Of an image with segments, make one layer of labels: each layer's own, or of several layers the numbers of
+ * the segments, 1, 2, ...; where segments overlap, the later one is taken, with a note. STATUS_INPUT for
+ * a layer that is not there, and two segments of one label. */
+MUST_CHECK enum status image_segments_merge(struct image *image, struct error *error);
+
 /* Print the header of an image whose values follow, little-endian, compressed by gzip in an NRRD file. */
 void nrrd_print(const struct image *image, FILE *file);
 void metaimage_print(const struct image *image, FILE *file);

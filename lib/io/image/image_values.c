@@ -185,5 +185,5 @@ enum status image_values_read(struct image_source *source, const struct image_la
             image->values[i] = -image->values[i];
         }
     }
-    return STATUS_OK;
+    return image_segments_merge(image, error);
 }

@@ -4,6 +4,7 @@
 #include "base/options.h"
 #include "io/files/textfile.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,12 +63,61 @@ bool label_table_find(const struct label_table *table, int64_t label, int32_t *n
     return label == 0 || table->others;
 }
 
+static const char not_in_names[] = ",\"=:|";
+
+static bool is_name(const struct label_table *table, const char *text)
+{
+    bool known = strcmp(text, "outside") == 0;
+    for (int32_t n = 0; n < table->name_count; n++) {
+        known = known || strcmp(table->name[n].text, text) == 0;
+    }
+    return known;
+}
+
+/* Make a text valid as a new name. */
+static void make_name(const struct label_table *table, char *text, size_t size)
+{
+    for (char *at = text; *at != '\0'; at++) {
+        if ((unsigned char)*at <= ' ' || *at == 0x7f || *at == '#' || strchr(not_in_names, *at) != NULL ||
+            strcmp(text, "-") == 0) {
+            *at = '_';
+        }
+    }
+    size_t length = strlen(text) < size - 8 ? strlen(text) : size - 8;
+    for (int number = 2; is_name(table, text); number++) {
+        snprintf(text + length, size - length, "_%d", number);
+    }
+}
+
+enum status label_table_segments(struct label_table *table, const struct image *image,
+                                 char note[LABEL_TABLE_NOTE], struct error *error)
+{
+    note[0] = '\0';
+    for (size_t s = 0; s < image->segment_count; s++) {
+        const struct image_segment *segment = &image->segment[s];
+        struct label_range range = {.first = segment->label, .last = segment->label};
+        char name[sizeof segment->name];
+        if (segment->voxels == 0) {
+            continue;
+        }
+        memcpy(name, segment->name, sizeof name);
+        make_name(table, name, sizeof name);
+        if (note[0] == '\0' && strcmp(name, segment->name) != 0) {
+            snprintf(note, LABEL_TABLE_NOTE, "names are changed to what scenes can hold, as '%s' to %s",
+                     segment->name, name);
+        }
+        RETURN_IF_ERROR(label_table_name(table, name, true, &range.name, error));
+        RETURN_IF_ERROR(label_table_add(table, &range, error));
+    }
+    return STATUS_OK;
+}
+
 static enum status check_name(const char *name, struct error *error)
 {
     if (strcmp(name, "outside") == 0) {
         return fail(error, STATUS_INPUT, "'outside' is what no label names: write - to leave labels out");
     }
-    return strpbrk(name, ",\"=:|") == NULL
+    return strpbrk(name, not_in_names) == NULL
                ? STATUS_OK
                : fail(error, STATUS_INPUT, "'%.60s': no commas, quotes, colons, = or | in names", name);
 }

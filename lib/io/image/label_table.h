@@ -1,7 +1,7 @@
 /* Names of the labels of an image: a table in a text file. */
 #pragma once
 
-#include "base/status.h"
+#include "io/image/image.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -38,6 +38,12 @@ void label_table_free(struct label_table *table);
 /* The number of a name, which is added if it is new. */
 MUST_CHECK enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
                                         struct error *error);
+
+/* Name the labels of an image's segments that have voxels, in their order. What a name cannot hold becomes
+ * '_', and a number tells it from others; `note` tells so of the first one, else it is "". */
+enum { LABEL_TABLE_NOTE = 400 };
+MUST_CHECK enum status label_table_segments(struct label_table *table, const struct image *image,
+                                            char note[LABEL_TABLE_NOTE], struct error *error);
 
 /* Append a range. STATUS_INPUT if it overlaps another one. */
 MUST_CHECK enum status label_table_add(struct label_table *table, const struct label_range *range,

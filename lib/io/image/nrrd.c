@@ -69,8 +69,7 @@ static enum status set_space(void *context, const struct text_header *header, st
                   {"left-anterior-superior", "LAS", {-1, 1, 1}, IMAGE_SPACE_SCANNER},
                   {"left-posterior-superior", "LPS", {-1, -1, 1}, IMAGE_SPACE_SCANNER},
                   {"scanner-xyz", "scanner-xyz", {1, 1, 1}, IMAGE_SPACE_UNKNOWN},
-                  {"3D-right-handed", "3D-right-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN},
-                  {"3D-left-handed", "3D-left-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN}};
+                  {"3D-right-handed", "3D-right-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN}};
     struct nrrd *nrrd = context;
     for (size_t s = 0; s < sizeof spaces / sizeof *spaces; s++) {
         if (strcasecmp(header->value, spaces[s].name) == 0 ||
@@ -97,7 +96,8 @@ static enum status set_sizes(void *context, const struct text_header *header, st
 
 static enum status set_spacings(void *context, const struct text_header *header, struct error *error)
 {
-    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->spacing, error);
+    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->spacing,
+                         error);
 }
 
 static enum status set_first(void *context, const struct text_header *header, struct error *error)
@@ -169,7 +169,8 @@ static enum status take_units(const struct text_header *header, int count, doubl
 
 static enum status set_space_units(void *context, const struct text_header *header, struct error *error)
 {
-    return take_units(header, ((struct nrrd *)context)->space_dimension, ((struct nrrd *)context)->unit, error);
+    return take_units(header, ((struct nrrd *)context)->space_dimension, ((struct nrrd *)context)->unit,
+                      error);
 }
 
 static enum status set_units(void *context, const struct text_header *header, struct error *error)
@@ -278,11 +279,12 @@ static const struct header_field fields[] = {
     {"content", set_content},
 };
 
+enum { FIELDS = sizeof fields / sizeof *fields };
+
 /* Find the axis of the values at a voxel, -1: none; the others are those of the voxels. */
 static enum status find_component(const struct nrrd *nrrd, int *component, struct error *error)
 {
     int places = 0;
-    *component = -1;
     for (int a = 0; a < nrrd->dimension; a++) {
         bool is_place = nrrd->kind[a] == DOMAIN && (!nrrd->has_directions || nrrd->has_direction[a]);
         if (is_place ? ++places > 3 : *component >= 0) {
@@ -322,7 +324,7 @@ static enum status place(struct nrrd *nrrd, struct error *error)
 {
     double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
     struct image *image = nrrd->image;
-    int component, places = 0;
+    int component = -1, places = 0;
     RETURN_IF_ERROR(find_component(nrrd, &component, error));
     image->unit = nrrd->has_directions ? nrrd->unit[0] : nrrd->length[component == 0 ? 1 : 0];
     if (!nrrd->has_directions) {
@@ -390,9 +392,8 @@ enum status nrrd_header(struct image_source *source, struct image *image, struct
         if (header.key == NULL) {
             break;
         }
-        if (!header.is_pair) {
-            RETURN_IF_ERROR(header_set(&header, fields, sizeof fields / sizeof *fields, &nrrd, error));
-        }
+        RETURN_IF_ERROR(header.is_pair ? image_segment_field(image, &header, error)
+                                       : header_set(&header, fields, FIELDS, &nrrd, error));
     }
     RETURN_IF_ERROR(check(&nrrd, &header, error));
     return place(&nrrd, error);

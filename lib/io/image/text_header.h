@@ -67,6 +67,13 @@ MUST_CHECK enum status header_type(const struct text_header *header, const struc
 MUST_CHECK enum status header_data_file(const struct text_header *header, struct image_layout *layout,
                                         struct error *error);
 
+/* Take a pair SegmentN_KEY:=VALUE of an NRRD header; others are left. */
+MUST_CHECK enum status image_segment_field(struct image *image, const struct text_header *header,
+                                           struct error *error);
+
+/* Print the pairs of an image's segments. */
+void image_segments_print(const struct image *image, FILE *file);
+
 /* Set the sizes of an image, checked, and its type: components of 3 or 4 bytes are a colour if `colour`. */
 MUST_CHECK enum status header_sizes(const double size[3], double components, bool colour,
                                     const struct image_layout *layout, struct image *image,

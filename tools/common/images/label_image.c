@@ -81,13 +81,19 @@ static void collect_values(const struct tool *tool, const struct image *image, s
     }
 }
 
-/* Make the names label_1, label_2, ... for an image without a table. */
-static void name_values(const struct tool *tool, const struct values *values, struct label_table *table)
+/* Make names for an image without a table: those of its segments, and label_1, label_2, ... */
+static void name_values(const struct tool *tool, const struct image *image, const struct values *values,
+                        struct label_table *table)
 {
+    char changed[LABEL_TABLE_NOTE];
+    TOOL_TRY(tool, label_table_segments(table, image, changed, &error));
+    if (changed[0] != '\0') {
+        tool_note(tool, "%s", changed);
+    }
     for (int32_t v = 0; v < values->count; v++) {
         struct label_range range = {.first = values->value[v], .last = values->value[v]};
         char name[32];
-        if (range.first == 0) {
+        if (label_table_find(table, range.first, &range.name) || range.first == 0) {
             continue;
         }
         if (values->count > MOST_UNNAMED) {
@@ -137,7 +143,7 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     TOOL_SCRATCH(tool, struct values, values, 1);
     collect_values(tool, source, values);
     if (table == NULL) {
-        name_values(tool, values, &image->table);
+        name_values(tool, source, values, &image->table);
     }
     image->labels.count = image->table.name_count + 1;
     TOOL_TRY(tool, NEW_ARRAY(&image->keep, image->labels.count, &error));
@@ -323,6 +329,7 @@ static void read_layer(const struct tool *tool, const char *text, struct image *
     }
     image->slope = 1;
     image->inter = 0;
+    image->segment_count = mask ? 0 : image->segment_count;
 }
 
 /* Exit unless the voxels of two images have the same places, to a hundredth of a voxel. */
@@ -351,6 +358,9 @@ static void read_layers(const struct tool *tool, char *const *files, struct imag
         FREED_BY(image_free) struct image layer = {0};
         read_layer(tool, files[f], &layer);
         check_grid(tool, image, &layer, files[f]);
+        if (layer.segment_count > 0) {
+            tool_fail(tool, STATUS_INPUT, "%s: a segmentation on top of others: give it first", files[f]);
+        }
         for (size_t v = 0; v < image_voxels(image); v++) {
             image->values[v] = layer.values[v] > 0 ? layer.values[v] : image->values[v];
         }
