@@ -138,7 +138,8 @@ denied() {
     warp -o slice.mha slice.nii u.mts
     denied warp slice.nrrd u.mts
     denied warp slice.mha u.mts
-    nifti segments sphere.nii sphere.seg.nrrd 1 sphere
+    cp sphere.nii sphere.nii.gz
+    nifti segments sphere.nii.gz sphere.seg.nrrd 1 sphere
     denied voxels -h 20mm sphere.seg.nrrd
     denied sample slice.nii points.mts
 }
