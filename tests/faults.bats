@@ -44,7 +44,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
     { mesh; echo "$command"; } > behind.msh
     mesh | sed "s|\"body\"|\"body\"$command|" > inside.msh
     { mesh; printf '$Options\n%s\n$EndOptions\n' "$command"; } > section.msh
-    refused "script in front" 2 "the first line is not \$MeshFormat" 'nodes -u mm script.msh'
+    refused "script in front" 2 "not a mesh of gmsh" 'nodes -u mm script.msh'
     refused "script behind" 2 "not a section" 'nodes -u mm behind.msh'
     refused "script inside" 2 "PhysicalNames" 'nodes -u mm inside.msh'
     accepted "script in a section of options: not looked at" 'nodes -u mm section.msh'
@@ -235,7 +235,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 @test "fault 18: wrong stage order, version or byte order" {
     refused "no shape functions of the stream's own, no cells" 2 "run nodes" 'cloud -d 2 -k halton -n 30 --box 0,0.1,0,0.1 | mtled block.scene'
     refused "a mesh for a stream" 2 "a gmsh mesh, not an mts stream: run nodes" 'mtled block.scene square.msh'
-    refused "a stream for a mesh" 2 "not a gmsh mesh" 'nodes -u mm cloud.mts'
+    refused "a stream for a mesh" 2 "not a mesh of gmsh" 'nodes -u mm cloud.mts'
     run -2 --separate-stderr fieldcmp cloud.mts cloud.mts
     record "no field to compare" "$status" "$stderr" "$([[ $stderr == "fieldcmp: "*mtled* ]] && echo yes || echo no)"
     [[ $stderr == "fieldcmp: "*mtled* ]]

@@ -27,6 +27,26 @@ same_body() {
     done
 }
 
+@test "inp: nodes reads the same body again, in 2D and 3D, and as well what gmsh and meshio write" {
+    cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 |
+        tag -n tip=ball:0.1,0.1,0.03 -n mid=ball:0.05,0.05,0.03 -n low=plane:0,0,0,1 -r lump=ball:0.1,0.1,0.03 > plane.mts 2> note
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 |
+        tag -n tip=ball:0.1,0.1,0.1,0.03 -n mid=ball:0.05,0.05,0.05,0.03 -n low=plane:0,0,0,0,0,1 -r lump=ball:0.1,0.1,0.1,0.06 > solid.mts 2> note
+    for body in plane solid; do
+        mts list $body.mts | grep -q 'sets.ptr.*names=tip,mid,low'
+        tomesh -u 0.5 -o $body.msh $body.mts
+        nodes -u 0.5 $body.msh | tomesh -u 0.5 -o $body.inp
+        nodes -u 0.5 $body.inp > again.mts
+        same_body $body.mts again.mts
+    done
+    gmsh -v 1 solid.msh -save -o gmsh.inp # with an element set for each physical group behind those of the entities
+    nodes -u 0.5 gmsh.inp 2> said > gmsh.mts
+    mts list gmsh.mts | grep -q '^cells.region.*names=body,lump$'
+    mts list gmsh.mts | grep -q '^facets.set.*names=xmin,xmax,ymin,ymax,zmin,zmax$'
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("solid.msh"); m.Mesh(a.points, [c for c in a.cells if c.type != "vertex"]).write("meshio.inp")' > said 2>&1
+    nodes -u 0.5 meshio.inp 2> said | mts print nodes.x | cmp - <(mts print nodes.x solid.mts)
+}
+
 @test "inp: CalculiX finds nodes, element sets, node sets and surfaces" {
     cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | tag -n base=plane:0,0,0,0,0,1 -r low=box:-1,-1,-1,1,1,0.05 > solid.mts 2> note
     tomesh -o solid.inp solid.mts

@@ -268,9 +268,8 @@ TEST(each_fault_has_its_message)
         {ASCII_41, " 1 3 0\n", " 1 3 100000000000\n", "cannot be in"},
         {ASCII_41, " 1 3 0\n", " 70 3 0\n", "$Entities: curve 1: 70 physical groups are more than 64"},
         {ASCII_22, "1 3 \"bottom\"\n2 2", "1 3 \"bottom\"\n1 3", "group 3 of dimension 1 is named twice"},
-        {ASCII_22, "$MeshFormat\n", "SystemCall \"true\";\n",
-         "not a gmsh mesh: the first line is not $MeshFormat"},
-        {ASCII_22, "$MeshFormat\n", "$MeshFormatX\n", "not a gmsh mesh"},
+        {ASCII_22, "$MeshFormat\n", "SystemCall \"true\";\n", "not a mesh of gmsh"},
+        {ASCII_22, "$MeshFormat\n", "$MeshFormatX\n", "not a mesh of gmsh"},
     };
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
         struct fixture f = fixture_make(faults[i].form);

@@ -1,5 +1,5 @@
-/* Meshes of gmsh (MSH 2.2 and 4.1, ASCII and binary), in two steps: msh_read reads a file as it is;
- * mesh_build makes cells, facets and node sets of it. */
+/* Meshes of gmsh (MSH 2.2 and 4.1, ASCII and binary) and of other programs (decks of Abaqus and CalculiX), in
+ * two steps: msh_read reads a file as it is; mesh_build makes cells, facets and node sets of it. */
 #pragma once
 
 #include "base/status.h"
@@ -19,6 +19,16 @@ struct msh_group {
     char *written; /* the name in the file if it differs: in `name` blanks, commas and quotes are '_' */
 };
 
+/* Names of regions, facet sets or node sets. */
+struct mesh_names {
+    int32_t count;
+    char **name; /* count, distinct, without blanks and commas */
+};
+
+/* Append a name, a copy. */
+MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
+void mesh_names_free(struct mesh_names *names);
+
 /* A mesh file as it is: elements of all dimensions, in the order of the file. */
 struct msh {
     int64_t node_count;
@@ -34,6 +44,7 @@ struct msh {
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */
+    struct mesh_names notes;  /* what the file says that is not read */
 };
 
 /* A type of element. */
@@ -59,15 +70,6 @@ MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size
 MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
 void msh_free(struct msh *msh);
 
-/* Names of regions, facet sets or node sets. */
-struct mesh_names {
-    int32_t count;
-    char **name; /* count, distinct, without blanks and commas */
-};
-
-/* Append a name, a copy. */
-MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
-
 /* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */
 struct mesh {
     int dim; /* 2 or 3 */
@@ -82,7 +84,8 @@ struct mesh {
     int64_t *set_ptr;   /* node_sets.count + 1 */
     int32_t *set_idx;   /* nodes, ascending within each set */
     struct mesh_names regions, facet_sets, node_sets;
-    struct mesh_names notes; /* remarks on what was left out, one line each; these may contain blanks */
+    struct mesh_names notes; /* remarks on what was left out, one line each, first those of the file; these
+                                may contain blanks */
 };
 
 /* The parts of a file of which a mesh is made. */

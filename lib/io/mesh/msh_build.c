@@ -53,6 +53,9 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     enum status status = STATUS_OK;
     struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
     *mesh = (struct mesh){0};
+    for (int32_t i = 0; i < msh->notes.count; i++) {
+        TRY(mesh_add_note(&draft, "%s", msh->notes.name[i]));
+    }
     TRY(mesh_find_roles(&draft));
     TRY(mesh_find_dim(&draft));
     TRY(mesh_pick_regions(&draft));

@@ -25,8 +25,6 @@ struct mesh_draft {
 MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-void mesh_names_free(struct mesh_names *names);
-
 /* The index of a name, of this length, or -1. */
 int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length);
 

@@ -74,7 +74,6 @@ const char *msh_foreign_hint(const char *bytes, size_t size)
         {"NDIME", ": an SU2 mesh: " BY_MESHIO("FILE")},
         {"OFF\n", ": an OFF surface: " AS_STL("FILE.off")},
         {"v ", ": an OBJ surface: " AS_STL("FILE.obj")},
-        {"*", ": an Abaqus deck: " BY_MESHIO("FILE")},
         {"ply",
          ": a PLY surface: make it STL (gmsh FILE.ply -save -o body.stl); nodes -h tells how to fill that"},
         {"ISO-10303-21", ": a STEP geometry: gmsh -3 FILE.step -o body.msh makes a mesh of it"},

@@ -70,6 +70,7 @@ struct msh_reader {
     int64_t *entity_key;  /* msh->element_count: key of the entity; 0: none */
     int64_t name_count;
     struct msh_name *names;
+    struct owned texts; /* those of names that are not in the file */
     int64_t entity_count, entity_room;
     struct msh_entity *entities;
     int64_t physical_count, physical_room;

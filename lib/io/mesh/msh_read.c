@@ -1,7 +1,8 @@
 #include "base/memory.h"
 #include "io/files/descriptor.h"
-#include "io/mesh/msh_private.h"
+#include "io/mesh/mesh_input.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -162,21 +163,52 @@ static void read_sections(struct msh_reader *r)
     }
 }
 
+/* ---- formats ---- */
+
+/* A deck of Abaqus begins with a keyword or a comment. */
+static bool is_deck(const char *bytes, size_t size)
+{
+    size_t blanks = 0;
+    while (blanks < size && (bytes[blanks] == ' ' || is_end_of_line(bytes[blanks]))) {
+        blanks++;
+    }
+    return size - blanks > 1 && bytes[blanks] == '*' &&
+           (bytes[blanks + 1] == '*' || isalpha((unsigned char)bytes[blanks + 1]));
+}
+
+static const struct format {
+    bool (*is_it)(const char *bytes, size_t size);
+    void (*read)(struct msh_reader *reader);
+} formats[] = {{is_mesh, read_sections}, {is_deck, inp_read}};
+
+/* The format that a file of these first bytes has, or NULL. */
+static const struct format *find_format(const char *bytes, size_t size)
+{
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        if (formats[i].is_it(bytes, size)) {
+            return &formats[i];
+        }
+    }
+    return NULL;
+}
+
 enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error)
 {
     struct msh_reader reader = {.at = bytes, .end = bytes + size, .error = error, .msh = msh};
+    const struct format *format = find_format(bytes, size);
     *msh = (struct msh){0};
     if (is_mesh1(bytes, size)) {
         return fail_version(1, error);
     }
-    if (!is_mesh(bytes, size)) {
+    if (format == NULL) {
         return fail(error, STATUS_INPUT, "%s%s",
-                    size == 0 ? "empty" : "not a gmsh mesh: the first line is not $MeshFormat",
+                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus or CalculiX",
                     msh_foreign_hint(bytes, size));
     }
-    read_sections(&reader);
+    format->read(&reader);
     msh_join_groups(&reader);
     msh_index_free(&reader.nodes);
+    owned_free(&reader.texts);
     FREE_ALL(reader.element_key, reader.entity_key, reader.names, reader.entities, reader.physicals);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
@@ -186,7 +218,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
 
 /* ---- bytes ---- */
 
-/* Read to the end; only the first bytes if they do not begin a mesh. */
+/* Read to the end; only the first bytes if they do not begin a mesh of a known format. */
 static enum status read_all(int descriptor, char **bytes, size_t *size, struct error *error)
 {
     int64_t room = 0;
@@ -195,7 +227,7 @@ static enum status read_all(int descriptor, char **bytes, size_t *size, struct e
         RETURN_IF_ERROR(GROW_ARRAY(bytes, (int64_t)*size + 65536, &room, error));
         RETURN_IF_ERROR(descriptor_read(descriptor, *bytes + *size, (size_t)room - *size, &got, error));
         *size += got;
-        if (got == 0 || (*size >= MAGIC_SIZE && !is_mesh(*bytes, *size))) {
+        if (got == 0 || (*size >= MAGIC_SIZE && find_format(*bytes, *size) == NULL)) {
             return STATUS_OK;
         }
     }
@@ -221,5 +253,6 @@ void msh_free(struct msh *msh)
         FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }
     free(msh->groups);
+    mesh_names_free(&msh->notes);
     *msh = (struct msh){0};
 }

@@ -1,0 +1,283 @@
+/* Decks of Abaqus and CalculiX: the groups that sets, sections and surfaces become. A set of nodes is a group
+ * of points. An element belongs to the set of its section, else to the last set of the deck that it is in and
+ * that is not there for a surface. A surface is a group of the faces. */
+#include "io/mesh/inp.h"
+
+#include <ctype.h>
+#include <search.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* Members of all sets together, and elements of all groups, may be so many for each byte of the deck. */
+#define MOST_PER_BYTE 4
+
+/* gmsh's number of a point. */
+#define POINT 15
+
+/* ---- members ---- */
+
+/* What is done with each member of an item, its place among nodes or elements. */
+typedef void member_function(struct inp *p, const struct inp_item *item, int64_t place);
+
+/* Sets of sets must not grow out of proportion to the deck. */
+static void check_size(struct inp *p, int64_t count)
+{
+    if (count > MOST_PER_BYTE * p->size) {
+        msh_fail(p->in.r, "the sets have too many members for the size of the deck");
+    }
+}
+
+/* Those that there are of FIRST, FIRST + STEP, ..., LAST. */
+static void each_in_range(struct inp *p, const struct inp_item *item, const struct msh_index *index,
+                          member_function *add)
+{
+    int64_t low = 0;
+    for (int64_t high = index->count; low < high;) {
+        int64_t middle = (low + high) / 2;
+        *(index->sorted[middle].tag < item->first ? &low : &high) =
+            index->sorted[middle].tag < item->first ? middle + 1 : middle;
+    }
+    for (int64_t i = low; i < index->count && index->sorted[i].tag <= item->last; i++) {
+        check_size(p, p->tried++);
+        if ((index->sorted[i].tag - item->first) % item->step == 0) {
+            add(p, item, index->sorted[i].place);
+        }
+        if (p->in.r->status != STATUS_OK) {
+            return;
+        }
+    }
+}
+
+/* The members of a set, which may be those of another: what is added to it meanwhile does not count. */
+static void each_in_set(struct inp *p, const struct inp_item *item, member_function *add)
+{
+    int64_t last = item->members->tail;
+    if (!item->members->is_defined) {
+        msh_fail(p->in.r, "there is no set '%s'", item->members->name);
+    }
+    for (int64_t m = item->members->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
+        add(p, item, p->members[m].place);
+        if (m == last) {
+            return;
+        }
+    }
+}
+
+/* Call `add` for all members of an item, nodes ('N') or elements. */
+static void each_member(struct inp *p, const struct inp_item *item, char kind, member_function *add)
+{
+    struct msh_reader *r = p->in.r;
+    const struct msh_index *index = kind == 'N' ? &r->nodes : &p->elements;
+    r->record = item->line;
+    if (item->how == INP_SET) {
+        each_in_set(p, item, add);
+    } else if (item->how == INP_RANGE) {
+        each_in_range(p, item, index, add);
+    } else if (item->how == INP_TAG) {
+        int64_t place = msh_index_find(index, item->first);
+        if (place < 0) {
+            msh_fail(r, "there is no %s %lld", kind == 'N' ? "node" : "element", (long long)item->first);
+        } else {
+            add(p, item, place);
+        }
+    } else {
+        for (int64_t i = item->first; r->status == STATUS_OK && i <= item->last; i++) {
+            add(p, item, i);
+        }
+    }
+}
+
+static void add_member(struct inp *p, const struct inp_item *item, int64_t place)
+{
+    struct msh_reader *r = p->in.r;
+    struct inp_set *set = item->set;
+    check_size(p, p->member_count);
+    MSH_GROW(r, &p->members, p->member_count + 1, &p->member_room);
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    p->members[p->member_count] = (struct inp_member){place, -1};
+    *(set->tail < 0 ? &set->head : &p->members[set->tail].next) = p->member_count;
+    set->tail = p->member_count++;
+    if (set->kind == 'E' && (item->how == INP_PLACES || !set->of_surface)) {
+        p->overlaid += p->region[place] != NULL && p->region[place] != set;
+        p->region[place] = set;
+    }
+}
+
+static void add_to_region(struct inp *p, const struct inp_item *item, int64_t place)
+{
+    p->region[place] = item->members;
+    p->sectioned++;
+}
+
+/* ---- groups ---- */
+
+static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
+{
+    if (set->key[dim] == 0) {
+        set->key[dim] = input_add_group(&p->in, dim, set->name, (int64_t)strlen(set->name));
+    }
+    return set->key[dim];
+}
+
+static void add_to_group(struct inp *p, struct inp_set *set, int type, const int64_t node[])
+{
+    int64_t key = group_of(p, set, msh_type(type).dim);
+    int64_t place = input_add_element(&p->in, INPUT_NO_TAG, type, node);
+    check_size(p, p->in.element_count);
+    if (p->in.r->status == STATUS_OK) {
+        p->in.elements[place].key = key;
+    }
+}
+
+/* Corners of the faces S1, S2, ... of elements of first order, by gmsh's number; -1 fills up. */
+static const int8_t face_corners[8][6][4] = {
+    [2] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}},
+    [3] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}},
+    [4] = {{0, 1, 2, -1}, {0, 3, 1, -1}, {1, 3, 2, -1}, {2, 3, 0, -1}},
+    [5] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}},
+    [6] = {{0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}},
+    [7] = {{0, 1, 2, 3}, {0, 4, 1, -1}, {1, 4, 2, -1}, {2, 4, 3, -1}, {3, 4, 0, -1}},
+};
+
+/* Nodes in the middle of the edges of these faces of a tetrahedron. */
+static const int8_t tetrahedron_edges[4][3] = {{4, 5, 6}, {7, 9, 4}, {9, 8, 5}, {8, 7, 6}};
+
+/* Add face `f` of an element, with its midside nodes where elements are split at these. */
+static void add_face(struct inp *p, struct inp_set *set, int element_type, const int64_t node[], int f)
+{
+    int64_t face[6];
+    struct msh_type type = msh_type(element_type);
+    const int8_t *corner = face_corners[type.linear][f];
+    int count = 0, dim = type.dim - 1;
+    while (count < 4 && corner[count] >= 0) {
+        face[count] = node[corner[count]];
+        count++;
+    }
+    if (dim == 1 && type.node_count > count * 2) {
+        face[count++] = node[msh_type(type.linear).node_count + f];
+    } else if (type.node_count == 10) {
+        for (int k = 0; k < 3; k++) {
+            face[count++] = node[tetrahedron_edges[f][k]];
+        }
+    }
+    add_to_group(p, set, input_type(dim, count), face);
+}
+
+/* S1, P1: faces, of shells their two sides, then their edges; E1: edges; SPOS, SNEG: sides. */
+static void add_surface(struct inp *p, const struct inp_item *item, int64_t place)
+{
+    struct msh_reader *r = p->in.r;
+    int64_t node[20];
+    int type = p->in.elements[place].type;
+    const char *label = item->label;
+    int linear = msh_type(type).linear,
+        face = label[0] != '\0' && isdigit((unsigned char)label[1]) && label[2] == '\0' ? label[1] - '0' : 0;
+    int kind = toupper((unsigned char)label[0]);
+    bool side = p->is_shell[place] && (strcasecmp(label, "SPOS") == 0 || strcasecmp(label, "SNEG") == 0 ||
+                                       (kind != 'E' && (face == 1 || face == 2)));
+    face -= p->is_shell[place] && kind != 'E' ? 2 : 0;
+    memcpy(node, &p->in.corners[p->in.elements[place].first],
+           (size_t)msh_type(type).node_count * sizeof *node);
+    if (side) {
+        add_to_group(p, item->set, type, node);
+    } else if (strchr("SPE", kind) == NULL || face < 1 || face > 6 || linear < 2 || linear > 7 ||
+               face_corners[linear][face - 1][0] == face_corners[linear][face - 1][1]) {
+        msh_fail(r, "a %s has no face '%s'", msh_type(type).name, label);
+    } else {
+        add_face(p, item->set, type, node, face - 1);
+    }
+}
+
+/* ---- all of it ---- */
+
+static void index_elements(struct inp *p)
+{
+    struct msh_reader *r = p->in.r;
+    SCRATCH int64_t *tags = NULL;
+    MSH_NEW(r, &tags, p->in.element_count);
+    MSH_NEW(r, &p->region, p->in.element_count);
+    if (r->status == STATUS_OK) {
+        for (int64_t e = 0; e < p->in.element_count; e++) {
+            tags[e] = p->in.elements[e].tag;
+        }
+        r->section = "elements";
+        r->kind = "element";
+        msh_index_make(r, &p->elements, p->in.element_count, tags);
+    }
+}
+
+static void join_regions(struct inp *p)
+{
+    for (int64_t e = 0, end = p->in.element_count; p->in.r->status == STATUS_OK && e < end; e++) {
+        if (p->region[e] != NULL) {
+            p->in.elements[e].key = group_of(p, p->region[e], msh_type(p->in.elements[e].type).dim);
+        }
+    }
+}
+
+/* Note what becomes of sets of elements that are not regions. */
+static void note_sets(struct inp *p)
+{
+    char left[300] = "";
+    for (int64_t s = 0; s < p->set_count; s++) {
+        const struct inp_set *set = p->sets[s];
+        if (set->kind == 'E' && !set->of_surface && (set->key[1] | set->key[2] | set->key[3]) == 0) {
+            text_append(left, sizeof left, "%s%s", left[0] != '\0' ? ", " : "", set->name);
+        }
+    }
+    if (left[0] != '\0') {
+        input_note(&p->in, "sets of elements that are not regions, left out: %s", left);
+    }
+    if (p->overlaid > 0 && p->sectioned == 0) {
+        input_note(&p->in, "elements in several sets, taken for the last: %lld", (long long)p->overlaid);
+    }
+}
+
+static void join_nodes(struct inp *p)
+{
+    for (int64_t s = 0; p->in.r->status == STATUS_OK && s < p->set_count; s++) {
+        if (p->sets[s]->kind != 'N') {
+            continue;
+        }
+        (void)group_of(p, p->sets[s], 0);
+        for (int64_t m = p->sets[s]->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
+            add_to_group(p, p->sets[s], POINT, &p->in.nodes[p->members[m].place].tag);
+        }
+    }
+}
+
+void inp_join_sets(struct inp *p)
+{
+    struct msh_reader *r = p->in.r;
+    index_elements(p);
+    input_at(r, "sets", 0);
+    for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {
+        const struct inp_item *item = &p->items[i];
+        if (item->set != NULL && item->set->kind != 'S') {
+            each_member(p, item, item->set->kind, add_member);
+        }
+    }
+    for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {
+        if (p->items[i].set == NULL) {
+            each_member(p, &p->items[i], 'E', add_to_region);
+        }
+    }
+    join_regions(p);
+    note_sets(p);
+    for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {
+        if (p->items[i].set != NULL && p->items[i].set->kind == 'S') {
+            each_member(p, &p->items[i], 'E', add_surface);
+        }
+    }
+    join_nodes(p);
+}
+
+void inp_free_sets(struct inp *p)
+{
+    tdestroy(p->tree, free);
+    msh_index_free(&p->elements);
+    FREE_ALL(p->is_shell, p->items, p->sets, p->members, p->region);
+}

@@ -1,0 +1,345 @@
+/* Decks of Abaqus and CalculiX: lines, keywords, nodes and elements. (Format: CalculiX CrunchiX user's
+ * manual, "Input deck format".) */
+#include "io/mesh/inp.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ---- lines and fields ---- */
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* Take blanks off both ends. */
+static void trim(const char **text, int64_t *length)
+{
+    while (*length > 0 && is_blank(**text)) {
+        ++*text;
+        --*length;
+    }
+    while (*length > 0 && is_blank((*text)[*length - 1])) {
+        --*length;
+    }
+}
+
+/* The next line that is no comment. */
+static void next_line(struct inp *p)
+{
+    struct msh_reader *r = p->in.r;
+    do {
+        p->line = NULL;
+        if (r->status != STATUS_OK || r->at == r->end) {
+            return;
+        }
+        const char *end = memchr(r->at, '\n', (size_t)(r->end - r->at));
+        p->line = r->at;
+        p->length = (end != NULL ? end : r->end) - r->at;
+        r->at = end != NULL ? end + 1 : r->end;
+        r->record = ++p->number;
+        trim(&p->line, &p->length);
+        if (end == NULL && p->length > 0 && (p->length < 4 || strncasecmp(p->line, "*END", 4) != 0)) {
+            msh_fail(r, "no newline at the end: truncated? end the last line with a newline");
+        }
+    } while (p->length == 0 || (p->length > 1 && memcmp(p->line, "**", 2) == 0));
+    p->field = p->line;
+    p->field_end = p->line + p->length;
+}
+
+bool inp_next_data(struct inp *p)
+{
+    next_line(p);
+    return p->in.r->status == STATUS_OK && p->line != NULL && p->line[0] != '*';
+}
+
+bool inp_next_field(struct inp *p, const char **text, int64_t *length)
+{
+    if (p->in.r->status != STATUS_OK || p->field == NULL) {
+        return false;
+    }
+    const char *comma = memchr(p->field, ',', (size_t)(p->field_end - p->field));
+    *text = p->field;
+    *length = (comma != NULL ? comma : p->field_end) - p->field;
+    p->field = comma != NULL ? comma + 1 : NULL;
+    trim(text, length);
+    return p->field != NULL || *length > 0; /* a comma at the end begins no field */
+}
+
+/* ---- keywords ---- */
+
+/* Join the lines of a keyword: all but the last end in a comma. */
+static void read_card(struct inp *p)
+{
+    size_t length = 0;
+    for (bool more = true; more;) {
+        if (p->in.r->status != STATUS_OK || p->line == NULL || length + (size_t)p->length >= sizeof p->card) {
+            msh_fail(p->in.r, "the keyword is unfinished, or longer than %zu bytes", sizeof p->card);
+            return;
+        }
+        memcpy(p->card + length, p->line, (size_t)p->length);
+        length += (size_t)p->length;
+        p->card[length] = '\0';
+        more = p->card[length - 1] == ',';
+        if (more) {
+            next_line(p);
+        }
+    }
+    size_t count = 0;
+    for (const char *c = p->card; *c != '\0' && *c != ',' && count + 1 < sizeof p->keyword; c++) {
+        bool blank = isspace((unsigned char)*c);
+        if (!blank || (c[1] != '\0' && c[1] != ',' && !isspace((unsigned char)c[1]))) {
+            p->keyword[count++] = (char)(blank ? ' ' : toupper((unsigned char)*c));
+        }
+    }
+    p->keyword[count] = '\0';
+}
+
+bool inp_parameter(struct inp *p, const char *name, char value[], size_t size)
+{
+    for (const char *at = strchr(p->card, ','); at != NULL; at = strchr(at, ',')) {
+        at += 1 + strspn(at + 1, " \t");
+        size_t length = strcspn(at, "=, \t");
+        if (length != strlen(name) || strncasecmp(at, name, length) != 0) {
+            continue;
+        }
+        const char *text = at + length + strspn(at + length, " \t");
+        text += *text == '=';
+        int64_t count = (int64_t)strcspn(text, ",");
+        trim(&text, &count);
+        if (count > 1 && text[0] == '"' && text[count - 1] == '"') {
+            text++;
+            count -= 2;
+        }
+        if ((size_t)count >= size) {
+            msh_fail(p->in.r, "%s is longer than %zu bytes", name, size - 1);
+            count = 0;
+        }
+        memcpy(value, text, (size_t)count);
+        value[count] = '\0';
+        return true;
+    }
+    return false;
+}
+
+/* ---- nodes and elements ---- */
+
+static void read_nodes(struct inp *p)
+{
+    struct msh_reader *r = p->in.r;
+    char value[INP_LONGEST_NAME + 1];
+    const char *word;
+    int64_t length, first = p->in.node_count;
+    bool is_set = inp_parameter(p, "NSET", value, sizeof value);
+    char system[INP_LONGEST_NAME + 1];
+    if (inp_parameter(p, "SYSTEM", system, sizeof system) && strcasecmp(system, "R") != 0) {
+        msh_fail(r, "the nodes are not in Cartesian coordinates: write them with SYSTEM=R");
+    }
+    while (inp_next_data(p)) {
+        double x[3] = {0};
+        if (!inp_next_field(p, &word, &length)) {
+            continue;
+        }
+        int64_t tag = input_whole(r, "node", word, length, 1, MSH_LARGEST_TAG);
+        for (int k = 0; k < 3 && inp_next_field(p, &word, &length); k++) {
+            x[k] = length > 0 ? input_real(r, "coordinate", word, length) : 0;
+        }
+        input_add_node(&p->in, tag, x);
+    }
+    if (is_set) {
+        inp_add_places(p, 'N', value, first, p->in.node_count);
+    }
+}
+
+/* The type of gmsh of an element type: its beginning tells the dimension, the digits behind it the number of
+ * nodes. 0: it is not read. */
+static int find_type(const char *name, bool *is_shell)
+{
+    static const struct {
+        const char *begin;
+        int dim;
+    } kinds[] = {{"C3D", 3}, {"DC3D", 3}, {"AC3D", 3},  {"CPS", 2}, {"CPE", 2},  {"CPEG", 2},
+                 {"S", 2},   {"M3D", 2},  {"SFM3D", 2}, {"R3D", 2}, {"STRI", 2}, {"DC2D", 2},
+                 {"DS", 2},  {"AC2D", 2}, {"T3D", 1},   {"T2D", 1}, {"R2D", 1},  {"F3D", 2}};
+    size_t begin = strcspn(name, "0123456789");
+    begin += begin > 0 && name[begin] != '\0' && strchr("32", name[begin]) != NULL && name[begin + 1] == 'D'
+                 ? 2
+                 : 0;
+    int nodes = atoi(name + begin);
+    *is_shell = false;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strlen(kinds[i].begin) == begin && strncasecmp(name, kinds[i].begin, begin) == 0) {
+            *is_shell = kinds[i].dim == 2 && strchr("CDA", toupper((unsigned char)name[0])) == NULL;
+            return nodes < 27 ? input_type(kinds[i].dim, nodes == 65 ? 6 : nodes) : 0;
+        }
+    }
+    return 0;
+}
+
+/* An element: its number and its nodes, on as many lines as these take. */
+static void read_element(struct inp *p, int type, bool is_shell)
+{
+    struct msh_reader *r = p->in.r;
+    const char *word;
+    int64_t length, node[20], tag = -1;
+    int count = msh_type(type).node_count;
+    for (int k = -1; k < count && r->status == STATUS_OK;) {
+        if (!inp_next_field(p, &word, &length)) {
+            if (!inp_next_data(p)) {
+                msh_fail(r, "element %lld ends after %d of %d nodes", (long long)tag, k, count);
+            }
+            continue;
+        }
+        int64_t number = input_whole(r, k < 0 ? "element" : "node", word, length, 1, MSH_LARGEST_TAG);
+        *(k < 0 ? &tag : &node[k]) = number;
+        k++;
+    }
+    if (inp_next_field(p, &word, &length)) {
+        msh_fail(r, "element %lld has more than %d nodes", (long long)tag, count);
+    }
+    input_reorder(type, node);
+    MSH_GROW(r, &p->is_shell, p->in.element_count + 1, &p->shell_room);
+    if (r->status == STATUS_OK) {
+        p->is_shell[p->in.element_count] = is_shell;
+        (void)input_add_element(&p->in, tag, type, node);
+    }
+}
+
+static void read_elements(struct inp *p)
+{
+    struct msh_reader *r = p->in.r;
+    char name[32] = "", set[INP_LONGEST_NAME + 1];
+    bool is_shell;
+    bool is_set = inp_parameter(p, "ELSET", set, sizeof set);
+    int64_t first = p->in.element_count;
+    bool has_type = inp_parameter(p, "TYPE", name, sizeof name);
+    int type = find_type(name, &is_shell);
+    if (type == 0) {
+        msh_fail(r,
+                 "%s%s: no element that is read (C3D4, CPE3, S3, ... of first or second order): take it out",
+                 has_type ? "TYPE=" : "no TYPE", name);
+    }
+    while (r->status == STATUS_OK && inp_next_data(p)) {
+        read_element(p, type, is_shell);
+    }
+    if (is_set) {
+        inp_add_places(p, 'E', set, first, p->in.element_count);
+    }
+}
+
+/* ---- parts ---- */
+
+#define FLAT "write the deck without parts (Abaqus: Model, Edit attributes, Do not use parts and assemblies)"
+
+/* Data lines move the instance of a part. */
+static void read_instance(struct inp *p)
+{
+    const char *word;
+    int64_t length;
+    (void)inp_parameter(p, "NAME", p->instance, sizeof p->instance);
+    while (inp_next_data(p)) {
+        while (inp_next_field(p, &word, &length)) {
+            if (length > 0 && input_real(p->in.r, "place", word, length) != 0) {
+                msh_fail(p->in.r, "the instance is moved: " FLAT);
+            }
+        }
+    }
+}
+
+/* Whether the keyword is one of parts and assemblies: one part and one instance are read. */
+static bool is_of_parts(struct inp *p)
+{
+    const char *key = p->keyword;
+    bool begins = strcmp(key, "*ASSEMBLY") == 0, ends = strcmp(key, "*END ASSEMBLY") == 0;
+    bool part = strcmp(key, "*PART") == 0, instance = strcmp(key, "*INSTANCE") == 0;
+    bool behind = strcmp(key, "*END INSTANCE") == 0;
+    p->in_assembly = begins || behind || (p->in_assembly && !ends && !instance);
+    p->parts += part;
+    p->instances += instance;
+    if (p->parts > 1 || p->instances > 1) {
+        msh_fail(p->in.r, "more than one part or instance: " FLAT);
+    }
+    return begins || ends || part || instance || behind || strcmp(key, "*END PART") == 0;
+}
+
+/* ---- the deck ---- */
+
+/* Note a keyword that is not read, once. */
+static void leave_out(struct inp *p)
+{
+    char item[80] = ", ";
+    text_append(item, sizeof item, "%s", p->keyword);
+    const char *found = strstr(p->left_out, item);
+    size_t length = strlen(item);
+    bool is_new = found == NULL || (found[length] != '\0' && found[length] != ',');
+    if (is_new && strlen(p->left_out) + length < sizeof p->left_out) {
+        text_append(p->left_out, sizeof p->left_out, "%s", item);
+    }
+}
+
+static bool is_one_of(const char *keyword, const char *const list[])
+{
+    while (*list != NULL && strcmp(keyword, *list) != 0) {
+        list++;
+    }
+    return *list != NULL;
+}
+
+static void skip_data(struct inp *p)
+{
+    while (inp_next_data(p)) {
+    }
+}
+
+/* Read one keyword with its data; the next keyword is then in the current line. */
+static void read_keyword(struct inp *p)
+{
+    static const char *const made[] = {"*NGEN",   "*NFILL",  "*NCOPY",  "*NMAP", "*ELGEN",
+                                       "*ELCOPY", "*SYSTEM", "*IMPORT", NULL};
+    const char *key = p->keyword;
+    bool of_parts = is_of_parts(p);
+    if (strcmp(key, "*NODE") == 0) {
+        read_nodes(p);
+    } else if (strcmp(key, "*ELEMENT") == 0) {
+        read_elements(p);
+    } else if (strcmp(key, "*NSET") == 0 || strcmp(key, "*ELSET") == 0) {
+        inp_read_set(p, key[1]);
+    } else if (strcmp(key, "*SURFACE") == 0) {
+        inp_read_surface(p);
+    } else if (strcmp(key, "*INSTANCE") == 0) {
+        read_instance(p);
+    } else if (strcmp(key, "*INCLUDE") == 0) {
+        msh_fail(p->in.r, "other files are not read: put the lines of that file in its place");
+    } else if (is_one_of(key, made)) {
+        msh_fail(p->in.r, "nodes and elements made of others are not read: write all of them out");
+    } else {
+        if (text_ends(key, " SECTION")) {
+            inp_read_section(p);
+        } else if (!of_parts && strcmp(key, "*HEADING") != 0) {
+            leave_out(p);
+        }
+        skip_data(p);
+    }
+}
+
+void inp_read(struct msh_reader *r)
+{
+    struct inp p = {.in = {.r = r}, .size = r->end - r->at};
+    input_at(r, "deck", 0);
+    skip_data(&p); /* there is none: a deck begins with a keyword */
+    while (p.line != NULL && r->status == STATUS_OK) {
+        read_card(&p);
+        input_at(r, p.keyword, p.number);
+        read_keyword(&p);
+    }
+    input_index(&p.in);
+    inp_join_sets(&p);
+    input_finish(&p.in);
+    if (p.left_out[0] != '\0') {
+        input_note(&p.in, "left out of the deck: %s", p.left_out + 2);
+    }
+    inp_free_sets(&p);
+    input_free(&p.in);
+}

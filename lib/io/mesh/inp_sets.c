@@ -1,0 +1,185 @@
+/* Decks of Abaqus and CalculiX: sets, surfaces and sections. */
+#include "io/mesh/inp.h"
+
+#include <ctype.h>
+#include <search.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static int compare_sets(const void *left, const void *right)
+{
+    const struct inp_set *a = left, *b = right;
+    int order = (a->kind - b->kind) * 2 + (a->of_assembly - b->of_assembly);
+    return order != 0 ? order : strcasecmp(a->name, b->name);
+}
+
+/* The set of that name, which may be new, and as "INSTANCE.NAME" is that of the part; NULL after a failure.
+ */
+static struct inp_set *find_set(struct inp *p, char kind, const char *text, size_t length)
+{
+    struct msh_reader *r = p->in.r;
+    size_t prefix = strlen(p->instance);
+    struct inp_set wanted = {.kind = kind, .of_assembly = p->in_assembly, .head = -1, .tail = -1};
+    if (prefix > 0 && length > prefix && text[prefix] == '.' && strncasecmp(text, p->instance, prefix) == 0) {
+        wanted.of_assembly = false;
+        text += prefix + 1;
+        length -= prefix + 1;
+    }
+    if (length == 0 || length > INP_LONGEST_NAME) {
+        msh_fail(r, "the name of a set is missing, or longer than %d bytes", INP_LONGEST_NAME);
+    }
+    MSH_GROW(r, &p->sets, p->set_count + 1, &p->set_room);
+    if (r->status != STATUS_OK) {
+        return NULL;
+    }
+    memcpy(wanted.name, text, length);
+    struct inp_set *const *found = tfind(&wanted, &p->tree, compare_sets);
+    if (found != NULL) {
+        return *found;
+    }
+    SCRATCH struct inp_set *set = malloc(sizeof *set);
+    if (set != NULL) {
+        *set = wanted;
+    }
+    if (set == NULL || tsearch(set, &p->tree, compare_sets) == NULL) {
+        r->status = fail_memory(r->error, "sets");
+        return NULL;
+    }
+    p->sets[p->set_count++] = set;
+    return array_take(&set);
+}
+
+static void add_item(struct inp *p, const struct inp_item *item)
+{
+    struct msh_reader *r = p->in.r;
+    MSH_GROW(r, &p->items, p->item_count + 1, &p->item_room);
+    if (r->status == STATUS_OK) {
+        p->items[p->item_count] = *item;
+        p->items[p->item_count++].line = p->number;
+    }
+}
+
+void inp_add_places(struct inp *p, char kind, const char *name, int64_t first, int64_t end)
+{
+    struct inp_item item = {
+        .set = find_set(p, kind, name, strlen(name)), .how = INP_PLACES, .first = first, .last = end - 1};
+    if (item.set != NULL) {
+        item.set->is_defined = true;
+        add_item(p, &item);
+    }
+}
+
+/* The members that a word names: a number, or a set. */
+static void add_word(struct inp *p, struct inp_item *item, char kind, const char *word, int64_t length)
+{
+    size_t prefix = strlen(p->instance) + 1;
+    bool numbered = prefix > 1 && (size_t)length > prefix && word[prefix - 1] == '.' &&
+                    isdigit((unsigned char)word[prefix]) && strncasecmp(word, p->instance, prefix - 1) == 0;
+    if (numbered) {
+        word += prefix;
+        length -= (int64_t)prefix;
+    }
+    if (length > 0 && isdigit((unsigned char)word[0])) {
+        item->how = INP_TAG;
+        item->first = input_whole(p->in.r, "member", word, length, 1, MSH_LARGEST_TAG);
+    } else {
+        item->how = INP_SET;
+        item->members = find_set(p, kind, word, (size_t)length);
+    }
+    add_item(p, item);
+}
+
+/* Lines of GENERATE: the first, the last, and the step. */
+static void read_ranges(struct inp *p, struct inp_item *item)
+{
+    const char *word;
+    int64_t length, number[3];
+    while (inp_next_data(p)) {
+        int count = 0;
+        number[2] = 1;
+        while (count < 3 && inp_next_field(p, &word, &length)) {
+            number[count++] = input_whole(p->in.r, "GENERATE", word, length, 1, MSH_LARGEST_TAG);
+        }
+        if (count == 1 || inp_next_field(p, &word, &length)) {
+            msh_fail(p->in.r, "GENERATE: a line is not FIRST, LAST, STEP");
+        }
+        item->how = INP_RANGE;
+        item->first = number[0];
+        item->last = number[1];
+        item->step = number[2];
+        if (count > 1) {
+            add_item(p, item);
+        }
+    }
+}
+
+void inp_read_set(struct inp *p, char kind)
+{
+    char name[INP_LONGEST_NAME + 1] = "", value[INP_LONGEST_NAME + 1];
+    const char *word;
+    int64_t length;
+    (void)inp_parameter(p, kind == 'N' ? "NSET" : "ELSET", name, sizeof name);
+    struct inp_item item = {.set = find_set(p, kind, name, strlen(name))};
+    if (kind == 'N' && inp_parameter(p, "ELSET", value, sizeof value)) {
+        msh_fail(p->in.r, "the nodes of a set of elements are not read: list them");
+    }
+    if (item.set == NULL) {
+        return;
+    }
+    item.set->is_defined = true;
+    if (inp_parameter(p, "GENERATE", value, sizeof value)) {
+        read_ranges(p, &item);
+        return;
+    }
+    while (inp_next_data(p)) {
+        while (inp_next_field(p, &word, &length)) {
+            if (length > 0) {
+                add_word(p, &item, kind, word, length);
+            }
+        }
+    }
+}
+
+void inp_read_surface(struct inp *p)
+{
+    char name[INP_LONGEST_NAME + 1] = "", value[INP_LONGEST_NAME + 1] = "ELEMENT";
+    const char *word, *label;
+    int64_t length, count;
+    (void)inp_parameter(p, "NAME", name, sizeof name);
+    (void)inp_parameter(p, "TYPE", value, sizeof value);
+    bool of_nodes = strcasecmp(value, "NODE") == 0;
+    if ((!of_nodes && strcasecmp(value, "ELEMENT") != 0) ||
+        inp_parameter(p, "COMBINE", value, sizeof value)) {
+        msh_fail(p->in.r, "only surfaces of element faces and of nodes are read: take '%s' out", name);
+    }
+    struct inp_item item = {.set = find_set(p, of_nodes ? 'N' : 'S', name, strlen(name))};
+    while (item.set != NULL && inp_next_data(p)) {
+        item.set->is_defined = true;
+        if (!inp_next_field(p, &word, &length)) {
+            continue;
+        }
+        if (!of_nodes &&
+            (!inp_next_field(p, &label, &count) || count == 0 || count >= (int64_t)sizeof item.label)) {
+            msh_fail(p->in.r, "no face is named: as in 'SET, S1'; free faces are not found");
+            return;
+        }
+        if (!of_nodes) {
+            memcpy(item.label, label, (size_t)count);
+            item.label[count] = '\0';
+        }
+        add_word(p, &item, of_nodes ? 'N' : 'E', word, length);
+        if (!of_nodes && p->in.r->status == STATUS_OK && p->items[p->item_count - 1].how == INP_SET) {
+            p->items[p->item_count - 1].members->of_surface = true;
+        }
+    }
+}
+
+void inp_read_section(struct inp *p)
+{
+    char name[INP_LONGEST_NAME + 1];
+    if (inp_parameter(p, "ELSET", name, sizeof name)) {
+        struct inp_item item = {.how = INP_SET, .members = find_set(p, 'E', name, strlen(name))};
+        add_item(p, &item);
+    }
+}

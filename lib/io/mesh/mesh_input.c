@@ -1,0 +1,185 @@
+#include "io/mesh/mesh_input.h"
+#include "io/stream/stream_private.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LONGEST_NAME 127
+
+int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
+                    int64_t most)
+{
+    int64_t number = least;
+    const char *end = word + length;
+    if (number_parse_integer(word, end, -INT64_MAX, INT64_MAX, &number) != end) {
+        msh_fail(r, "%s: '%.*s' is not a whole number", what, length < 64 ? (int)length : 64, word);
+    } else if (number < least || number > most) {
+        msh_fail(r, "%s: %lld is not within [%lld, %lld]", what, (long long)number, (long long)least,
+                 (long long)most);
+    }
+    return r->status == STATUS_OK ? number : least;
+}
+
+double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length)
+{
+    char text[64] = "";
+    double number = 0;
+    if (length < (int64_t)sizeof text) {
+        memcpy(text, word, (size_t)length);
+    }
+    for (char *c = text; *c != '\0'; c++) {
+        if (*c == 'D' || *c == 'd') {
+            *c = 'e';
+        }
+    }
+    const char *end = text + length;
+    if (length >= (int64_t)sizeof text || number_parse_double(text, end, &number) != end ||
+        !isfinite(number)) {
+        msh_fail(r, "%s: '%.*s' is not a finite number", what, length < 64 ? (int)length : 64, word);
+    }
+    return r->status == STATUS_OK ? number : 0;
+}
+
+int input_type(int dim, int node_count)
+{
+    for (int type = 1; msh_type(type).name != NULL; type++) {
+        if (msh_type(type).dim == dim && msh_type(type).node_count == node_count) {
+            return type;
+        }
+    }
+    return 0;
+}
+
+void input_reorder(int type, int64_t node[])
+{
+    enum { TETRAHEDRON_10 = 11 };
+    if (type == TETRAHEDRON_10) {
+        int64_t last = node[9];
+        node[9] = node[8];
+        node[8] = last;
+    }
+}
+
+void input_add_node(struct mesh_input *in, int64_t tag, const double x[3])
+{
+    MSH_GROW(in->r, &in->nodes, in->node_count + 1, &in->node_room);
+    if (in->r->status == STATUS_OK) {
+        in->nodes[in->node_count++] = (struct input_node){tag, {x[0], x[1], x[2]}};
+    }
+}
+
+int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[])
+{
+    int count = msh_type(type).node_count;
+    MSH_GROW(in->r, &in->elements, in->element_count + 1, &in->element_room);
+    MSH_GROW(in->r, &in->corners, in->corner_count + count, &in->corner_room);
+    if (in->r->status != STATUS_OK) {
+        return 0;
+    }
+    in->elements[in->element_count] = (struct input_element){tag, 0, in->corner_count, type};
+    memcpy(&in->corners[in->corner_count], node, (size_t)count * sizeof *node);
+    in->corner_count += count;
+    return in->element_count++;
+}
+
+int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length)
+{
+    struct msh_reader *r = in->r;
+    if (length < 1 || length > LONGEST_NAME || memchr(text, '\0', (size_t)length) != NULL) {
+        msh_fail(r, "a name is empty or longer than %d bytes", LONGEST_NAME);
+    }
+    MSH_GROW(r, &r->names, r->name_count + 1, &in->name_room);
+    if (r->status != STATUS_OK) {
+        return 0;
+    }
+    char *copy = strndup(text, (size_t)length);
+    r->status = owned_add(&r->texts, copy, "names", r->error);
+    int64_t key = msh_key(dim, r->name_count + 1);
+    r->names[r->name_count++] = (struct msh_name){key, copy, (int)length};
+    return key;
+}
+
+void input_note(struct mesh_input *in, const char *format, ...)
+{
+    char note[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(note, sizeof note, format, arguments);
+    va_end(arguments);
+    if (in->r->status == STATUS_OK) {
+        in->r->status = mesh_add_name(&in->r->msh->notes, note, in->r->error);
+    }
+}
+
+void input_index(struct mesh_input *in)
+{
+    struct msh_reader *r = in->r;
+    struct msh *msh = r->msh;
+    msh->node_count = r->status == STATUS_OK ? in->node_count : 0;
+    MSH_NEW(r, &msh->x, 3 * in->node_count);
+    MSH_NEW(r, &msh->node_tag, in->node_count);
+    for (int64_t n = 0; r->status == STATUS_OK && n < in->node_count; n++) {
+        memcpy(&msh->x[3 * n], in->nodes[n].x, sizeof in->nodes[n].x);
+        msh->node_tag[n] = in->nodes[n].tag;
+    }
+    if (r->status == STATUS_OK) {
+        r->section = "nodes";
+        r->kind = "node";
+        msh_index_make(r, &r->nodes, in->node_count, msh->node_tag);
+    }
+}
+
+static void find_corners(struct mesh_input *in)
+{
+    struct msh_reader *r = in->r;
+    int64_t e = 0;
+    r->section = "elements";
+    r->record = 0;
+    MSH_NEW(r, &r->msh->node_idx, in->corner_count);
+    for (int64_t k = 0; r->status == STATUS_OK && k < in->corner_count; k++) {
+        int64_t place = msh_index_find(&r->nodes, in->corners[k]);
+        r->msh->node_idx[k] = (int32_t)place;
+        while (e + 1 < in->element_count && in->elements[e + 1].first <= k) {
+            e++;
+        }
+        if (place < 0) {
+            msh_fail(r, "element %lld names the node %lld, which is not in the file",
+                     (long long)in->elements[e].tag, (long long)in->corners[k]);
+        }
+    }
+}
+
+void input_finish(struct mesh_input *in)
+{
+    struct msh_reader *r = in->r;
+    struct msh *msh = r->msh;
+    int64_t tag = 0;
+    find_corners(in);
+    MSH_NEW(r, &msh->element_tag, in->element_count);
+    MSH_NEW(r, &msh->element_type, in->element_count);
+    MSH_NEW(r, &msh->node_ptr, in->element_count + 1);
+    MSH_NEW(r, &r->element_key, in->element_count);
+    MSH_NEW(r, &r->entity_key, in->element_count);
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    msh->element_count = in->element_count;
+    for (int64_t e = 0; e < in->element_count; e++) {
+        tag = in->elements[e].tag > tag ? in->elements[e].tag : tag;
+    }
+    for (int64_t e = 0; e < in->element_count; e++) {
+        const struct input_element *element = &in->elements[e];
+        msh->element_tag[e] = element->tag != INPUT_NO_TAG ? element->tag : ++tag;
+        msh->element_type[e] = (int8_t)element->type;
+        msh->node_ptr[e + 1] = element->first + msh_type(element->type).node_count;
+        r->element_key[e] = element->key;
+    }
+}
+
+void input_free(struct mesh_input *in)
+{
+    FREE_ALL(in->nodes, in->elements, in->corners);
+}

@@ -1,0 +1,67 @@
+/* Readers of meshes that are not gmsh's; private to lib/io. They add nodes, elements and groups in any order
+ * to a struct mesh_input, which becomes the lists of a struct msh:
+ *
+ *   bytes --> inp_read.c, ... --> mesh_input.c --> msh_groups.c --> struct msh
+ *
+ * Each element has at most one group: facets and nodes are elements of their own for each of theirs. As in
+ * msh_private.h, all functions return without effect after the first failure of the reader. */
+#pragma once
+
+#include "io/mesh/msh_private.h"
+
+struct mesh_input {
+    struct msh_reader *r;
+    int64_t node_count, node_room, element_count, element_room, corner_count, corner_room, name_room;
+    struct input_node {
+        int64_t tag;
+        double x[3];
+    } * nodes;
+    struct input_element {
+        int64_t tag; /* INPUT_NO_TAG: it is numbered behind the others */
+        int64_t key; /* of its group, 0: none */
+        int64_t first;
+        int type;
+    } * elements;
+    int64_t *corners; /* tags of the nodes of each element, in gmsh's order, from `first` on */
+};
+
+#define INPUT_NO_TAG (-1)
+
+/* Say where the reader is, for messages: "*NODE: line 12: ..." */
+static inline void input_at(struct msh_reader *r, const char *section, int64_t line)
+{
+    r->section = section;
+    r->kind = "line";
+    r->record = line;
+}
+
+/* The numbers that words of a text file are: all of the word; a real number is finite, and may have Fortran's
+ * exponent D. */
+int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
+                    int64_t most);
+double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length);
+
+/* The number of gmsh of the elements of first or second order with this dimension and number of nodes; 0:
+ * there are none. Numbers of nodes are those of one type, except that 8 in the plane are of second order. */
+int input_type(int dim, int node_count);
+
+/* Bring the nodes of an element of Abaqus, VTK or FEBio, which agree, into gmsh's order; the midside nodes of
+ * elements that are not split there stay as they are. */
+void input_reorder(int type, int64_t node[]);
+
+/* Add a node; an element with these tags of nodes, returning its place; a group with a name, which is
+ * borrowed until the groups are joined, returning its key. */
+void input_add_node(struct mesh_input *in, int64_t tag, const double x[3]);
+int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[]);
+int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length);
+
+/* Note what is left out (printf-style). */
+void input_note(struct mesh_input *in, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Index the nodes by their tags: before input_finish, and before what needs them. Fill reader and mesh. */
+void input_index(struct mesh_input *in);
+void input_finish(struct mesh_input *in);
+void input_free(struct mesh_input *in);
+
+/* Read a deck of Abaqus or CalculiX. */
+void inp_read(struct msh_reader *r); /* inp_read.c */

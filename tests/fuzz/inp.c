@@ -1,0 +1,2 @@
+/* Fuzz target: decks of Abaqus and CalculiX. */
+#include "mesh.h"

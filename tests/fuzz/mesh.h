@@ -1,0 +1,58 @@
+/* Fuzz targets of meshes: one for each family of formats, with its corpus and words. What is read is
+ * consistent in itself, and is built or refused in one line. */
+#pragma once
+
+#include "fuzz.h"
+
+#include "io/mesh/msh.h"
+
+#include <math.h>
+
+/* Sizes, indices and orders are as the header says. */
+static void require_sound(const struct msh *msh, size_t size)
+{
+    int64_t members = 0;
+    REQUIRE(msh->node_count <= (int64_t)size && msh->element_count <= 4 * (int64_t)size);
+    for (int64_t i = 0; i < 3 * msh->node_count; i++) {
+        REQUIRE(isfinite(msh->x[i]));
+    }
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        REQUIRE(msh_type(msh->element_type[e]).name != NULL);
+        REQUIRE(msh->node_ptr[e + 1] - msh->node_ptr[e] == msh_type(msh->element_type[e]).node_count);
+        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
+            REQUIRE(msh->node_idx[k] >= 0 && msh->node_idx[k] < msh->node_count);
+        }
+        for (int64_t k = msh->member_ptr[e]; k < msh->member_ptr[e + 1]; k++) {
+            REQUIRE(msh->member_idx[k] >= 0 && msh->member_idx[k] < msh->group_count);
+            REQUIRE(k == msh->member_ptr[e] || msh->member_idx[k] > msh->member_idx[k - 1]);
+            REQUIRE(msh->groups[msh->member_idx[k]].dim == msh_type(msh->element_type[e]).dim);
+        }
+    }
+    for (int32_t g = 0; g < msh->group_count; g++) {
+        const struct msh_group *group = &msh->groups[g];
+        REQUIRE(group->name[0] != '\0' && group->tag >= 0);
+        REQUIRE(g == 0 || group->dim > group[-1].dim ||
+                (group->dim == group[-1].dim && group->tag > group[-1].tag));
+        members += group->element_count;
+    }
+    REQUIRE(members == msh->member_ptr[msh->element_count]);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    FREED_BY(msh_free) struct msh msh = {0};
+    struct mesh mesh;
+    struct error error = {""};
+    if (!is_accepted(msh_parse(&msh, (const char *)data, size, &error), &error)) {
+        REQUIRE(msh.x == NULL && msh.node_idx == NULL && msh.groups == NULL);
+        return 0;
+    }
+    require_sound(&msh, size);
+    for (int use = 0; use < 2; use++) {
+        struct mesh_options options = {.unit = 1, .midside = use};
+        if (is_accepted(mesh_build(&mesh, &msh, &options, &error), &error)) {
+            mesh_free(&mesh);
+        }
+    }
+    return 0;
+}
