@@ -123,6 +123,9 @@ denied() {
     for command in 'list table.mts' 'print u u.mts' 'text table.mts' 'binary u.mts' 'keep u u.mts' 'check table.mts'; do denied mts $command; done
     denied tag -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
     denied interp u.mts
+    printf '{"markups": [{"controlPoints": [{"label": "a", "position": [-50, -50, 50]}]}]}' > point.mrk.json
+    mtled cube.scene cube.mts > u.cube.mts
+    denied interp -p point.mrk.json u.cube.mts
     denied fieldcmp u.mts u.coarse.mts
     denied fielderr u.mts u.coarse.mts
     denied sizefield u.mts

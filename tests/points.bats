@@ -69,6 +69,42 @@ turned=('.955336489 * x - .295520207 * y - x + .01' '.295520207 * x + .955336489
     done
 }
 
+@test "landmarks of 3D Slicer before and after: what a table of the same says, and moved landmarks are those after" {
+    cloud_of 3
+    random 8 3 "${turned[0]}, ${turned[1]}, ${turned[2]}" > exact.tsv
+    awk '{ printf "%s{\"label\": \"p%d\", \"position\": [%.15g, %.15g, %.15g]}", (NR > 1 ? ",\n" : "{\"markups\": [{\"controlPoints\": [\n"), NR,
+        -1e3 * $1, -1e3 * $2, 1e3 * $3 } END { printf "]}]}" }' exact.tsv > before.mrk.json
+    awk 'BEGIN { print "# CoordinateSystem = 0" } { printf "%d,%.15g,%.15g,%.15g,0,0,0,1,1,1,0,p%d,,\n", NR, 1e3 * ($1 + $4), 1e3 * ($2 + $5),
+        1e3 * ($3 + $6), NR }' exact.tsv > after.fcsv
+    { head_of 3; printf '[displacement seen]\npoints = before.mrk.json\n'; } > alone.scene
+    { cat alone.scene; printf 'moved = after.fcsv\n'; } > seen.scene
+    mtled seen.scene block.mts > u.dat
+    below "$(off "${turned[@]}")" 1e-6
+    interp -p before.mrk.json --deformed -o moved.mrk.json u.dat
+    interp -p before.mrk.json -u mm --deformed -o moved.fcsv u.dat
+    /usr/bin/python3 - << 'END'
+import json
+table = [[float(v) for v in line.split(",")[1:4]] + [line.split(",")[11]] for line in open("after.fcsv") if line[0] != "#"]
+moved = [line.split(",") for line in open("moved.fcsv") if line[0] != "#"]
+points = json.load(open("moved.mrk.json"))["markups"][0]["controlPoints"]
+assert len(points) == len(moved) == 8
+for row, point, line in zip(table, points, moved):
+    assert point["label"] == row[3] == line[11].strip('"')
+    for a, sign in enumerate((-1, -1, 1)):
+        assert abs(sign * point["position"][a] - row[a]) < 1e-3 and abs(float(line[1 + a]) - row[a]) < 1e-3
+END
+    refused 2 "landmarks are places: give those that they move to, as moved" mtled alone.scene block.mts
+    sed 's/moved = after.fcsv/&\nunit = cm/' seen.scene > unit.scene
+    refused 2 "landmarks are in mm" mtled unit.scene block.mts
+    sort -r after.fcsv > moved.fcsv
+    sed 's/after/moved/' seen.scene > moved.scene
+    refused 2 "its points have another order than those of points" mtled moved.scene block.mts
+    sed '$ d' after.fcsv > moved.fcsv
+    refused 2 "another number of points" mtled moved.scene block.mts
+    refused 2 "-u cm: landmarks are in mm" interp -p before.mrk.json -u cm u.dat
+    refused 2 "landmarks are moved points: give --deformed" interp -p before.mrk.json -o moved.fcsv u.dat
+}
+
 @test "a linear field: points inside say what the sides say already, and bear nothing" {
     for dim in 2 3; do
         cloud_of $dim
@@ -226,7 +262,7 @@ END
     done << 'END'
 points = a.tsv\n|points: needs unit = m, cm, mm or um of its lengths
 points = a.tsv\nunit = m\nfacets = xmin\n|points
-points = a.tsv\nunit = m\ntable = b.tsv\n|table: unknown key: allowed are points, unit, reach, model_error, curve
+points = a.tsv\nunit = m\ntable = b.tsv\n|table: unknown key: allowed are points, moved, unit, reach, model_error, curve
 facets = xmin\ncomponents = 0, 0\nreach = 1\n|reach: not allowed: it goes with points
 nodes = corner\ncomponents = 0, 0\nmodel_error = 1\n|model_error: not allowed: it goes with points
 points = a.tsv\nunit = m\nreach = 0\n|reach

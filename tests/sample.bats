@@ -48,6 +48,8 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     for file in nodes.tsv points.tsv landmarks.m; do
         awk "/^#/ { next } $exact"' { d = $4 - e; if (!(d * d < .04)) exit 1; n++ } END { exit n == 0 }' $file
     done
+    printf '# CoordinateSystem = LPS\n# columns = label,x,y,z\na,-30,-20,10\nb,-31.5,-22.25,40.125\n' > landmarks.fcsv
+    sample -i cubic -u mm -p landmarks.fcsv scan.nii.gz | cmp - landmarks.out
     sample -i nearest -u mm -p landmarks.tsv scan.nii.gz | awk 'NR == 2 { print $4 }' > at
     awk -v a="$(cat at)" -v b="$(nifti value scan.nii.gz 38 28 18)" 'BEGIN { d = a - b; exit !(d * d < 1e-10) }'
 }

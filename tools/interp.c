@@ -22,8 +22,9 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -f, --field FIELD,...  the fields (default: every section of type f8 with one row per node)\n"
-    "  -p, --points POINTS    the nodes.x of this stream or, with -u, the rows of this table of\n"
-    "                         coordinates (blanks or tabs between them, # begins a comment)\n"
+    "  -p, --points POINTS    the nodes.x of this stream; landmarks of 3D Slicer (.mrk.json, .fcsv); or,\n"
+    "                         with -u, the rows of this table of coordinates (blanks or tabs between\n"
+    "                         them, # begins a comment)\n"
     "  -u, --unit UNIT        POINTS is a table in m, cm, mm, um or so many metres\n"
     "  -k, --factor FACTOR    support radius = FACTOR times the local node spacing (default 1.8,\n"
     "                         in 3D 2)\n"
@@ -36,20 +37,23 @@ static const char usage[] =
     "      --skip-outside     leave out the points that lie in no cell, as of a grid that covers the\n"
     "                         body; a section points.row then tells the rows of POINTS that are there\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole; with\n"
+    "                         --deformed and a name in .mrk.json or .fcsv, the moved points as landmarks\n"
     "\n"
     "Examples:\n"
     "  interp -f u -p landmarks.tsv -u mm --deformed -t u.dat\n"
+    "  interp -p landmarks.mrk.json --deformed -o moved.mrk.json u.dat\n"
     "  interp -p fine.mts coarse.dat | fieldcmp - fine.dat\n"
     "  interp -f u -p grid.tsv -u mm --skip-outside -t u.dat\n";
 
 #include "stage_options.h"
+#include "output.h"
 #include "stages/stages.h"
 
 #include "approx/field/field.h"
 #include "io/stream/sections.h"
 #include "io/files/descriptor.h"
-#include "io/files/table.h"
+#include "io/files/landmarks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,12 +63,18 @@ struct points {
     struct recorded solved; /* the computed field whose shape functions these are, if any */
     int64_t count;
     double *x;    /* count * dim, m; owned */
-    int64_t *row; /* count: of the file, with --skip-outside; owned */
+    int64_t *row; /* count: of the file; owned */
+    struct table_label *label; /* of its rows; NULL: none; owned */
     struct field_table table;
 };
 
 /* Options that need points of a file. */
 static const char *const choose_supports[] = {RADIUS_OPTIONS, MLS_OPTIONS, NULL};
+
+static bool writes_landmarks(const struct tool *tool)
+{
+    return tool->output != NULL && landmarks_named(tool->output);
+}
 
 static struct support_options parse(const struct tool *tool, int dim)
 {
@@ -75,6 +85,10 @@ static struct support_options parse(const struct tool *tool, int dim)
     }
     if (tool_given(tool, "skip-outside") && !tool_given(tool, "points")) {
         tool_fail(tool, STATUS_INPUT, "--skip-outside needs -p (the stream's own points are in cells)");
+    }
+    if (writes_landmarks(tool) && (!tool_given(tool, "deformed") || tool_given(tool, "field") || tool->text)) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are moved points: give --deformed, without -f and -t",
+                  tool->output);
     }
     radius_parse(tool, &support);
     (void)tool_length_unit(tool, "unit", 1.0);
@@ -87,12 +101,18 @@ static void read_table(const struct tool *tool, const char *file, const char *un
                        struct points *points)
 {
     FREED_BY(table_free) struct table table = {0};
-    double unit;
-    TOOL_TRY(tool, parse_length_unit(unit_name, "-u", &unit, &error));
+    double unit = table_unit(file, 1), given = unit;
+    if (unit_name != NULL) {
+        TOOL_TRY(tool, parse_length_unit(unit_name, "-u", &given, &error));
+        unit = table_unit(file, given);
+    }
+    if (given != unit) {
+        tool_fail(tool, STATUS_INPUT, "-u %s: landmarks are in mm", unit_name);
+    }
     TOOL_TRY(tool, table_read(file, dim, dim, &table, &error));
     points->count = table.rows;
-    points->x = table.values;
-    table.values = NULL;
+    points->x = array_take(&table.values);
+    points->label = array_take(&table.label);
     for (int64_t i = 0; i < points->count * dim; i++) {
         points->x[i] *= unit;
     }
@@ -287,7 +307,7 @@ static void find_points(const struct tool *tool, struct stream *stream, int dim,
         if (known.radius == NULL && radius != NULL) {
             TOOL_TRY(tool, stage_recorded(stream, "support", &known, &error));
         }
-    } else if (tool_given(tool, "unit")) {
+    } else if (tool_given(tool, "unit") || landmarks_named(file)) {
         read_table(tool, file, tool_value(tool, "unit"), dim, points);
     } else {
         read_nodes(tool, file, dim, points);
@@ -304,6 +324,18 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
     stream_inherit(output, stream);
     tool_put(tool, output, "nodes.x", TYPE_F8, points->count, dim, vector_attributes(dim, "m", attributes),
              points->x);
+}
+
+/* Write the moved points, with the names that they have in their file. */
+static void write_landmarks(const struct tool *tool, int dim, const struct points *points, const double *moved)
+{
+    struct target target;
+    if (dim != 3) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool->output);
+    }
+    target_open(tool, &target, tool->output);
+    landmarks_print(target.file, tool->output, points->count, moved, points->row, points->label);
+    target_end(tool, &target);
 }
 
 int main(int argc, char *argv[])
@@ -328,11 +360,15 @@ int main(int argc, char *argv[])
     if (tool_given(&tool, "deformed")) {
         put_deformed(&tool, &stream, dim, node_count, &points, &output);
     }
-    if (tool_given(&tool, "skip-outside")) {
-        tool_put(&tool, &output, "points.row", TYPE_I8, points.count, 1, "", array_take(&points.row));
+    if (writes_landmarks(&tool)) {
+        write_landmarks(&tool, dim, &points, stream_find(&output, "x.deformed")->data);
+    } else {
+        if (tool_given(&tool, "skip-outside")) {
+            tool_put(&tool, &output, "points.row", TYPE_I8, points.count, 1, "", array_take(&points.row));
+        }
+        tool_write(&tool, &output);
     }
-    tool_write(&tool, &output);
     field_table_free(&points.table);
-    free(points.row);
+    FREE_ALL(points.row, points.label);
     return tool_end(&tool);
 }

@@ -1,5 +1,5 @@
 /* Fuzz target: what a scene names: tables, surfaces (STL too), load curves and measured points; and tables of
- * labels. The first byte says which. */
+ * labels; and landmarks. The first byte says which. */
 #include "fuzz.h"
 
 #include "io/image/label_table.h"
@@ -99,17 +99,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     }
     int kind = data[0] % 4;
-    if (kind == 3) { /* surface_read goes by the name's ending */
-        snprintf(path, sizeof path, "/tmp/fuzz-%ld.stl", (long)getpid());
+    const char *ending = data[0] == 6 ? ".mrk.json" : data[0] == 8 ? ".fcsv" : kind == 3 ? ".stl" : NULL;
+    if (ending != NULL) { /* the readers go by the name's ending */
+        snprintf(path, sizeof path, "/tmp/fuzz-%ld%s", (long)getpid(), ending);
         (void)unlink(path);
         REQUIRE(symlink(name, path) == 0);
     }
-    enum status status = kind == 0   ? table_read(path, 2, 6, &table, &error)
-                         : kind == 1 ? table_read(path, 2, 2, &table, &error)
-                                     : surface_read(path, kind, &table, &error);
+    enum status status = kind == 0 || data[0] == 6 ? table_read(path, 2, 6, &table, &error)
+                         : kind == 1               ? table_read(path, 2, 2, &table, &error)
+                                                   : surface_read(path, kind, &table, &error);
     if (is_accepted(status, &error)) {
         require_table(&table);
-        if (kind == 1) {
+        if (table.label != NULL) {
+            REQUIRE(table.cols == 3 &&
+                    memchr(table.label[table.rows - 1].text, 0, sizeof *table.label) != NULL);
+        } else if (kind == 1) {
             try_curve(&table);
         } else if (kind == 3) {
             try_triangles(&table);
@@ -117,7 +121,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     table_free(&table);
     close(file);
-    if (kind == 3) {
+    if (ending != NULL) {
         (void)unlink(path);
     }
     return 0;

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/options.h"
+#include "io/files/landmarks.h"
 #include "io/files/textfile.h"
 
 #include <float.h>
@@ -115,6 +116,11 @@ static enum status read_form(const char *path, const struct form *form, struct t
     int64_t room = 0;
     int64_t line = 1;
     *table = (struct table){0};
+    if (landmarks_named(path)) {
+        RETURN_IF_ERROR(landmarks_read(path, table, error));
+        RETURN_IF_ERROR(check_columns(path, table->line[0], table, (int)table->cols, form, error));
+        return table_end_block(table, error);
+    }
     RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
     for (const char *at = file.text; *at != '\0'; at = strchr(at, '\n') + 1, line++) {
         double row[COLUMN_LIMIT];
@@ -146,8 +152,13 @@ enum status table_read_open(const char *path, int least, int most, int open, int
     return read_form(path, &(struct form){least, most, open, closed}, table, error);
 }
 
+double table_unit(const char *path, double given)
+{
+    return landmarks_named(path) ? 1e-3 : given;
+}
+
 void table_free(struct table *table)
 {
-    FREE_ALL(table->values, table->line, table->block_ptr);
+    FREE_ALL(table->values, table->line, table->block_ptr, table->label);
     *table = (struct table){0};
 }

@@ -8,18 +8,28 @@
 
 #include <stdint.h>
 
-struct table {
-    int64_t rows, cols;  /* both >= 1 */
-    double *values;      /* rows x cols, finite; NAN where table_read_open read none */
-    int64_t *line;       /* rows: the line of each row in its file (the triangle's number for binary STL) */
-    int64_t block_count; /* >= 1 */
-    int64_t *block_ptr;  /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
-                            one */
+/* The name of a row. */
+struct table_label {
+    char text[64];
 };
+
+struct table {
+    int64_t rows, cols; /* both >= 1 */
+    double *values;     /* rows x cols, finite; NAN where table_read_open read none */
+    int64_t *line;      /* rows: the line of each row in its file (the triangle's number for binary STL) */
+    struct table_label *label; /* rows: of landmarks; NULL: rows have no names */
+    int64_t block_count;       /* >= 1 */
+    int64_t *block_ptr; /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
+                           one */
+};
+
+/* The unit of a table's lengths, m: what its format states (landmarks: mm), else the one given. */
+double table_unit(const char *path, double given);
 
 /* Read a table of least..most columns. Errors, as `FILE:LINE: ...`: those of textfile_read; STATUS_INPUT for
  * a word that is not a finite decimal number (a decimal comma among them), rows of different lengths, a
- * number of columns outside of least..most, and a file without rows. The table is to be freed also on
+ * number of columns outside of least..most, and a file without rows. Landmarks (see landmarks.h) are three
+ * columns, RAS. The table is to be freed also on
  * failure.
  */
 MUST_CHECK enum status table_read(const char *path, int least, int most, struct table *table,

@@ -68,6 +68,7 @@ struct scene_displacement {
     const char
         *table; /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the same of
                    measured points, with an optional standard deviation; components may be unknown */
+    const char *moved;    /* SCENE_POINTS: NULL, or where they are moved to: both tables are coordinates */
     double table_unit;    /* m per unit of the table */
     double components[3]; /* SCENE_COMPONENTS: m, dim of them */
     bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */

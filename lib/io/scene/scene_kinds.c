@@ -77,9 +77,9 @@ static enum status check_displacement(const struct place *place, struct scene *s
     RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
         displacement->kind = SCENE_POINTS;
-        return place_only_keys(place, KEYS{"points", "unit", "reach", "model_error", "curve", NULL});
+        return place_only_keys(place, KEYS{"points", "moved", "unit", "reach", "model_error", "curve", NULL});
     }
-    RETURN_IF_ERROR(place_forbid_all(place, KEYS{"reach", "model_error", NULL}, "it goes with points"));
+    RETURN_IF_ERROR(place_forbid_all(place, KEYS{"moved", "reach", "model_error", NULL}, "it goes with points"));
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     if (place_has(place, "normal")) {
         RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
@@ -229,6 +229,7 @@ static const struct scene_key displacement_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_displacement, facets)},
     {"nodes", VALUE_NAMES, AT(scene_displacement, nodes)},
     {"points", VALUE_TABLE, AT(scene_displacement, table)},
+    {"moved", VALUE_TABLE, AT(scene_displacement, moved)},
     {"table", VALUE_TABLE, AT(scene_displacement, table)},
     {"unit", VALUE_UNIT, AT(scene_displacement, table_unit)},
     {"components", VALUE_VECTOR, AT(scene_displacement, components),

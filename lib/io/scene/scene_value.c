@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/options.h"
+#include "io/files/landmarks.h"
 
 #include <ctype.h>
 #include <float.h>
@@ -256,7 +257,15 @@ static enum status read_file(const struct place *place, const char *text, const 
 enum status place_check_units(const struct place *place, const struct scene_key *keys)
 {
     for (const struct scene_key *key = keys; key->name != NULL; key++) {
-        if (key->type == VALUE_TABLE && place_has(place, key->name) && !place_has(place, "unit")) {
+        const struct ini_entry *entry = ini_find(place->section, key->name);
+        if (key->type != VALUE_TABLE || entry == NULL) {
+            continue;
+        }
+        bool stated = landmarks_named(entry->value), given = place_has(place, "unit");
+        if (stated && given && strcmp(ini_find(place->section, "unit")->value, "mm") != 0) {
+            return place_fail(place, key->name, "landmarks are in mm");
+        }
+        if (!stated && !given) {
             return place_fail(place, key->name, "needs unit = m, cm, mm or um of its lengths");
         }
     }

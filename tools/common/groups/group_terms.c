@@ -165,7 +165,7 @@ static enum status choose_near(const struct term *term)
         x = array_take(&table.values);
         pieces.count = table.rows;
         for (int64_t i = 0; i < table.rows * dim; i++) {
-            x[i] *= term->unit;
+            x[i] *= table_unit(path, term->unit);
         }
     }
     pieces.x = x;

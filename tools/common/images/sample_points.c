@@ -16,7 +16,7 @@ void sample_points_table(const struct tool *tool, const char *file, double unit,
         (struct sample_points){.what = file, .dim = (int)table.cols, .count = table.rows, .x = table.values};
     table.values = NULL;
     for (int64_t i = 0; i < rows->count * rows->dim; i++) {
-        rows->x[i] *= unit;
+        rows->x[i] *= table_unit(file, unit);
     }
 }
 

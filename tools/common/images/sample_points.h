@@ -13,7 +13,7 @@ struct sample_points {
     double *value; /* count * cols; owned */
 };
 
-/* The rows of a table of coordinates in a unit, m; exits on failure. */
+/* The rows of a table of coordinates in a unit, m, or of landmarks; exits on failure. */
 void sample_points_table(const struct tool *tool, const char *file, double unit, struct sample_points *rows);
 
 /* The points of a section of a stream, which is read into *stream. regions: comma-separated names; only

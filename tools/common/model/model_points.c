@@ -2,9 +2,10 @@
 #include "model/model.h"
 
 #include "approx/field/field.h"
-#include "io/files/table.h"
+#include "io/files/landmarks.h"
 
 #include <math.h>
+#include <string.h>
 
 /* One section of measured points. */
 struct point_section {
@@ -24,12 +25,72 @@ static enum status fail_at(const struct point_section *p, int64_t row, struct er
                 p->section->table, (long long)p->table->line[row], place, what);
 }
 
+/* "FILE:LINE: [displacement NAME]: moved TABLE: ..." */
+static enum status fail_moved(const struct point_section *p, struct error *error, const char *what)
+{
+    return fail(error, STATUS_INPUT, "%s: moved %s: %s", p->section->label.where, p->section->moved, what);
+}
+
+/* Refuse pairs whose names are those of other pairs: the two tables have another order. */
+static enum status check_pairs(const struct point_section *p, const struct table *moved, struct error *error)
+{
+    const struct table *table = p->table;
+    if (moved->rows != table->rows) {
+        return fail_moved(p, error, "another number of points than that of points");
+    }
+    for (int64_t i = 0; i < table->rows && table->label != NULL && moved->label != NULL; i++) {
+        for (int64_t k = 0; k < table->rows; k++) {
+            if (strcmp(moved->label[i].text, table->label[k].text) == 0 &&
+                strcmp(moved->label[i].text, table->label[i].text) != 0) {
+                return fail_moved(p, error, "its points have another order than those of points");
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Read places and moved places into rows of places and displacements, m. */
+static enum status read_pairs(struct point_section *p, int dim, struct error *error)
+{
+    FREED_BY(table_free) struct table moved = {0};
+    struct table *table = p->table;
+    double unit = table_unit(p->section->table, p->section->table_unit);
+    double moved_unit = table_unit(p->section->moved, p->section->table_unit);
+    RETURN_IF_ERROR(table_read(p->section->table, dim, dim, table, error));
+    RETURN_IF_ERROR(table_read(p->section->moved, dim, dim, &moved, error));
+    RETURN_IF_ERROR(check_pairs(p, &moved, error));
+    SCRATCH double *x = table->values;
+    table->values = NULL;
+    table->cols = 2 * dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&table->values, table->rows * table->cols, error));
+    for (int64_t i = 0; i < table->rows * dim; i++) {
+        double *row = table->values + i / dim * 2 * dim + i % dim;
+        row[0] = unit * x[i];
+        row[dim] = moved_unit * moved.values[i] - row[0];
+    }
+    return STATUS_OK;
+}
+
+/* Read rows of places and displacements. */
+static enum status read_rows(struct point_section *p, int dim, struct error *error)
+{
+    if (landmarks_named(p->section->table)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: points %s: landmarks are places: give those that they move to, as moved",
+                    p->section->label.where, p->section->table);
+    }
+    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
+    for (int64_t i = 0; i < p->table->rows * p->table->cols; i++) {
+        p->table->values[i] *= p->section->table_unit;
+    }
+    return STATUS_OK;
+}
+
 static enum status read_section(struct point_section *p, struct error *error)
 {
     int dim = p->model->assembly.cells.dim;
     double *values;
-    double unit = p->section->table_unit;
-    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
+    RETURN_IF_ERROR(p->section->moved != NULL ? read_pairs(p, dim, error) : read_rows(p, dim, error));
     int64_t rows = p->table->rows, cols = p->table->cols;
     RETURN_IF_ERROR(MODEL_ARRAY(p->model, &values, rows * (2 * dim + 1), error));
     double *x = values, *u = x + rows * dim, *deviation = u + rows * dim;
@@ -38,11 +99,11 @@ static enum status read_section(struct point_section *p, struct error *error)
         const double *row = p->table->values + i * cols;
         int open = 0;
         for (int a = 0; a < dim; a++) {
-            x[i * dim + a] = unit * row[a];
-            u[i * dim + a] = unit * row[dim + a];
+            x[i * dim + a] = row[a];
+            u[i * dim + a] = row[dim + a];
             open += isnan(row[dim + a]);
         }
-        deviation[i] = cols > 2 * dim ? unit * row[2 * dim] : 0.0;
+        deviation[i] = cols > 2 * dim ? row[2 * dim] : 0.0;
         if (open == dim) {
             return fail_at(p, i, error, "no component is given: leave the row out");
         }

@@ -1,0 +1,291 @@
+#include "io/files/landmarks.h"
+
+#include "base/memory.h"
+#include "base/options.h"
+#include "io/files/json.h"
+#include "io/files/textfile.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const size_t size_limit = (size_t)1 << 28;
+
+/* A file that is being read. */
+struct landmarks {
+    struct table *table;
+    int64_t room;
+    double sign; /* of x and y, to RAS */
+};
+
+bool landmarks_named(const char *path)
+{
+    return text_ends(path, ".mrk.json") || text_ends(path, ".fcsv");
+}
+
+static enum status append(struct landmarks *landmarks, const double x[3], const char *label, int64_t line,
+                          struct error *error)
+{
+    struct table *table = landmarks->table;
+    int64_t room = landmarks->room;
+    table->cols = 3;
+    RETURN_IF_ERROR(table_append(table, x, line, &landmarks->room, error));
+    if (landmarks->room > room) {
+        RETURN_IF_ERROR(RESIZE_ARRAY(&table->label, landmarks->room, error));
+    }
+    snprintf(table->label[table->rows - 1].text, sizeof table->label->text, "%s", label);
+    return STATUS_OK;
+}
+
+/* ---- markups ---- */
+
+static void read_point(struct landmarks *landmarks, struct json *json)
+{
+    char key[32], label[sizeof(struct table_label)] = "", status[16] = "defined";
+    double x[3] = {0};
+    int count = 0;
+    int64_t line = json->line;
+    for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
+        json_key(json, key, sizeof key);
+        if (strcmp(key, "label") == 0) {
+            json_string(json, label, sizeof label);
+        } else if (strcmp(key, "positionStatus") == 0) {
+            json_string(json, status, sizeof status);
+        } else if (strcmp(key, "position") == 0) {
+            for (bool next = json_open(json, '['); next; next = json_next(json, ']')) {
+                double value = json_number(json);
+                x[count < 3 ? count : 2] = value;
+                count++;
+            }
+        } else {
+            json_skip(json);
+        }
+    }
+    if (count != 3 || strcmp(status, "defined") != 0) {
+        json_fail(json, "a control point without a position of three numbers: place it, or leave it out");
+    }
+    if (json->status == STATUS_OK) {
+        json->status = append(landmarks, x, label, line, json->error);
+    }
+}
+
+/* The axes: "LPS" or "RAS", in old files a number. */
+static double read_system(struct json *json)
+{
+    char name[8] = "";
+    json_string(json, name, sizeof name);
+    if (strcmp(name, "LPS") != 0 && strcmp(name, "RAS") != 0) {
+        json_fail(json, "coordinateSystem is neither LPS nor RAS");
+    }
+    return name[0] == 'L' ? -1 : 1;
+}
+
+static void read_units(struct json *json)
+{
+    char name[8] = "";
+    if (json_peek(json) == '[') { /* a code of UCUM */
+        json_skip(json);
+        return;
+    }
+    json_string(json, name, sizeof name);
+    if (strcmp(name, "mm") != 0) {
+        json_fail(json, "coordinateUnits is not mm");
+    }
+}
+
+static void read_markup(struct landmarks *landmarks, struct json *json)
+{
+    char key[32];
+    struct table *table = landmarks->table;
+    int64_t first = table->rows;
+    double sign = -1; /* LPS if nothing is said */
+    for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
+        json_key(json, key, sizeof key);
+        if (strcmp(key, "coordinateSystem") == 0) {
+            sign = read_system(json);
+        } else if (strcmp(key, "coordinateUnits") == 0) {
+            read_units(json);
+        } else if (strcmp(key, "controlPoints") == 0) {
+            for (bool next = json_open(json, '['); next; next = json_next(json, ']')) {
+                read_point(landmarks, json);
+            }
+        } else {
+            json_skip(json);
+        }
+    }
+    for (int64_t i = first; i < table->rows; i++) {
+        table->values[3 * i] *= sign;
+        table->values[3 * i + 1] *= sign;
+    }
+}
+
+static enum status read_markups(struct landmarks *landmarks, const char *text, struct error *error)
+{
+    struct json json = {.at = text, .error = error, .line = 1};
+    char key[32];
+    for (bool more = json_open(&json, '{'); more; more = json_next(&json, '}')) {
+        json_key(&json, key, sizeof key);
+        if (strcmp(key, "markups") != 0) {
+            json_skip(&json);
+            continue;
+        }
+        for (bool next = json_open(&json, '['); next; next = json_next(&json, ']')) {
+            read_markup(landmarks, &json);
+        }
+    }
+    json_end(&json);
+    return json.status;
+}
+
+/* ---- fcsv ---- */
+
+enum { COLUMNS = 32 };
+
+/* Split a line at its commas; quotes may stand around a field. Returns the number of fields. */
+static int split(char *line, char *field[COLUMNS])
+{
+    int count = 0;
+    for (char *rest = line; rest != NULL && count < COLUMNS; count++) {
+        char *quote = *rest == '"' ? strchr(rest + 1, '"') : NULL;
+        field[count] = quote != NULL ? rest + 1 : rest;
+        rest = quote != NULL ? (*quote = '\0', strchr(quote + 1, ',')) : strchr(rest, ',');
+        if (rest != NULL) {
+            *rest++ = '\0';
+        }
+    }
+    return count;
+}
+
+/* The columns of x, y, z and the label. */
+static const char *const column_names[4] = {"x", "y", "z", "label"};
+
+/* Take what a comment tells of axes and columns. */
+static enum status read_comment(struct landmarks *landmarks, char *line, int column[4], struct error *error)
+{
+    char *equals = strchr(line, '='), *field[COLUMNS];
+    if (equals == NULL) {
+        return STATUS_OK;
+    }
+    char *value = equals + 1 + strspn(equals + 1, " ");
+    if (strncmp(line, "# CoordinateSystem", 18) == 0) {
+        bool ras = strcmp(value, "RAS") == 0 || strcmp(value, "0") == 0;
+        landmarks->sign = ras ? 1 : -1;
+        return ras || strcmp(value, "LPS") == 0 || strcmp(value, "1") == 0
+                   ? STATUS_OK
+                   : fail(error, STATUS_INPUT, "CoordinateSystem is neither RAS nor LPS");
+    }
+    if (strncmp(line, "# columns", 9) == 0) {
+        int count = split(value, field);
+        for (int c = 0; c < 4; c++) {
+            column[c] = -1;
+            for (int f = 0; f < count; f++) {
+                column[c] = strcmp(field[f], column_names[c]) == 0 ? f : column[c];
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status read_line(struct landmarks *landmarks, char *line, int64_t number, int column[4],
+                             struct error *error)
+{
+    char *field[COLUMNS];
+    double x[3];
+    if (line[0] == '#') {
+        return read_comment(landmarks, line, column, error);
+    }
+    int count = line[0] == '\0' ? 0 : split(line, field);
+    for (int c = 0; c < 3 && count > 0; c++) {
+        if (column[c] < 0 || column[c] >= count) {
+            return fail(error, STATUS_INPUT, "no column %s", column_names[c]);
+        }
+        RETURN_IF_ERROR(parse_double(field[column[c]], column_names[c], -DBL_MAX, DBL_MAX, &x[c], error));
+        x[c] *= c < 2 ? landmarks->sign : 1;
+    }
+    const char *label = column[3] >= 0 && column[3] < count ? field[column[3]] : "";
+    return count == 0 ? STATUS_OK : append(landmarks, x, label, number, error);
+}
+
+static enum status read_fcsv(struct landmarks *landmarks, char *text, struct error *error)
+{
+    int column[4] = {1, 2, 3, 11};
+    int64_t number = 1;
+    landmarks->sign = 1;
+    for (char *rest = text; *rest != '\0'; number++) {
+        char *line = strsep(&rest, "\n");
+        if (rest == NULL) {
+            return fail(error, STATUS_INPUT, "%lld: last line without newline: truncated?",
+                        (long long)number);
+        }
+        line[strcspn(line, "\r")] = '\0';
+        RETURN_IF_ERROR(
+            fail_in(error, read_line(landmarks, line, number, column, error), "%lld", (long long)number));
+    }
+    return STATUS_OK;
+}
+
+enum status landmarks_read(const char *path, struct table *table, struct error *error)
+{
+    FREED_BY(textfile_free) struct textfile file = {0};
+    struct landmarks landmarks = {.table = table};
+    RETURN_IF_ERROR(bytefile_read(path, size_limit, &file, error));
+    if (strlen(file.text) != file.size) {
+        return fail(error, STATUS_INPUT, "%s: a byte of value 0: not a text", path);
+    }
+    enum status status = text_ends(path, ".fcsv") ? read_fcsv(&landmarks, file.text, error)
+                                                  : read_markups(&landmarks, file.text, error);
+    if (status == STATUS_INPUT) {
+        struct error why = *error; /* begins with the line */
+        return fail(error, status, "%s:%s", path, why.text);
+    }
+    RETURN_IF_ERROR(fail_in(error, status, "%s", path));
+    return table->rows > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "%s: holds no point", path);
+}
+
+/* ---- writing ---- */
+
+/* Print a label, in JSON with what must be escaped. */
+static void print_label(FILE *file, const char *label, int64_t row, bool json)
+{
+    if (label == NULL || label[0] == '\0') {
+        fprintf(file, "F-%lld", (long long)row + 1);
+        return;
+    }
+    for (; *label != '\0'; label++) {
+        bool control = (unsigned char)*label < ' ';
+        if (json && (*label == '"' || *label == '\\')) {
+            fputc('\\', file);
+        }
+        fputc(control || (!json && *label == '"') ? '?' : *label, file);
+    }
+}
+
+void landmarks_print(FILE *file, const char *path, int64_t count, const double *x, const int64_t *of,
+                     const struct table_label *label)
+{
+    bool json = !text_ends(path, ".fcsv");
+    fputs(json ? "{\"@schema\": \"https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/"
+                 "Markups/Resources/Schema/markups-schema-v1.0.3.json#\",\n \"markups\": [{\"type\": "
+                 "\"Fiducial\", \"coordinateSystem\": \"LPS\", \"coordinateUnits\": \"mm\",\n"
+                 "  \"controlPoints\": ["
+               : "# Markups fiducial file version = 4.11\n# CoordinateSystem = 0\n"
+                 "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n",
+          file);
+    for (int64_t i = 0; i < count; i++) {
+        int64_t row = of != NULL ? of[i] : i;
+        const char *name = label != NULL ? label[row].text : NULL;
+        double sign = json ? -1e3 : 1e3; /* .fcsv in RAS: not all programs read another system there */
+        const double mm[3] = {sign * x[3 * i] + 0.0, sign * x[3 * i + 1] + 0.0, 1e3 * x[3 * i + 2] + 0.0};
+        if (json) {
+            fprintf(file, "%s\n   {\"id\": \"%lld\", \"label\": \"", i > 0 ? "," : "", (long long)i + 1);
+            print_label(file, name, row, true);
+            fprintf(file, "\", \"position\": [%.15g, %.15g, %.15g], \"positionStatus\": \"defined\"}", mm[0],
+                    mm[1], mm[2]);
+        } else {
+            fprintf(file, "%lld,%.15g,%.15g,%.15g,0,0,0,1,1,1,0,\"", (long long)i + 1, mm[0], mm[1], mm[2]);
+            print_label(file, name, row, false);
+            fputs("\",,\n", file);
+        }
+    }
+    fputs(json ? "\n  ]}]}\n" : "", file);
+}
