@@ -102,8 +102,16 @@ setup_file() {
     [[ $stderr == *"share $(cat shared) voxels"* ]]
     [ "$(grep -aE '_(Name|LabelValue|Layer):' moved.seg.nrrd | cut -d= -f2 | xargs)" = "Left lung 1 0 tumour 2 0" ]
     refused 2 "-o x.nhdr: images are written as .nii, .nii.gz, .nrrd or .mha" warp -o x.nhdr oblique.nii still.dat
-    sed 's|theirs.raw|../theirs.raw|' theirs.mhd > outside.mhd
-    refused 2 "outside.mhd: header: ElementDataFile= ../theirs.raw: not a file in the folder of the header" warp outside.mhd still2.dat
+    { printf 'a\nb\n-'; cat theirs.raw; } > skip.raw
+    for skip in 'line skip: 2\nbyte skip: 1' 'byte skip: -1'; do
+        sed "s/^data file: .*/$skip\ndata file: skip.raw/" theirs.nhdr > skip.nhdr
+        warp -o back.nii skip.nhdr still2.dat
+        nifti same ours.nii back.nii 0
+    done
+    for outside in ../theirs.raw a/../../theirs.raw .. /etc/passwd; do
+        sed "s|theirs.raw|$outside|" theirs.mhd > outside.mhd
+        refused 2 "outside.mhd: header: ElementDataFile= $outside: not a file in the folder of the header" warp outside.mhd still2.dat
+    done
 }
 
 @test "plastimatch applies our field to the scan and gets our image" {

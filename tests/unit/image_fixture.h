@@ -4,6 +4,31 @@
 
 #include "unit.h"
 
+#include "io/image/image.h"
+
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static struct image image;
+static struct error said;
+
+/* Read bytes as a file. */
+static enum status read_bytes(const void *bytes, size_t size)
+{
+    int descriptor = memfd_create("image", 0);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, bytes, size), size);
+    assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
+    enum status status = image_read_from(&image, descriptor, "file", &said);
+    close(descriptor);
+    if (status != STATUS_OK) {
+        assert_null(image.values);
+        assert_int_equal(strncmp(said.text, "file: ", 6), 0);
+    }
+    return status;
+}
+
 /* A file in the making: the fields of either version are named by the first one's. */
 struct nifti_file {
     int version;

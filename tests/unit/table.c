@@ -111,62 +111,67 @@ TEST(faults)
 }
 
 #define POINT(x, more) "{\"label\": \"a\\u00e4\\\"\", \"position\": [" x ", -2, 3e0]" more "}"
-#define MARKUP(points, more) "{\"a\": [1, {\"b\": [true, null]}],\n\"markups\": [{\"controlPoints\": [" points "]" more "}]}"
+#define MARKUP(points, more)                                                                                 \
+    "{\"a\": [1, {\"b\": [true, null]}],\n\"markups\": [{\"controlPoints\": [" points "]" more "}]}"
+
+static const char *name_of(const char *text)
+{
+    static char name[80];
+    snprintf(name, sizeof name, "%s%s", path, text[0] == '{' ? ".mrk.json" : ".fcsv");
+    write_to(name, text, strlen(text));
+    return name;
+}
 
 /* Landmarks are rows in RAS, mm, with names. */
 TEST(landmarks)
 {
     static const struct {
-        const char *ending, *text;
-        double x[3];
-        const char *label;
+        const char *text, *label;
+        double sign;
     } good[] = {
-        {".mrk.json", MARKUP(POINT("1", ""), ""), {-1, 2, 3}, "a\xc3\xa4\""},
-        {".mrk.json", MARKUP(POINT("1", ""), ", \"coordinateSystem\": \"RAS\", \"coordinateUnits\": \"mm\"") "\n", {1, -2, 3}, "a\xc3\xa4\""},
-        {".fcsv", "# CoordinateSystem = 0\n1,1,-2,3,0,0,0,1,1,1,0,\"b, c\",,\n", {1, -2, 3}, "b, c"},
-        {".fcsv", "# CoordinateSystem = LPS\r\n# columns = label,z,y,x\r\nb,3,-2,1\r\n", {-1, 2, 3}, "b"},
+        {MARKUP(POINT("1", ""), ""), "a\xc3\xa4\"", -1},
+        {MARKUP(POINT("1", ""), ", \"coordinateSystem\": \"RAS\", \"coordinateUnits\": \"mm\"") "\n",
+         "a\xc3\xa4\"", 1},
+        {"# CoordinateSystem = 0\n1,1,-2,3,0,0,0,1,1,1,0,\"b, c\",,\n", "b, c", 1},
+        {"# CoordinateSystem = LPS\r\n# columns = label,z,y,x\r\nb,3,-2,1\r\n", "b", -1},
     };
     static const struct {
-        const char *ending, *text;
+        const char *text, *words;
         int line;
-        const char *words;
     } bad[] = {
-        {".mrk.json", MARKUP(POINT("1", ", \"positionStatus\": \"undefined\""), ""), 2, "a control point without a position"},
-        {".mrk.json", MARKUP("{}", ""), 2, "a control point without a position"},
-        {".mrk.json", MARKUP(POINT("1, 2", ""), ""), 2, "a control point without a position"},
-        {".mrk.json", MARKUP(POINT("x", ""), ""), 2, "a finite number is expected"},
-        {".mrk.json", MARKUP(POINT("1e999", ""), ""), 2, "a finite number is expected"},
-        {".mrk.json", MARKUP("", ", \"coordinateSystem\": \"IJK\""), 2, "neither LPS nor RAS"},
-        {".mrk.json", MARKUP("", ", \"coordinateUnits\": \"cm\""), 2, "is not mm"},
-        {".mrk.json", MARKUP("", "") "x", 2, "more behind the value"},
-        {".mrk.json", MARKUP("", ""), 0, "holds no point"},
-        {".mrk.json", "[]", 1, "an object, {...}, is expected"},
-        {".mrk.json", "{\"a\": nil}", 1, "neither true, false nor null"},
-        {".mrk.json", "{\"a\" 1}", 1, "':' is expected"},
-        {".mrk.json", "{\"\\x\": 1}", 1, "unknown escape"},
-        {".fcsv", "1,1,-2,3\n2,1,x,3\n", 2, "y: 'x'"},
-        {".fcsv", "# columns = x,y\n1,2\n", 2, "no column z"},
-        {".fcsv", "# CoordinateSystem = 2\n", 1, "neither RAS nor LPS"},
-        {".fcsv", "1,1,-2,3", 1, "without newline"},
+        {MARKUP(POINT("1", ", \"positionStatus\": \"undefined\""), ""), "a control point without a position",
+         2},
+        {MARKUP(POINT("1, 2", ""), ""), "a control point without a position", 2},
+        {MARKUP(POINT("1e999", ""), ""), "a finite number is expected", 2},
+        {MARKUP("", ", \"coordinateSystem\": \"IJK\""), "neither LPS nor RAS", 2},
+        {MARKUP("", ", \"coordinateUnits\": \"cm\""), "is not mm", 2},
+        {MARKUP("", "") "x", "more behind the value", 2},
+        {MARKUP("", ""), "holds no point", 0},
+        {"{\"a\": nil}", "neither true, false nor null", 1},
+        {"{\"a\" 1}", "':' is expected", 1},
+        {"{\"\\x\": 1}", "unknown escape", 1},
+        {"1,1,-2,3\n2,1,x,3\n", "y: 'x'", 2},
+        {"# columns = x,y\n1,2\n", "no column z", 2},
+        {"# CoordinateSystem = 2\n", "neither RAS nor LPS", 1},
+        {"1,1,-2,3", "without newline", 1},
     };
-    char name[64];
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         FREED_BY(table_free) struct table table = {0};
-        snprintf(name, sizeof name, "%s%s", path, good[i].ending);
-        write_to(name, good[i].text, strlen(good[i].text));
+        const double x[3] = {good[i].sign, -2 * good[i].sign, 3};
+        const char *name = name_of(good[i].text);
         GOOD(table_read(name, 2, 3, &table, &error));
-        ALL_NEAR(3, table.values, good[i].x, 0);
+        ALL_NEAR(3, table.values, x, 0);
         assert_string_equal(table.label[0].text, good[i].label);
         NEAR_TO(table_unit(name, 1), 1e-3, 0);
         for (size_t cut = 0; i == 0 && cut < strlen(good[i].text); cut++) {
             FREED_BY(table_free) struct table part = {0};
             write_to(name, good[i].text, cut);
-            assert_int_equal(table_read(name, 2, 3, &part, &(struct error){""}), STATUS_INPUT);
+            FAILS(table_read(name, 2, 3, &part, &error), STATUS_INPUT, "");
         }
         assert_int_equal(unlink(name), 0);
     }
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        snprintf(name, sizeof name, "%s%s", path, bad[i].ending);
+        const char *name = name_of(bad[i].text);
         fails_in(name, 0, bad[i].text, strlen(bad[i].text), bad[i].line, bad[i].words);
         assert_int_equal(unlink(name), 0);
     }
