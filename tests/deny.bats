@@ -126,6 +126,8 @@ denied() {
     printf '{"markups": [{"controlPoints": [{"label": "a", "position": [-50, -50, 50]}]}]}' > point.mrk.json
     mtled cube.scene cube.mts > u.cube.mts
     denied interp -p point.mrk.json u.cube.mts
+    printf '[displacement seen]\npoints = point.mrk.json\nmoved = point.mrk.json\n' | cat cube.scene - > seen.scene
+    denied mtled seen.scene cube.mts
     denied fieldcmp u.mts u.coarse.mts
     denied fielderr u.mts u.coarse.mts
     denied sizefield u.mts

@@ -79,6 +79,7 @@ setup_file() {
             warp -o $image.$end $image.nii $still
             warp $image.$end $still > again.$end # as the input
             cmp $image.$end again.$end
+            warp --like $image.nii $image.$end $still | cmp - again.$end
             warp -o back.nii again.$end $still
             nifti same ours.nii back.nii 0
             [ $image = rgb ] && continue # which they take for something else

@@ -237,11 +237,11 @@ static void new_result(const struct tool *tool, const struct warp_request *reque
     } else { /* the vectors are in mm, and ITK reads mm */
         snprintf(result->description, sizeof result->description, "displacement, mm, LPS, from %s",
                  request->inverse ? "reference to moved" : "result to image");
+        result->format = grid->format;
     }
     memcpy(result->size, grid->size, sizeof result->size);
     memcpy(result->to_world, grid->to_world, sizeof result->to_world);
     result->space = grid->space;
-    result->format = grid->format;
     result->version = grid->version;
 }
 

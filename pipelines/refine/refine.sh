@@ -1,7 +1,7 @@
 #!/bin/bash
 # A scene on meshes that are refined where it must be: refine.sh SCENE GEO TOL OUT
 #
-# Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii or .nii.gz) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
+# Each round meshes the geometry by gmsh, or a label image (GEO ends in .nii, .nii.gz, .nrrd or .mha) by voxels, at sizes s and 2 s, solves the scene on both, and estimates the error of the finer solution
 # (fielderr, of order 1: that of singular solutions, so that where a solution is smooth the estimate is too large). While its mean is above TOL (0.2mm; m without a unit), the next round's sizes come from sizefield. In the folder OUT stay
 # those of the round of least estimate: body.msh, sizes.pos (of an image body.mts, sizes.mts), u.dat, coarse.dat, errors.tsv; and rounds.tsv, a row for each round:
 #   round, nodes, mean_mm over the body and max_mm of the nodes (estimated), seconds (processor time: nodes to mtled on the finer mesh), all_seconds (all of the
@@ -53,7 +53,7 @@ fi
 [ -f "$scene" ] || fail 2 "SCENE: no file $scene"
 [ -f "$geometry" ] || fail 2 "GEO: no file $geometry"
 case $geometry in
-    *.nii | *.nii.gz)
+    *.nii | *.nii.gz | *.nrrd | *.mha)
         image=yes unit=m body=body.mts sizes=sizes.mts
         if ! spacing=$(metres "${SPACING-}") || ! holds "$spacing > 0"; then
             fail 2 "SPACING: '${SPACING-}' is not a positive length, such as 6mm"

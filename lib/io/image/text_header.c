@@ -18,7 +18,7 @@ enum status header_line(struct text_header *header, struct error *error)
         }
         if (line[length] == '\0' || length == HEADER_LINE - 2) {
             return fail(error, STATUS_INPUT, "header: damaged: %s",
-                        line[length] == '\0' ? "a byte of value 0" : "a line of more than 4000 bytes");
+                        line[length] == '\0' ? "a byte of value 0" : "a line of more than 64 KiB");
         }
     }
     header->cut = got == 0;

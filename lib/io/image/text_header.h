@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-enum { HEADER_LINE = 4096, HEADER_BYTES = 1 << 22 };
+enum { HEADER_LINE = 1 << 16, HEADER_BYTES = 1 << 22 };
 
 /* A header that is read line by line. */
 struct text_header {
@@ -20,8 +20,8 @@ struct text_header {
     bool cut;     /* the file has ended without an empty line */
 };
 
-/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 4096
- * bytes and a header of more than 4 MiB. */
+/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 64 KiB
+ * and a header of more than 4 MiB. */
 MUST_CHECK enum status header_line(struct text_header *header, struct error *error);
 
 /* Read the next field; comment lines of NRRD are skipped. */
