@@ -362,36 +362,9 @@ by_usage() {
     nodes -h | awk -v wanted="$1" '
         !on && /python3 -c / { on = ++n == wanted; sub(/.*python3 -c .import/, "import") }
         on { sub(/^ +/, ""); end = index($0, "\x27"); if (end) $0 = substr($0, 1, end - 1); printf "%s%s", (more++ ? " " : ""), $0; if (end) exit }
-    ' | sed "s/body\.\(vtu\|feb\)/$2/; s/REGION/${3-}/" > command.py
+    ' | sed "s/body.vtu/$2/; s/REGION/${3-}/" > command.py
     rm -f body.msh
     /usr/bin/python3 command.py 2> said
-}
-
-@test "a model of FEBio is refused by that name, and comes in by the command of the usage" {
-    cat > two.feb << 'END'
-<?xml version="1.0" encoding="ISO-8859-1"?>
-<!-- a brick, a tetrahedron of second order on it, and a shell -->
-<febio_spec version="2.5">
-<Geometry>
-<Nodes name="all">
-<node id="3"> 0, 0, 0</node> <node id="4"> 2, 0, 0</node> <node id="5"> 2, 1, 0</node> <node id="6"> 0, 1, 0</node>
-<node id="13"> 0, 0, 1</node> <node id="14"> 2, 0, 1</node> <node id="15"> 2, 1, 1</node> <node id="16"> 0, 1, 1</node>
-<node id="20"> 0, 0, 4</node> <node id="21"> 1, 0, 1</node> <node id="22"> 1, 0.5, 1</node> <node id="23"> 0, 0.5, 1</node>
-<node id="24"> 0, 0, 2.5</node> <node id="25"> 1, 0, 2.5</node> <node id="26"> 0, 0.5, 2.5</node>
-</Nodes>
-<Elements type="hex8" mat="1" name="brick"><elem id="1"> 3, 4, 5, 6, 13, 14, 15, 16</elem></Elements>
-<Elements type="quad4" mat="2" name="shell"><elem id="2"> 3, 4, 5, 6</elem></Elements>
-<Elements type="tet10" mat="3" name="roof"><elem id="3"> 13, 14, 16, 20, 21, 22, 23, 24, 25, 26</elem></Elements>
-<NodeSet name="held"><node id="3"/><node id="4"/></NodeSet>
-</Geometry>
-<MeshData><NodeData name="d"><node lid="1">0.5</node></NodeData></MeshData>
-</febio_spec>
-END
-    refused 2 "a model of FEBio: nodes -h tells how to make a mesh of it" nodes -u m two.feb
-    by_usage 3 two.feb
-    nodes -u m -t body.msh > body.mts 2> said
-    grep -q '^# cells.region .* names=group_1,group_2$' body.mts
-    [ "$(volumes body.mts)" = "3 1" ]
 }
 
 @test "VTU and VTK of meshio and of tovtk come in by the commands of the usage, with their regions" {

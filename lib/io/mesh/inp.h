@@ -39,7 +39,6 @@ struct inp {
     int parts, instances;
     bool in_assembly; /* and not in an instance */
     char instance[INP_LONGEST_NAME + 1];
-    char left_out[320]; /* keywords that are not read */
 
     bool *is_shell; /* of each element */
     int64_t shell_room;

@@ -125,11 +125,8 @@ static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
 static void add_to_group(struct inp *p, struct inp_set *set, int type, const int64_t node[])
 {
     int64_t key = group_of(p, set, msh_type(type).dim);
-    int64_t place = input_add_element(&p->in, INPUT_NO_TAG, type, node);
+    (void)input_add_element(&p->in, INPUT_NO_TAG, type, node, key);
     check_size(p, p->in.element_count);
-    if (p->in.r->status == STATUS_OK) {
-        p->in.elements[place].key = key;
-    }
 }
 
 /* Corners of the faces S1, S2, ... of elements of first order, by gmsh's number; -1 fills up. */

@@ -203,7 +203,7 @@ static void read_element(struct inp *p, int type, bool is_shell)
     MSH_GROW(r, &p->is_shell, p->in.element_count + 1, &p->shell_room);
     if (r->status == STATUS_OK) {
         p->is_shell[p->in.element_count] = is_shell;
-        (void)input_add_element(&p->in, tag, type, node);
+        (void)input_add_element(&p->in, tag, type, node, 0);
     }
 }
 
@@ -266,19 +266,6 @@ static bool is_of_parts(struct inp *p)
 
 /* ---- the deck ---- */
 
-/* Note a keyword that is not read, once. */
-static void leave_out(struct inp *p)
-{
-    char item[80] = ", ";
-    text_append(item, sizeof item, "%s", p->keyword);
-    const char *found = strstr(p->left_out, item);
-    size_t length = strlen(item);
-    bool is_new = found == NULL || (found[length] != '\0' && found[length] != ',');
-    if (is_new && strlen(p->left_out) + length < sizeof p->left_out) {
-        text_append(p->left_out, sizeof p->left_out, "%s", item);
-    }
-}
-
 static bool is_one_of(const char *keyword, const char *const list[])
 {
     while (*list != NULL && strcmp(keyword, *list) != 0) {
@@ -318,7 +305,7 @@ static void read_keyword(struct inp *p)
         if (text_ends(key, " SECTION")) {
             inp_read_section(p);
         } else if (!of_parts && strcmp(key, "*HEADING") != 0) {
-            leave_out(p);
+            input_leave_out(&p->in, key);
         }
         skip_data(p);
     }
@@ -337,9 +324,6 @@ void inp_read(struct msh_reader *r)
     input_index(&p.in);
     inp_join_sets(&p);
     input_finish(&p.in);
-    if (p.left_out[0] != '\0') {
-        input_note(&p.in, "left out of the deck: %s", p.left_out + 2);
-    }
     inp_free_sets(&p);
     input_free(&p.in);
 }

@@ -2,6 +2,7 @@
 #include "io/stream/stream_private.h"
 
 #include <math.h>
+#include <search.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,17 +28,14 @@ double input_real(struct msh_reader *r, const char *what, const char *word, int6
 {
     char text[64] = "";
     double number = 0;
-    if (length < (int64_t)sizeof text) {
-        memcpy(text, word, (size_t)length);
-    }
-    for (char *c = text; *c != '\0'; c++) {
-        if (*c == 'D' || *c == 'd') {
-            *c = 'e';
+    size_t size = length < (int64_t)sizeof text ? (size_t)length : 0;
+    for (size_t i = 0; i < size; i++) {
+        text[i] = word[i];
+        if (word[i] == 'D' || word[i] == 'd') {
+            text[i] = 'e';
         }
     }
-    const char *end = text + length;
-    if (length >= (int64_t)sizeof text || number_parse_double(text, end, &number) != end ||
-        !isfinite(number)) {
+    if (number_parse_double(text, text + size, &number) != text + size || !isfinite(number)) {
         msh_fail(r, "%s: '%.*s' is not a finite number", what, length < 64 ? (int)length : 64, word);
     }
     return r->status == STATUS_OK ? number : 0;
@@ -55,12 +53,30 @@ int input_type(int dim, int node_count)
 
 void input_reorder(int type, int64_t node[])
 {
-    enum { TETRAHEDRON_10 = 11 };
-    if (type == TETRAHEDRON_10) {
-        int64_t last = node[9];
-        node[9] = node[8];
-        node[8] = last;
+    static const int8_t tetrahedron10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8},
+                        hexahedron27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 16, 9,  17, 10,
+                                          18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26};
+    int64_t from[27];
+    const int8_t *order = type == 11 ? tetrahedron10 : type == 12 ? hexahedron27 : NULL;
+    for (int pass = 0; pass < 2 && order != NULL; pass++) {
+        for (int k = 0; k < msh_type(type).node_count; k++) {
+            *(pass == 0 ? &from[k] : &node[k]) = pass == 0 ? node[k] : from[order[k]];
+        }
     }
+}
+
+const char *input_word(const char **at, const char *end, int64_t *length)
+{
+    static const char between[] = " ,\t\r\n";
+    while (*at < end && memchr(between, **at, sizeof between - 1) != NULL) {
+        ++*at;
+    }
+    const char *word = *at;
+    while (*at < end && memchr(between, **at, sizeof between - 1) == NULL) {
+        ++*at;
+    }
+    *length = *at - word;
+    return *length > 0 ? word : NULL;
 }
 
 void input_add_node(struct mesh_input *in, int64_t tag, const double x[3])
@@ -71,7 +87,7 @@ void input_add_node(struct mesh_input *in, int64_t tag, const double x[3])
     }
 }
 
-int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[])
+int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key)
 {
     int count = msh_type(type).node_count;
     MSH_GROW(in->r, &in->elements, in->element_count + 1, &in->element_room);
@@ -79,7 +95,7 @@ int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const in
     if (in->r->status != STATUS_OK) {
         return 0;
     }
-    in->elements[in->element_count] = (struct input_element){tag, 0, in->corner_count, type};
+    in->elements[in->element_count] = (struct input_element){tag, key, in->corner_count, type};
     memcpy(&in->corners[in->corner_count], node, (size_t)count * sizeof *node);
     in->corner_count += count;
     return in->element_count++;
@@ -100,6 +116,53 @@ int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_
     int64_t key = msh_key(dim, r->name_count + 1);
     r->names[r->name_count++] = (struct msh_name){key, copy, (int)length};
     return key;
+}
+
+struct named_group {
+    int64_t key;
+    int dim;
+    char name[LONGEST_NAME + 1];
+};
+
+static int compare_groups(const void *left, const void *right)
+{
+    const struct named_group *a = left, *b = right;
+    return a->dim != b->dim ? a->dim - b->dim : strcmp(a->name, b->name);
+}
+
+int64_t input_group(struct mesh_input *in, int dim, const char *text)
+{
+    struct msh_reader *r = in->r;
+    struct named_group wanted = {.dim = dim};
+    strncpy(wanted.name, text, LONGEST_NAME);
+    struct named_group *const *found = tfind(&wanted, &in->groups, compare_groups);
+    if (found != NULL) {
+        return (*found)->key;
+    }
+    wanted.key = input_add_group(in, dim, text, (int64_t)strlen(text));
+    struct named_group *group = malloc(sizeof *group);
+    if (group != NULL) {
+        *group = wanted;
+    }
+    if (r->status == STATUS_OK && (group == NULL || tsearch(group, &in->groups, compare_groups) == NULL)) {
+        r->status = fail_memory(r->error, "names");
+    }
+    if (r->status != STATUS_OK) {
+        free(group);
+    }
+    return wanted.key;
+}
+
+void input_leave_out(struct mesh_input *in, const char *what)
+{
+    char item[80] = ", ";
+    text_append(item, sizeof item, "%s", what);
+    const char *found = strstr(in->left_out, item);
+    size_t length = strlen(item);
+    bool is_new = found == NULL || (found[length] != '\0' && found[length] != ',');
+    if (is_new && strlen(in->left_out) + length < sizeof in->left_out) {
+        text_append(in->left_out, sizeof in->left_out, "%s", item);
+    }
 }
 
 void input_note(struct mesh_input *in, const char *format, ...)
@@ -146,8 +209,10 @@ static void find_corners(struct mesh_input *in)
             e++;
         }
         if (place < 0) {
-            msh_fail(r, "element %lld names the node %lld, which is not in the file",
-                     (long long)in->elements[e].tag, (long long)in->corners[k]);
+            bool of_set = in->elements[e].tag == INPUT_NO_TAG;
+            msh_fail(r, "%s%.0lld names the node %lld, which is not in the file",
+                     of_set ? "a set or surface" : "element ", of_set ? 0LL : (long long)in->elements[e].tag,
+                     (long long)in->corners[k]);
         }
     }
 }
@@ -177,9 +242,13 @@ void input_finish(struct mesh_input *in)
         msh->node_ptr[e + 1] = element->first + msh_type(element->type).node_count;
         r->element_key[e] = element->key;
     }
+    if (in->left_out[0] != '\0') {
+        input_note(in, "what else is in the file is left out: %s", in->left_out + 2);
+    }
 }
 
 void input_free(struct mesh_input *in)
 {
+    tdestroy(in->groups, free);
     FREE_ALL(in->nodes, in->elements, in->corners);
 }

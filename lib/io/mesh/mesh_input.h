@@ -22,7 +22,9 @@ struct mesh_input {
         int64_t first;
         int type;
     } * elements;
-    int64_t *corners; /* tags of the nodes of each element, in gmsh's order, from `first` on */
+    int64_t *corners;   /* tags of the nodes of each element, in gmsh's order, from `first` on */
+    void *groups;       /* a tree of them by dimension and name */
+    char left_out[320]; /* what is not read, ", " before each */
 };
 
 #define INPUT_NO_TAG (-1)
@@ -45,17 +47,26 @@ double input_real(struct msh_reader *r, const char *what, const char *word, int6
  * there are none. Numbers of nodes are those of one type, except that 8 in the plane are of second order. */
 int input_type(int dim, int node_count);
 
-/* Bring the nodes of an element of Abaqus, VTK or FEBio, which agree, into gmsh's order; the midside nodes of
- * elements that are not split there stay as they are. */
+/* Bring the nodes of an element of VTK, as those of Abaqus and but for 27 nodes of FEBio, into gmsh's order;
+ * the midside nodes of elements that are not split there stay as they are. */
 void input_reorder(int type, int64_t node[]);
 
-/* Add a node; an element with these tags of nodes, returning its place; a group with a name, which is
- * borrowed until the groups are joined, returning its key. */
-void input_add_node(struct mesh_input *in, int64_t tag, const double x[3]);
-int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[]);
-int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length);
+/* The next word of a text, between blanks, commas and line ends, at *at, which moves behind it; NULL: the
+ * end. */
+const char *input_word(const char **at, const char *end, int64_t *length);
 
-/* Note what is left out (printf-style). */
+/* Add a node; an element with these tags of nodes and a group (0: none), returning its place. */
+void input_add_node(struct mesh_input *in, int64_t tag, const double x[3]);
+int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key);
+
+/* The key of a new group; of the group of that dimension and name, which may be new. */
+int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length);
+int64_t input_group(struct mesh_input *in, int dim, const char *text);
+
+/* Note what of the file is left out, each thing once. */
+void input_leave_out(struct mesh_input *in, const char *what);
+
+/* Append a note (printf-style). */
 void input_note(struct mesh_input *in, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Index the nodes by their tags: before input_finish, and before what needs them. Fill reader and mesh. */
@@ -63,5 +74,6 @@ void input_index(struct mesh_input *in);
 void input_finish(struct mesh_input *in);
 void input_free(struct mesh_input *in);
 
-/* Read a deck of Abaqus or CalculiX. */
-void inp_read(struct msh_reader *r); /* inp_read.c */
+/* Read a deck of Abaqus or CalculiX, inp_read.c; a model of FEBio, feb_read.c. */
+void inp_read(struct msh_reader *r);
+void feb_read(struct msh_reader *r);

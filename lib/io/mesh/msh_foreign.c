@@ -5,9 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Number of bytes in which the first element of an XML file, behind its comments, is searched for. */
-#define XML_HEAD 4096
-
 #define BY_MESHIO(name)                                                                                      \
     "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"" name "\"), file_format=\"gmsh22\")' "  \
     "makes a mesh of it (python3-meshio)"
@@ -85,9 +82,6 @@ const char *msh_foreign_hint(const char *bytes, size_t size)
         {"\x89HDF", ": an HDF5 file: if it is MED, " BY_MESHIO("FILE")},
     };
     size_t blanks = 0;
-    if (memmem(bytes, size < XML_HEAD ? size : XML_HEAD, "<febio_spec", 11) != NULL) {
-        return ": a model of FEBio: nodes -h tells how to make a mesh of it";
-    }
     if (tetgen_hint(bytes, size) != NULL) {
         return tetgen_hint(bytes, size);
     }

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number of bytes that identify a mesh. */
+/* Number of bytes that identify a mesh of gmsh, and any. */
 #define MAGIC_SIZE 12
+#define HEAD_SIZE 4096
 
 /* ---- what the file is ---- */
 
@@ -176,10 +177,23 @@ static bool is_deck(const char *bytes, size_t size)
            (bytes[blanks + 1] == '*' || isalpha((unsigned char)bytes[blanks + 1]));
 }
 
+/* A file in XML with this element near its beginning. */
+static bool is_xml(const char *bytes, size_t size, const char *element)
+{
+    size = size < HEAD_SIZE ? size : HEAD_SIZE;
+    const char *first = memchr(bytes, '<', size);
+    return first != NULL && first - bytes < 4 && memmem(bytes, size, element, strlen(element)) != NULL;
+}
+
+static bool is_febio(const char *bytes, size_t size)
+{
+    return is_xml(bytes, size, "<febio_spec");
+}
+
 static const struct format {
     bool (*is_it)(const char *bytes, size_t size);
     void (*read)(struct msh_reader *reader);
-} formats[] = {{is_mesh, read_sections}, {is_deck, inp_read}};
+} formats[] = {{is_mesh, read_sections}, {is_deck, inp_read}, {is_febio, feb_read}};
 
 /* The format that a file of these first bytes has, or NULL. */
 static const struct format *find_format(const char *bytes, size_t size)
@@ -202,7 +216,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     }
     if (format == NULL) {
         return fail(error, STATUS_INPUT, "%s%s",
-                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus or CalculiX",
+                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus, CalculiX or FEBio",
                     msh_foreign_hint(bytes, size));
     }
     format->read(&reader);
@@ -227,7 +241,7 @@ static enum status read_all(int descriptor, char **bytes, size_t *size, struct e
         RETURN_IF_ERROR(GROW_ARRAY(bytes, (int64_t)*size + 65536, &room, error));
         RETURN_IF_ERROR(descriptor_read(descriptor, *bytes + *size, (size_t)room - *size, &got, error));
         *size += got;
-        if (got == 0 || (*size >= MAGIC_SIZE && find_format(*bytes, *size) == NULL)) {
+        if (got == 0 || (*size >= HEAD_SIZE && find_format(*bytes, *size) == NULL)) {
             return STATUS_OK;
         }
     }

@@ -1,0 +1,206 @@
+/* Models of FEBio, versions 2.5 to 4.0: the mesh in <Geometry> or <Mesh>. (Format: FEBio User's Manual, "Free
+ * format input".) */
+#include "io/mesh/mesh_input.h"
+#include "io/mesh/xml.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* gmsh's number of a point. */
+#define POINT 15
+
+/* What an element of the mesh holds. */
+enum content { OTHERS, NODES, ELEMENTS, SURFACE, EDGE, NODE_SET };
+
+struct feb {
+    struct mesh_input in;
+    bool in_mesh;
+    enum content content;
+    int type;       /* of the elements */
+    char name[128]; /* of the part, surface or set */
+    int64_t id;     /* of the node or element, or INPUT_NO_TAG */
+    char section[64];
+};
+
+/* The type of gmsh by FEBio's name, "tet4"; 0: it is not read. */
+static int find_type(const char *name)
+{
+    static const struct {
+        const char *begin;
+        int linear;
+    } kinds[] = {{"tet", 4}, {"hex", 5},  {"penta", 6}, {"pyra", 7},
+                 {"tri", 2}, {"quad", 3}, {"line", 1},  {"truss", 1}};
+    size_t begin = strcspn(name, "0123456789");
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strlen(kinds[i].begin) == begin && strncmp(name, kinds[i].begin, begin) == 0) {
+            int type = input_type(msh_type(kinds[i].linear).dim, atoi(name + begin));
+            return msh_type(type).linear == kinds[i].linear ? type : 0;
+        }
+    }
+    return 0;
+}
+
+/* ---- what is in the mesh ---- */
+
+static void begin_content(struct feb *f, const char *element, const char **attributes)
+{
+    static const char *const contents[] = {[NODES] = "Nodes",
+                                           [ELEMENTS] = "Elements",
+                                           [SURFACE] = "Surface",
+                                           [EDGE] = "Edge",
+                                           [NODE_SET] = "NodeSet"};
+    struct msh_reader *r = f->in.r;
+    const char *name = xml_attribute(attributes, "name"), *type = xml_attribute(attributes, "type");
+    name = name != NULL ? name : xml_attribute(attributes, "elset");
+    f->content = OTHERS;
+    for (int k = NODES; k <= NODE_SET; k++) {
+        f->content = strcmp(element, contents[k]) == 0 ? (enum content)k : f->content;
+    }
+    snprintf(f->name, sizeof f->name, "%s", name != NULL ? name : "");
+    if (f->content == ELEMENTS) {
+        if (name == NULL) {
+            const char *material = xml_attribute(attributes, "mat");
+            snprintf(f->name, sizeof f->name, "material_%s", material != NULL ? material : "");
+        }
+        f->type = find_type(type != NULL ? type : "");
+        if (f->type == 0) {
+            msh_fail(
+                r, "type '%s': no element that is read (tet4, hex8, penta6, pyra5, tri3, quad4, line2, ...)",
+                type != NULL ? type : "");
+        }
+    } else if (strcmp(element, "Part") == 0 || strcmp(element, "Instance") == 0) {
+        msh_fail(r, "parts with instances are not read: save the model from FEBio Studio");
+    } else if (f->content == OTHERS) {
+        input_leave_out(&f->in, element);
+    }
+}
+
+static void begin_item(struct feb *f, const char *element, const char **attributes)
+{
+    const char *id = xml_attribute(attributes, "id");
+    f->id = INPUT_NO_TAG;
+    if (id != NULL && f->content != SURFACE && f->content != EDGE) {
+        f->id = input_whole(f->in.r, "id", id, (int64_t)strlen(id), 1, MSH_LARGEST_TAG);
+    }
+    if (f->content == SURFACE || f->content == EDGE) {
+        f->type = find_type(element);
+        if (f->type == 0) {
+            msh_fail(f->in.r, "'%s' is no face that is read (tri3, quad4, tri6, quad8, quad9, line2, line3)",
+                     element);
+        }
+    } else if ((f->content == NODES || f->content == NODE_SET) &&
+               (strcmp(element, "node") != 0 || id == NULL)) {
+        msh_fail(f->in.r, "'%s' is no <node id=...>", element);
+    }
+}
+
+static void begin(void *context, const char *name, const char **attributes, int depth)
+{
+    struct feb *f = context;
+    struct msh_reader *r = f->in.r;
+    const char *version = xml_attribute(attributes, "version"), *from = xml_attribute(attributes, "from");
+    if (depth < 3) {
+        snprintf(f->section, sizeof f->section, "<%.60s>", name);
+    }
+    if (depth == 0 && (version == NULL || version[0] < '2' || version[0] > '4' || version[1] != '.')) {
+        msh_fail(r, "version '%s': open it in FEBio Studio and export it in the format 4.0",
+                 version != NULL ? version : "");
+    } else if (strcmp(name, "Include") == 0 || (depth == 1 && from != NULL)) {
+        msh_fail(r, "other files are not read: put the content of that file in its place");
+    } else if (depth == 1) {
+        f->in_mesh = strcmp(name, "Geometry") == 0 || strcmp(name, "Mesh") == 0;
+        if (!f->in_mesh) {
+            input_leave_out(&f->in, name);
+        }
+    } else if (depth == 2 && f->in_mesh) {
+        begin_content(f, name, attributes);
+    } else if (depth == 3 && f->in_mesh && f->content != OTHERS) {
+        begin_item(f, name, attributes);
+    }
+}
+
+/* ---- their numbers ---- */
+
+static void add_node(struct feb *f, const char *text, const char *end)
+{
+    double x[3] = {0};
+    int64_t length;
+    for (int k = 0; k < 3; k++) {
+        const char *word = input_word(&text, end, &length);
+        x[k] = input_real(f->in.r, "coordinate", word != NULL ? word : "", length);
+    }
+    input_add_node(&f->in, f->id, x);
+}
+
+static void add_element(struct feb *f, const char *text, const char *end)
+{
+    struct msh_reader *r = f->in.r;
+    int64_t length, node[27], centre[6];
+    int count = msh_type(f->type).node_count, found = 0;
+    const char *word;
+    while (r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
+        int64_t tag = input_whole(r, "node", word, length, 1, MSH_LARGEST_TAG);
+        node[found < count ? found : 0] = tag;
+        found++;
+    }
+    if (found != count) {
+        msh_fail(r, "%d nodes, where %s has %d", found, msh_type(f->type).name, count);
+    }
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    if (count == 27) { /* VTK's order of the faces */
+        memcpy(centre, (int64_t[6]){node[23], node[21], node[20], node[22], node[24], node[25]},
+               sizeof centre);
+        memcpy(&node[20], centre, sizeof centre);
+    }
+    input_reorder(f->type, node);
+    (void)input_add_element(&f->in, f->id, f->type, node,
+                            input_group(&f->in, msh_type(f->type).dim, f->name));
+}
+
+/* A list of the nodes of a set: of versions 3 and 4. */
+static void add_list(struct feb *f, const char *text, const char *end)
+{
+    int64_t length;
+    const char *word;
+    while (f->in.r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
+        int64_t node = input_whole(f->in.r, "node", word, length, 1, MSH_LARGEST_TAG);
+        (void)input_add_element(&f->in, INPUT_NO_TAG, POINT, &node, input_group(&f->in, 0, f->name));
+    }
+}
+
+static void end(void *context, const char *name, const char *text, int64_t size, int depth)
+{
+    struct feb *f = context;
+    (void)name;
+    if (!f->in_mesh || f->content == OTHERS || depth > 3) {
+        return;
+    }
+    if (depth == 2 && f->content == NODE_SET) {
+        add_list(f, text, text + size);
+    }
+    f->content = depth == 2 ? OTHERS : f->content;
+    if (depth != 3) {
+        return;
+    }
+    if (f->content == NODES) {
+        add_node(f, text, text + size);
+    } else if (f->content == NODE_SET) {
+        (void)input_add_element(&f->in, INPUT_NO_TAG, POINT, &f->id, input_group(&f->in, 0, f->name));
+    } else {
+        add_element(f, text, text + size);
+    }
+}
+
+void feb_read(struct msh_reader *r)
+{
+    struct feb f = {.in = {.r = r}};
+    const struct xml_handler handler = {&f, begin, end};
+    r->section = f.section;
+    xml_parse(r, NULL, &handler);
+    input_index(&f.in);
+    input_finish(&f.in);
+    input_free(&f.in);
+}

@@ -1,0 +1,2 @@
+/* Fuzz target: models of FEBio. */
+#include "mesh.h"
