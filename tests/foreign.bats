@@ -98,3 +98,105 @@ END
         refused 2 "changed: XML: line" nodes -u m changed
     done
 }
+
+# variants BODY.vtu: what VTK and meshio make of a file
+variants() {
+    /usr/bin/python3 - "$1" 2>> said << 'END'
+import itertools, meshio, sys, vtk
+reader = vtk.vtkXMLUnstructuredGridReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+for mode, packed, wide, big, encoded in itertools.product((0, 1, 2), (0, 1), (0, 1), (0, 1), (0, 1)):
+    writer = vtk.vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(reader.GetOutput())
+    writer.SetDataMode(mode) # text, base64, appended
+    writer.SetCompressorTypeToZLib() if packed else writer.SetCompressorTypeToNone()
+    writer.SetBlockSize(264)
+    writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+    writer.SetByteOrderToBigEndian() if big else writer.SetByteOrderToLittleEndian()
+    writer.SetEncodeAppendedData(encoded)
+    writer.SetFileName("vtk%d%d%d%d%d.vtu" % (mode, packed, wide, big, encoded))
+    writer.Write()
+for version, kind in itertools.product((42, 51), (1, 2)):
+    writer = vtk.vtkUnstructuredGridWriter()
+    writer.SetInputData(reader.GetOutput())
+    writer.SetFileVersion(version)
+    writer.SetFileType(kind)
+    writer.SetFileName("vtk%d%d.vtk" % (version, kind))
+    writer.Write()
+mesh = meshio.read(sys.argv[1])
+mesh.write("meshio.vtu")
+meshio.vtu.write("meshio-text.vtu", mesh, binary=False)
+mesh.write("meshio.vtk")
+meshio.vtk.write("meshio42.vtk", mesh, fmt_version="4.2")
+END
+}
+
+@test "VTU and VTK, in all forms that VTK and meshio write: the body that tovtk wrote, with its regions" {
+    cloud -d 2 -k jittered -n 5 --box 0,0.1,0,0.1 --jitter 0.2 | tag -n tip=ball:0.1,0.1,0.03 -r lump=ball:0.05,0.05,0.03 > plane.mts 2> note
+    cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | tag -n tip=ball:0.1,0.1,0.1,0.03 -r lump=ball:0,0,0,0.06 > solid.mts 2> note
+    for body in plane solid; do
+        tovtk -t -o text.vtu $body.mts
+        tovtk -o binary.vtu $body.mts
+        [ $body = plane ] || variants binary.vtu
+        for file in *.vt?; do
+            [[ $(names "$file") =~ ^(body,lump|cells.region_0,cells.region_1)" xmin,xmax,ymin,ymax,"(zmin,zmax,)?tip$ ]]
+            for section in nodes.x cells cells.region; do mts print $section body.mts | cmp - <(mts print $section $body.mts); done
+        done
+        [ "$(mts print sets.idx body.mts | tail -n 1)" = "$(mts print sets.idx $body.mts | tail -n 1)" ]
+    done
+    [ "$(printf '%s\n' *.vt? | wc -l)" -eq 58 ]
+}
+
+@test "VTU and VTK: the array of the regions, facets of meshio, cells of second order" {
+    cat > two.geo << 'END'
+SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1, 0.5}; Coherence;
+Mesh.MeshSizeMax = 0.5; Physical Volume("left", 3) = {1}; Physical Volume("right", 7) = {2}; Physical Surface("end", 5) = {1};
+END
+    gmsh -v 1 -3 two.geo -order 2 -o two.msh
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("two.msh"); a.write("two.vtu"); a.write("two.vtk")' 2> said
+    nodes -u m --midside use two.msh > two.mts
+    for file in two.vtu two.vtk; do
+        [ "$(names --midside use $file)" = "gmsh_physical_3,gmsh_physical_7 gmsh_physical_surface_5" ]
+        grep -q "the regions are those of the cells' array 'gmsh:physical'" said
+        for section in cells.region facets; do mts print $section body.mts | sort | cmp - <(mts print $section two.mts | sort); done
+        [[ $(names --regions-of gmsh:geometrical $file) == gmsh_geometrical_1,gmsh_geometrical_2* ]]
+    done
+    sed 's/gmsh:physical/one/; s/gmsh:geometrical/other/' two.vtu > unknown.vtu
+    refused 2 "several arrays of whole numbers: --regions-of tells which has the regions: one, other" nodes -u m unknown.vtu
+    refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
+    # one cell of each type, of volume 1 but for tetrahedra (1/6) and pyramids (1/3)
+    [ "$(names "$corpus/vtk/types.vtk")" = "a_b_-1,a_b_2" ]
+    nodes -u m -v "$corpus/vtk/types.vtk" > body.mts 2> said
+    grep -q "volume 5 m3" said
+}
+
+@test "VTU and VTK: what is wrong is told by array and line" {
+    faulty vtk << 'END'
+text.vtu|s/="UnstructuredGrid" /="PolyData" /|type 'PolyData': only UnstructuredGrid is read
+text.vtu|s/byte_order/compressor="vtkLZ4DataCompressor" byte_order/|compressor vtkLZ4DataCompressor: only zlib is read
+text.vtu|s/NumberOfPoints="5"/NumberOfPoints="6"/|numbers, not 18
+text.vtu|s/NumberOfCells="2"/NumberOfCells="2147483648"/|NumberOfCells: 2147483648 is not within
+text.vtu|s/^4$/9/|grid: cell 0: its offset 9 is not within
+text.vtu|s/^10$/99/|type 99 of VTK with 4 points is no element
+text.vtu|s/Name="types"/Name="kinds"/|grid: no types: the file is truncated
+text.vtu|0,/^0 0 0$/s/^0 0 0$/0 nan 0/|'nan' is not a finite number
+text.vtu|s/UInt8/Float32/|numbers of a type that has no place here
+packed.vtu|s/ AgAAAEA/ Ag*AAEA/|no data in base64, or too little
+packed.vtu|s/ AgAAAEA/ AQAAAEA/|Points: line
+raw.vtu|s/encoding="raw">/encoding="raw">?/|AppendedData: it is missing, or does not begin
+raw.vtu|s/offset="0"/offset="4000"/|AppendedData: region.a: its offset 4000 is behind the end
+text.vtk|s/UNSTRUCTURED_GRID/POLYDATA/|'POLYDATA' is no UNSTRUCTURED_GRID
+text.vtk|s/^POINTS 5/POINTS 2147483647/|POINTS: 6442450941 numbers cannot be in
+text.vtk|s/^4 0 1 2 3/7 0 1 2 3/|CELLS: cell 1: more points than there are
+text.vtk|s/^CELLS/CELLZ/|CELLZ: what this is, is not known
+text.vtk|s/ double/ triple/|numbers of type 'triple' are not read
+END
+    for file in text.vtu packed.vtu raw.vtu text.vtk binary.vtk; do
+        size=$(wc -c < "$corpus/vtk/$file")
+        for at in $(seq 50 83 $((size - 20))); do
+            head -c "$at" "$corpus/vtk/$file" > changed
+            refused 2 "changed: " nodes -u m changed
+        done
+    done
+}

@@ -16,6 +16,6 @@ replay() {
 
 @test "tables, surfaces and load curves: accepted finite, or refused in one line" { replay table; }
 
-@test "meshes: what passes the check is what it says" { for format in msh inp feb; do replay $format; done; }
+@test "meshes: what passes the check is what it says" { for format in msh inp feb vtk; do replay $format; done; }
 
 @test "images: what is read is what the header says, and is written and read back" { replay image; }

@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FREED_BY(msh_free) struct msh msh = {0};
     struct mesh mesh;
     struct error error = {""};
-    if (!is_accepted(msh_parse(&msh, (const char *)data, size, &error), &error)) {
+    if (!is_accepted(msh_parse(&msh, (const char *)data, size, NULL, &error), &error)) {
         REQUIRE(msh.x == NULL && msh.node_idx == NULL && msh.groups == NULL);
         return 0;
     }

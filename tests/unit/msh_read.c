@@ -13,7 +13,7 @@ static enum status read_bytes(struct msh *msh, const char *bytes, size_t size, s
     assert_true(descriptor >= 0);
     assert_int_equal(write(descriptor, bytes, size), size);
     assert_int_equal(lseek(descriptor, 0, SEEK_SET), 0);
-    enum status status = msh_read(msh, descriptor, "test.msh", error);
+    enum status status = msh_read(msh, descriptor, "test.msh", NULL, error);
     close(descriptor);
     return status;
 }
@@ -24,7 +24,7 @@ static enum status parse_copy(struct msh *msh, const char *bytes, size_t size, s
     SCRATCH char *copy = malloc(size > 0 ? size : 1);
     assert_non_null(copy);
     memcpy(copy, bytes, size);
-    return msh_parse(msh, copy, size, error);
+    return msh_parse(msh, copy, size, NULL, error);
 }
 
 /* What comes out of a file is built or refused, with a message. */
@@ -315,7 +315,7 @@ TEST(pipes_are_read_whole)
     assert_int_equal(pipe(ends), 0);
     assert_int_equal(write(ends[1], f.bytes, f.size), f.size);
     close(ends[1]);
-    GOOD(msh_read(&msh, ends[0], "pipe", &error));
+    GOOD(msh_read(&msh, ends[0], "pipe", NULL, &error));
     assert_int_equal(msh.element_count, FIXTURE_ELEMENTS);
     close(ends[0]);
 }

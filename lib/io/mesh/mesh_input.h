@@ -74,6 +74,8 @@ void input_index(struct mesh_input *in);
 void input_finish(struct mesh_input *in);
 void input_free(struct mesh_input *in);
 
-/* Read a deck of Abaqus or CalculiX, inp_read.c; a model of FEBio, feb_read.c. */
+/* Read a deck of Abaqus or CalculiX; a model of FEBio; a file of VTK, in XML or legacy. */
 void inp_read(struct msh_reader *r);
 void feb_read(struct msh_reader *r);
+void vtu_read(struct msh_reader *r);
+void vtk_read(struct msh_reader *r);

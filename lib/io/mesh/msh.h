@@ -59,15 +59,18 @@ struct msh_type {
 /* The type with this number in gmsh; its name is NULL if it is not an element of first or second order. */
 struct msh_type msh_type(int64_t number);
 
-/* Read a mesh from its bytes. STATUS_INPUT if they are not a complete, valid mesh file; the message names
- * section and record, or for a file of another version or program the command that converts it.
- * STATUS_SYSTEM: memory. Time and memory are proportional to the size, whatever counts the file states. On
- * failure *msh is empty. */
-MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error);
+/* Read a mesh from its bytes; `region_array` names the array of the cells of a VTK file that tells the
+ * regions, or NULL. STATUS_INPUT if they are not a complete, valid mesh file; the message names section and
+ * record, or for a file of another version or program the command that converts it. STATUS_SYSTEM: memory.
+ * Time and memory are proportional to the size, whatever counts the file states (what is compressed: to its
+ * size when it is not). On failure *msh is empty. */
+MUST_CHECK enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const char *region_array,
+                                 struct error *error);
 
 /* Read a mesh from an open descriptor (a regular file or a pipe), which stays open. Messages begin with
  * `name`. Errors as msh_parse; STATUS_SYSTEM also for read failures. */
-MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error);
+MUST_CHECK enum status msh_read(struct msh *msh, int descriptor, const char *name, const char *region_array,
+                                struct error *error);
 void msh_free(struct msh *msh);
 
 /* A mesh of simplices in metres. The arrays are those of the stream (see lib/README.md). */

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #define BY_MESHIO(name)                                                                                      \
-    "python3 -c 'import meshio as m; m.write(\"body.msh\", m.read(\"" name "\"), file_format=\"gmsh22\")' "  \
-    "makes a mesh of it (python3-meshio)"
-#define WITH_REGIONS "; nodes -h tells how to keep an array of regions"
+    "python3 -c 'import meshio as m; m.write(\"body.vtu\", m.read(\"" name                                   \
+    "\"))' makes a mesh of it, body.vtu "                                                                    \
+    "(python3-meshio)"
 #define BY_GMSH(name) "gmsh " name " -save -o body.msh makes a mesh of it"
 #define AS_STL(name)                                                                                         \
     "make it STL (python3 -c 'import meshio as m; m.write(\"body.stl\", m.read(\"" name "\"))'); "           \
@@ -18,8 +18,7 @@
  * numbers of attributes and of marks; or the number of cells, of the nodes of each, and of attributes. */
 static const char *tetgen_hint(const char *bytes, size_t size)
 {
-    static const char tetgen[] =
-        ": a mesh of TetGen, by its .node and .ele: " BY_MESHIO("FILE.node") WITH_REGIONS;
+    static const char tetgen[] = ": a mesh of TetGen, by its .node and .ele: " BY_MESHIO("FILE.node");
     static const char triangle[] =
         ": a mesh of Triangle, by its .node and .ele: python3 -c 'import meshio as m; n, c = [[r.split() for "
         "r in open(\"FILE\" + e) if r.split(\"#\")[0].strip()][1:] for e in (\".node\", \".ele\")]; "
@@ -59,9 +58,7 @@ const char *msh_foreign_hint(const char *bytes, size_t size)
     static const struct {
         const char *begin, *hint;
     } formats[] = {
-        {"# vtk DataFile", ": a VTK file: " BY_MESHIO("FILE") WITH_REGIONS},
-        {"<?xml", ": an XML file: if it is VTU, " BY_MESHIO("FILE") WITH_REGIONS},
-        {"<VTKFile", ": a VTU file: " BY_MESHIO("FILE") WITH_REGIONS},
+        {"<", ": an XML file, neither VTU nor of FEBio"},
         {"solid", stl_hint},
         {"MeshVersionFormatted", ": a MEDIT mesh: " BY_GMSH("FILE.mesh")},
         {"-1\n", ": a UNV mesh: " BY_GMSH("FILE.unv")},

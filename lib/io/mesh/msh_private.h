@@ -63,6 +63,7 @@ struct msh_reader {
     struct error *error;
 
     struct msh *msh;
+    const char *region_array; /* of VTK files, or NULL */
     struct msh_index nodes;
     bool has[MSH_SECTIONS]; /* the section was read to its end */
     int64_t node_idx_room;

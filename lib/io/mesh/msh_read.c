@@ -190,10 +190,24 @@ static bool is_febio(const char *bytes, size_t size)
     return is_xml(bytes, size, "<febio_spec");
 }
 
+static bool is_vtu(const char *bytes, size_t size)
+{
+    return is_xml(bytes, size, "<VTKFile");
+}
+
+static bool is_vtk(const char *bytes, size_t size)
+{
+    return size > 14 && memcmp(bytes, "# vtk DataFile", 14) == 0;
+}
+
 static const struct format {
     bool (*is_it)(const char *bytes, size_t size);
     void (*read)(struct msh_reader *reader);
-} formats[] = {{is_mesh, read_sections}, {is_deck, inp_read}, {is_febio, feb_read}};
+} formats[] = {{is_mesh, read_sections},
+               {is_deck, inp_read},
+               {is_febio, feb_read},
+               {is_vtu, vtu_read},
+               {is_vtk, vtk_read}};
 
 /* The format that a file of these first bytes has, or NULL. */
 static const struct format *find_format(const char *bytes, size_t size)
@@ -206,9 +220,11 @@ static const struct format *find_format(const char *bytes, size_t size)
     return NULL;
 }
 
-enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct error *error)
+enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const char *region_array,
+                      struct error *error)
 {
-    struct msh_reader reader = {.at = bytes, .end = bytes + size, .error = error, .msh = msh};
+    struct msh_reader reader = {
+        .at = bytes, .end = bytes + size, .error = error, .msh = msh, .region_array = region_array};
     const struct format *format = find_format(bytes, size);
     *msh = (struct msh){0};
     if (is_mesh1(bytes, size)) {
@@ -216,7 +232,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, struct er
     }
     if (format == NULL) {
         return fail(error, STATUS_INPUT, "%s%s",
-                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus, CalculiX or FEBio",
+                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK",
                     msh_foreign_hint(bytes, size));
     }
     format->read(&reader);
@@ -247,14 +263,15 @@ static enum status read_all(int descriptor, char **bytes, size_t *size, struct e
     }
 }
 
-enum status msh_read(struct msh *msh, int descriptor, const char *name, struct error *error)
+enum status msh_read(struct msh *msh, int descriptor, const char *name, const char *region_array,
+                     struct error *error)
 {
     SCRATCH char *bytes = NULL;
     size_t size = 0;
     *msh = (struct msh){0};
     enum status status = read_all(descriptor, &bytes, &size, error);
     if (status == STATUS_OK) {
-        status = msh_parse(msh, bytes, size, error);
+        status = msh_parse(msh, bytes, size, region_array, error);
     }
     return fail_in(error, status, "%s", name);
 }

@@ -11,8 +11,10 @@ struct parsing {
     XML_Parser parser;
     const struct xml_handler *handler;
     const char *begin, *last;
-    char *text;
+    char *text; /* of the open elements, without that of their children */
     int64_t size, room;
+    int64_t *start; /* where in it the text of each open element begins */
+    int64_t start_room;
     int depth;
     bool is_last;
 };
@@ -39,14 +41,19 @@ static void XMLCALL begin_element(void *data, const char *name, const char **att
 {
     struct parsing *p = data;
     p->r->record = (int64_t)XML_GetCurrentLineNumber(p->parser);
-    p->size = 0;
+    MSH_GROW(p->r, &p->start, p->depth + 1, &p->start_room);
+    if (p->r->status == STATUS_OK) {
+        p->start[p->depth] = p->size;
+    }
     if (p->last != NULL && strcmp(name, p->last) == 0) {
         p->is_last = true;
         p->r->at = p->begin + XML_GetCurrentByteIndex(p->parser);
         (void)XML_StopParser(p->parser, XML_FALSE);
         return;
     }
-    p->handler->begin(p->handler->context, name, attributes, p->depth++);
+    if (p->r->status == STATUS_OK) {
+        p->handler->begin(p->handler->context, name, attributes, p->depth++);
+    }
     check(p);
 }
 
@@ -67,10 +74,11 @@ static void XMLCALL end_element(void *data, const char *name)
     p->r->record = (int64_t)XML_GetCurrentLineNumber(p->parser);
     add_text(p, "", 0);
     if (p->r->status == STATUS_OK && !p->is_last) {
+        int64_t start = p->start[--p->depth];
         p->text[p->size] = '\0';
-        p->handler->end(p->handler->context, name, p->text, p->size, --p->depth);
+        p->handler->end(p->handler->context, name, p->text + start, p->size - start, p->depth);
+        p->size = start;
     }
-    p->size = 0;
     check(p);
 }
 
@@ -124,5 +132,6 @@ void xml_parse(struct msh_reader *r, const char *last, const struct xml_handler 
     XML_SetStartDoctypeDeclHandler(p.parser, refuse_doctype);
     parse(&p);
     XML_ParserFree(p.parser);
-    FREE_ALL(p.text);
+    r->at = p.is_last ? r->at : r->end;
+    FREE_ALL(p.text, p.start);
 }

@@ -8,7 +8,7 @@
 struct xml_handler {
     void *context;
     void (*begin)(void *context, const char *name, const char **attributes, int depth);
-    /* text[size], and a NUL behind it: the characters since the last tag. */
+    /* text[size], and a NUL behind it: the characters of the element, without those of its children. */
     void (*end)(void *context, const char *name, const char *text, int64_t size, int depth);
 };
 

@@ -1,0 +1,383 @@
+/* Unstructured grids of VTK: from arrays to nodes, elements and groups. (Format: VTK File Formats, Kitware;
+ * the types of cells: vtkCellType.h.) */
+#include "io/mesh/vtk_input.h"
+
+#include "base/lists.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* gmsh's number of a point. */
+#define POINT 15
+
+/* ---- arrays ---- */
+
+const struct vtk_type *vtk_find_type(const char *name)
+{
+    static const struct vtk_type types[] = {
+        {"Int8", "char", 1, true, true},      {"UInt8", "unsigned_char", 1, true, false},
+        {"Int16", "short", 2, true, true},    {"UInt16", "unsigned_short", 2, true, false},
+        {"Int32", "int", 4, true, true},      {"UInt32", "unsigned_int", 4, true, false},
+        {"Int64", "long", 8, true, true},     {"UInt64", "unsigned_long", 8, true, false},
+        {"Float32", "float", 4, false, true}, {"Float64", "double", 8, false, true},
+        {"", "vtktypeint8", 1, true, true},   {"", "vtktypeuint8", 1, true, false},
+        {"", "vtktypeint16", 2, true, true},  {"", "vtktypeuint16", 2, true, false},
+        {"", "vtktypeint32", 4, true, true},  {"", "vtktypeuint32", 4, true, false},
+        {"", "vtktypeint64", 8, true, true},  {"", "vtktypeuint64", 8, true, false},
+        {"", "vtkIdType", 4, true, true},
+    };
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        if ((name[0] != '\0' && strcmp(name, types[i].xml) == 0) || strcasecmp(name, types[i].legacy) == 0) {
+            return &types[i];
+        }
+    }
+    return NULL;
+}
+
+static bool begins(const char *name, const char *begin)
+{
+    return strncmp(name, begin, strlen(begin)) == 0;
+}
+
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type)
+{
+    bool whole = type->is_whole && array->components == 1 && !begins(array->name, "vtk");
+    bool set = begins(array->name, "set.") || begins(array->name, "facets.");
+    bool of_grid = array->kind >= VTK_POINTS && array->kind <= VTK_TYPES;
+    bool wanted =
+        of_grid || (whole && (array->kind == VTK_OF_CELLS || (array->kind == VTK_OF_POINTS && set) ||
+                              (array->kind == VTK_OF_FIELD && begins(array->name, "region."))));
+    if (of_grid && type->is_whole == (array->kind == VTK_POINTS)) {
+        msh_fail(v->in.r, "numbers of a type that has no place here");
+    } else if (!wanted) {
+        input_leave_out(&v->in, array->name);
+    }
+    return wanted;
+}
+
+struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, int64_t count)
+{
+    struct msh_reader *r = v->in.r;
+    MSH_GROW(r, &v->arrays, v->count + 1, &v->room);
+    if (r->status != STATUS_OK) {
+        return NULL;
+    }
+    struct vtk_array *added = &v->arrays[v->count++];
+    *added = *array;
+    added->count = count;
+    added->real = NULL;
+    added->whole = NULL;
+    if (array->kind == VTK_POINTS) {
+        MSH_NEW(r, &added->real, count);
+    } else {
+        MSH_NEW(r, &added->whole, count);
+    }
+    return r->status == STATUS_OK ? added : NULL;
+}
+
+/* The whole number in `size` bytes, the least first; those beyond int64_t become -1. */
+static int64_t whole_of(const struct vtk_type *type, const unsigned char *byte)
+{
+    uint64_t bits = 0;
+    for (int k = type->size - 1; k >= 0; k--) {
+        bits = bits << 8 | byte[k];
+    }
+    if (type->is_signed && type->size < 8 && bits >> (8 * type->size - 1) != 0) {
+        bits |= UINT64_MAX << (8 * type->size);
+    }
+    return type->is_signed || bits <= INT64_MAX ? (int64_t)bits : -1;
+}
+
+void vtk_fill_binary(struct vtk_array *array, const struct vtk_type *type, bool swap, const char *bytes)
+{
+    for (int64_t i = 0; i < array->count; i++) {
+        unsigned char byte[8];
+        for (int k = 0; k < type->size; k++) {
+            byte[k] = (unsigned char)bytes[i * type->size + (swap ? type->size - 1 - k : k)];
+        }
+        if (type->is_whole) {
+            array->whole[i] = whole_of(type, byte);
+        } else if (type->size == 4) {
+            float number;
+            memcpy(&number, byte, sizeof number);
+            array->real[i] = (double)number;
+        } else {
+            memcpy(&array->real[i], byte, sizeof array->real[i]);
+        }
+    }
+}
+
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end)
+{
+    for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
+        int64_t length;
+        const char *word = input_word(at, end, &length);
+        if (word == NULL) {
+            msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)array->count);
+        } else if (array->real != NULL) {
+            array->real[i] = input_real(r, array->name, word, length);
+        } else {
+            array->whole[i] = input_whole(r, array->name, word, length, INT64_MIN + 1, INT64_MAX);
+        }
+    }
+}
+
+/* ---- nodes and elements ---- */
+
+/* The only array of a kind, with so many numbers (-1: any); NULL after a failure. */
+static const struct vtk_array *find_array(struct vtk_input *v, enum vtk_kind kind, const char *what,
+                                          int64_t count)
+{
+    const struct vtk_array *found = NULL;
+    for (int64_t i = 0; i < v->count; i++) {
+        if (v->arrays[i].kind == kind) {
+            if (found != NULL) {
+                msh_fail(v->in.r, "%s: twice", what);
+            }
+            found = &v->arrays[i];
+        }
+    }
+    if (found == NULL) {
+        msh_fail(v->in.r, "no %s: the file is truncated, or has no grid", what);
+    } else if (count >= 0 && found->count != count) {
+        msh_fail(v->in.r, "%s: %lld numbers, not %lld", what, (long long)found->count, (long long)count);
+    }
+    return v->in.r->status == STATUS_OK ? found : NULL;
+}
+
+static void add_nodes(struct vtk_input *v)
+{
+    const struct vtk_array *x = find_array(v, VTK_POINTS, "points", 3 * v->point_count);
+    for (int64_t n = 0; x != NULL && v->in.r->status == STATUS_OK && n < v->point_count; n++) {
+        for (int k = 0; k < 3; k++) {
+            if (!isfinite(x->real[3 * n + k])) {
+                msh_fail(v->in.r, "point %lld: a coordinate is not finite", (long long)n);
+            }
+        }
+        input_add_node(&v->in, n, &x->real[3 * n]);
+    }
+}
+
+/* The type of gmsh of a type of VTK; 0: it is not read. Pixels and voxels become quadrangles and hexahedra,
+ * polygons and lines of many points what has so many. */
+static int find_type(int64_t number, int64_t count)
+{
+    static const int8_t types[] = {
+        [1] = 15,  [3] = 1,   [5] = 2,   [8] = 3,   [9] = 3,   [10] = 4,  [11] = 5,
+        [12] = 5,  [13] = 6,  [14] = 7,  [21] = 8,  [22] = 9,  [23] = 16, [24] = 11,
+        [25] = 17, [26] = 18, [27] = 19, [28] = 10, [29] = 12, [32] = 13};
+    int type = number >= 0 && number < (int64_t)sizeof types ? types[number] : 0;
+    type = number == 4 && count == 2   ? 1
+           : number == 7 && count == 3 ? 2
+           : number == 7 && count == 4 ? 3
+                                       : type;
+    return type != 0 && msh_type(type).node_count == count ? type : 0;
+}
+
+static void swap_nodes(int64_t *a, int64_t *b)
+{
+    int64_t kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t count, const int64_t nodes[])
+{
+    enum { PIXEL = 8, VOXEL = 11 };
+    int64_t node[27];
+    int type = find_type(number, count);
+    if (type == 0) {
+        msh_fail(
+            v->in.r,
+            "cell %lld: type %lld of VTK with %lld points is no element of first or second order that is "
+            "read: make simplices of them (ParaView's filter Tetrahedralize)",
+            (long long)c, (long long)number, (long long)count);
+        return;
+    }
+    memcpy(node, nodes, (size_t)count * sizeof *nodes);
+    if (number == PIXEL || number == VOXEL) {
+        swap_nodes(&node[2], &node[3]);
+    }
+    if (number == VOXEL) {
+        swap_nodes(&node[6], &node[7]);
+    }
+    input_reorder(type, node);
+    (void)input_add_element(&v->in, c, type, node, 0);
+}
+
+static void add_cells(struct vtk_input *v)
+{
+    struct msh_reader *r = v->in.r;
+    const struct vtk_array *connectivity = find_array(v, VTK_CONNECTIVITY, "connectivity", -1);
+    const struct vtk_array *end = find_array(v, VTK_OFFSETS, "offsets", v->cell_count);
+    const struct vtk_array *type = find_array(v, VTK_TYPES, "types", v->cell_count);
+    int64_t first = 0;
+    for (int64_t c = 0; r->status == STATUS_OK && c < v->cell_count; c++) {
+        if (end->whole[c] < first || end->whole[c] > connectivity->count) {
+            msh_fail(r, "cell %lld: its offset %lld is not within [%lld, %lld]", (long long)c,
+                     (long long)end->whole[c], (long long)first, (long long)connectivity->count);
+            return;
+        }
+        add_cell(v, c, type->whole[c], end->whole[c] - first, &connectivity->whole[first]);
+        first = end->whole[c];
+    }
+}
+
+/* ---- groups ---- */
+
+/* An array that numbers the cells tells no regions: all of more than a few values are different. */
+#define FEW_CELLS 10
+
+static bool is_numbering(struct vtk_input *v, const struct vtk_array *array)
+{
+    struct msh_reader *r = v->in.r;
+    SCRATCH int64_t *value = NULL;
+    MSH_NEW(r, &value, array->count);
+    if (r->status != STATUS_OK || array->count <= FEW_CELLS) {
+        return false;
+    }
+    memcpy(value, array->whole, (size_t)array->count * sizeof *value);
+    return sort_distinct(array->count, value) == array->count;
+}
+
+/* The array of the cells of that name, or NULL. */
+static const struct vtk_array *named_array(const struct vtk_input *v, const char *name)
+{
+    for (int64_t i = 0; i < v->count && name != NULL; i++) {
+        if (v->arrays[i].kind == VTK_OF_CELLS && strcmp(v->arrays[i].name, name) == 0) {
+            return &v->arrays[i];
+        }
+    }
+    return NULL;
+}
+
+/* The array that tells the regions, or NULL: the one that is asked for; ours; meshio's of a mesh of gmsh;
+ * else the only one. */
+static const struct vtk_array *find_regions(struct vtk_input *v)
+{
+    const char *asked = v->in.r->region_array;
+    const struct vtk_array *found = named_array(v, asked);
+    char names[256] = "";
+    int64_t count = 0;
+    if (asked != NULL && found == NULL) {
+        msh_fail(v->in.r, "the cells have no array '%s' of whole numbers", asked);
+    }
+    found = found != NULL ? found : named_array(v, "cells.region");
+    found = found != NULL ? found : named_array(v, "gmsh:physical");
+    if (found != NULL) {
+        return found;
+    }
+    for (int64_t i = 0; i < v->count; i++) {
+        const struct vtk_array *array = &v->arrays[i];
+        if (array->kind == VTK_OF_CELLS && !is_numbering(v, array)) {
+            text_append(names, sizeof names, "%s%s", count++ > 0 ? ", " : "", array->name);
+            found = array;
+        } else if (array->kind == VTK_OF_CELLS) {
+            input_leave_out(&v->in, array->name);
+        }
+    }
+    if (count > 1) {
+        msh_fail(
+            v->in.r,
+            "the cells have several arrays of whole numbers: --regions-of tells which has the regions: %s",
+            names);
+    }
+    return found;
+}
+
+/* The name of a region: what tovtk tells, else ARRAY_VALUE; other dimensions than that of the cells have
+ * theirs between. */
+static void name_region(const struct vtk_input *v, const struct vtk_array *array, int64_t value, int dim,
+                        int most, char name[], size_t size)
+{
+    snprintf(name, size, "%s_%s%s%lld", array->name, dim < most ? msh_entity_kind(dim) : "",
+             dim < most ? "_" : "", (long long)value);
+    for (int64_t i = 0; i < v->count && strcmp(array->name, "cells.region") == 0; i++) {
+        const struct vtk_array *field = &v->arrays[i];
+        if (field->kind == VTK_OF_FIELD && field->count == 1 && field->whole[0] == value) {
+            snprintf(name, size, "%s", field->name + strlen("region."));
+        }
+    }
+}
+
+/* Regions are named in ascending order of their values. */
+static void add_regions(struct vtk_input *v)
+{
+    struct msh_reader *r = v->in.r;
+    const struct vtk_array *array = find_regions(v);
+    SCRATCH int64_t *value = NULL, *key = NULL;
+    int most = 0;
+    if (array == NULL || r->status != STATUS_OK) {
+        return;
+    }
+    if (array->count != v->cell_count) {
+        msh_fail(r, "%s: %lld numbers, not one for each of %lld cells", array->name, (long long)array->count,
+                 (long long)v->cell_count);
+    }
+    MSH_NEW(r, &value, v->cell_count);
+    MSH_NEW(r, &key, 4 * v->cell_count);
+    if (r->status != STATUS_OK) {
+        return;
+    }
+    memcpy(value, array->whole, (size_t)v->cell_count * sizeof *value);
+    int64_t count = sort_distinct(v->cell_count, value);
+    bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
+    for (int64_t c = 0; c < v->cell_count; c++) {
+        int dim = msh_type(v->in.elements[c].type).dim;
+        most = dim > most ? dim : most;
+        key[4 * first_from(value, 0, count, array->whole[c]) + dim] = -1;
+    }
+    for (int64_t k = 0; k < 4 * count; k++) {
+        char name[256];
+        if (key[k] == 0 || (zero_is_none && value[k / 4] == 0)) {
+            key[k] = 0;
+            continue;
+        }
+        name_region(v, array, value[k / 4], (int)(k % 4), most, name, sizeof name);
+        key[k] = input_group(&v->in, (int)(k % 4), name);
+    }
+    for (int64_t c = 0; c < v->cell_count; c++) {
+        v->in.elements[c].key =
+            key[4 * first_from(value, 0, count, array->whole[c]) + msh_type(v->in.elements[c].type).dim];
+    }
+    input_note(&v->in, "the regions are those of the cells' array '%s'", array->name);
+}
+
+/* Node sets and facets of tovtk, 1 at their nodes. */
+static void add_sets(struct vtk_input *v)
+{
+    for (int64_t i = 0; v->in.r->status == STATUS_OK && i < v->count; i++) {
+        const struct vtk_array *array = &v->arrays[i];
+        if (array->kind != VTK_OF_POINTS || array->count != v->point_count) {
+            continue;
+        }
+        int64_t key = input_group(&v->in, 0, strchr(array->name, '.') + 1);
+        for (int64_t n = 0; v->in.r->status == STATUS_OK && n < v->point_count; n++) {
+            if (array->whole[n] != 0) {
+                (void)input_add_element(&v->in, INPUT_NO_TAG, POINT, &n, key);
+            }
+        }
+    }
+}
+
+void vtk_build(struct vtk_input *v)
+{
+    struct msh_reader *r = v->in.r;
+    input_at(r, "grid", 0);
+    add_nodes(v);
+    add_cells(v);
+    if (r->status == STATUS_OK) {
+        add_regions(v);
+    }
+    add_sets(v);
+    input_index(&v->in);
+    input_finish(&v->in);
+    for (int64_t i = 0; i < v->count; i++) {
+        FREE_ALL(v->arrays[i].real, v->arrays[i].whole);
+    }
+    free(v->arrays);
+    input_free(&v->in);
+}

@@ -1,0 +1,66 @@
+/* Unstructured grids of VTK: shared by vtk_read.c, vtu_read.c, vtu_data.c and vtk_input.c; private to lib/io.
+ * The readers fill a struct vtk_input, vtk_build makes nodes, elements and groups of it. */
+#pragma once
+
+#include "io/mesh/mesh_input.h"
+
+/* A type of numbers, by its names in VTU and in legacy files. */
+struct vtk_type {
+    const char *xml, *legacy;
+    int size; /* bytes */
+    bool is_whole, is_signed;
+};
+
+/* NULL if there is no type of that name. */
+const struct vtk_type *vtk_find_type(const char *name);
+
+/* What arrays are of. */
+enum vtk_kind {
+    VTK_OTHER,
+    VTK_POINTS,
+    VTK_CONNECTIVITY,
+    VTK_OFFSETS,
+    VTK_TYPES,
+    VTK_OF_CELLS,
+    VTK_OF_POINTS,
+    VTK_OF_FIELD
+};
+
+struct vtk_array {
+    enum vtk_kind kind;
+    char name[128];
+    int64_t components, count; /* count: of all its numbers */
+    double *real;              /* count; of points */
+    int64_t *whole;            /* count; of all else */
+};
+
+struct vtk_input {
+    struct mesh_input in;
+    int64_t point_count, cell_count;
+    int64_t count, room;
+    struct vtk_array *arrays;
+};
+
+/* Whether an array of that name, kind and type is of use: else its numbers need not be read. Where it may be
+ * missed, it is noted as left out. */
+bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type);
+
+/* Add an array of `count` numbers, zeros as yet; NULL after a failure. */
+struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, int64_t count);
+
+/* Fill an array from values as they lie in a file, of the other byte order or not; from words of text. */
+void vtk_fill_binary(struct vtk_array *array, const struct vtk_type *type, bool swap, const char *bytes);
+void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **at, const char *end);
+
+/* Where the bytes of an array of a VTU file begin, and how they lie there. */
+struct vtu_source {
+    const char *at, *end;
+    bool base64, swap, compressed;
+    int word; /* bytes of each number of the head: 4 or 8 */
+};
+
+/* The bytes of an array, uncompressed and out of base64, to be freed; NULL after a failure. (vtu_data.c) */
+char *vtu_bytes(struct msh_reader *r, const struct vtu_source *source, int64_t *size);
+
+/* Make the mesh; free the arrays. */
+void vtk_build(struct vtk_input *v);

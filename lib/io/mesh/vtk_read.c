@@ -1,0 +1,330 @@
+/* Legacy files of VTK, up to version 5.1, text and binary: unstructured grids. */
+#include "io/mesh/vtk_input.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+struct legacy {
+    struct vtk_input v;
+    bool binary;
+    enum vtk_kind data; /* of what the arrays are */
+    int64_t tuples;
+    char keyword[64];
+};
+
+/* The next line; false at the end. The rest of it is then between *at and *end. */
+static bool next_line(struct msh_reader *r, const char **at, const char **end)
+{
+    if (r->status != STATUS_OK || r->at == r->end) {
+        return false;
+    }
+    const char *newline = memchr(r->at, '\n', (size_t)(r->end - r->at));
+    *at = r->at;
+    *end = newline != NULL ? newline : r->end;
+    r->at = newline != NULL ? newline + 1 : r->end;
+    return true;
+}
+
+/* The next word of a line, copied; empty if there is none. */
+static void copy_word(const char **at, const char *end, char text[], size_t size)
+{
+    int64_t length;
+    const char *word = input_word(at, end, &length);
+    snprintf(text, size, "%.*s", word != NULL && length < (int64_t)size ? (int)length : 0,
+             word != NULL ? word : "");
+}
+
+/* The first word of the next line that has one; empty at the end. The rest of the line is then behind it. */
+static void first_word(struct msh_reader *r, const char **at, const char **end, char text[], size_t size)
+{
+    text[0] = '\0';
+    while (text[0] == '\0' && next_line(r, at, end)) {
+        copy_word(at, *end, text, size);
+    }
+}
+
+static int64_t next_count(struct msh_reader *r, const char **at, const char *end, int64_t least)
+{
+    int64_t length;
+    const char *word = input_word(at, end, &length);
+    return input_whole(r, "a count", word != NULL ? word : "", length, least, INT32_MAX);
+}
+
+static const struct vtk_type *next_type(struct msh_reader *r, const char **at, const char *end)
+{
+    char name[32];
+    copy_word(at, end, name, sizeof name);
+    const struct vtk_type *type = vtk_find_type(name);
+    if (type == NULL) {
+        msh_fail(r, "numbers of type '%s' are not read", name);
+    }
+    return type;
+}
+
+/* "%20" and the like stand for characters of names. */
+static void decode_name(char name[])
+{
+    char *to = name;
+    for (const char *from = name; *from != '\0'; to++) {
+        unsigned code = 0;
+        bool coded = from[0] == '%' && isxdigit((unsigned char)from[1]) && isxdigit((unsigned char)from[2]) &&
+                     sscanf(from + 1, "%2x", &code) == 1 && code != 0;
+        *to = *from;
+        if (coded) {
+            *to = (char)code;
+        }
+        from += coded ? 3 : 1;
+    }
+    *to = '\0';
+}
+
+/* ---- numbers ---- */
+
+/* Read `count` numbers into an array of the grid, or step over them. */
+static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *array,
+                                      const struct vtk_type *type, int64_t count)
+{
+    struct msh_reader *r = l->v.in.r;
+    struct vtk_array *added = NULL;
+    int64_t left = r->end - r->at, size = l->binary ? type->size : 2, length;
+    if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
+        msh_fail(r, "%lld numbers cannot be in the %lld bytes that are left", (long long)count,
+                 (long long)left);
+        return NULL;
+    }
+    if (vtk_is_wanted(&l->v, array, type)) {
+        added = vtk_add(&l->v, array, count);
+    }
+    if (l->binary) {
+        if (added != NULL) {
+            vtk_fill_binary(added, type, true, r->at);
+        }
+        r->at += count * size;
+        r->at += r->at < r->end && *r->at == '\n';
+    } else if (added != NULL) {
+        vtk_fill_text(r, added, &r->at, r->end);
+    } else {
+        for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+            if (input_word(&r->at, r->end, &length) == NULL) {
+                msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)count);
+            }
+        }
+    }
+    return r->status == STATUS_OK ? added : NULL;
+}
+
+/* A line "OFFSETS vtktypeint64", and the numbers. */
+static struct vtk_array *read_list(struct legacy *l, enum vtk_kind kind, const char *name, int64_t count)
+{
+    const char *at = "", *end = at;
+    char word[32];
+    struct vtk_array array = {.kind = kind, .components = 1};
+    first_word(l->v.in.r, &at, &end, word, sizeof word);
+    if (strcasecmp(word, name) != 0) {
+        msh_fail(l->v.in.r, "no %s: the file is truncated", name);
+    }
+    snprintf(array.name, sizeof array.name, "%s", name);
+    const struct vtk_type *type = l->v.in.r->status == STATUS_OK ? next_type(l->v.in.r, &at, end) : NULL;
+    return type != NULL ? read_numbers(l, &array, type, count) : NULL;
+}
+
+/* Cells of versions before 5: for each cell the number of its points, and these. In place. */
+static void split_cells(struct legacy *l)
+{
+    struct msh_reader *r = l->v.in.r;
+    struct vtk_array offsets = {.kind = VTK_OFFSETS, .components = 1, .name = "offsets"};
+    int64_t place = l->v.count - 1, from = 0, to = 0;
+    struct vtk_array *end = vtk_add(&l->v, &offsets, l->v.cell_count);
+    int64_t *list = end != NULL ? l->v.arrays[place].whole : NULL;
+    for (int64_t c = 0; r->status == STATUS_OK && c < l->v.cell_count; c++) {
+        int64_t left = l->v.arrays[place].count - from - 1, count = left >= 0 ? list[from++] : -1;
+        if (count < 0 || count > left) {
+            msh_fail(r, "cell %lld: more points than there are numbers", (long long)c);
+            return;
+        }
+        memmove(&list[to], &list[from], (size_t)count * sizeof *list);
+        from += count;
+        to += count;
+        end->whole[c] = to;
+    }
+    l->v.arrays[place].count = to;
+}
+
+static void read_cells(struct legacy *l, const char *at, const char *end)
+{
+    struct msh_reader *r = l->v.in.r;
+    int64_t count = next_count(r, &at, end, 0), size = next_count(r, &at, end, 0);
+    const char *next = r->at;
+    while (next < r->end && isspace((unsigned char)*next)) {
+        next++;
+    }
+    if (r->end - next > 7 && strncasecmp(next, "OFFSETS", 7) == 0) {
+        struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
+        if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
+            offsets->count--;
+            memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
+        }
+        l->v.cell_count = count > 0 ? count - 1 : 0;
+        (void)read_list(l, VTK_CONNECTIVITY, "CONNECTIVITY", size);
+        return;
+    }
+    l->v.cell_count = count;
+    struct vtk_array array = {.kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS"};
+    if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL && count <= size) {
+        split_cells(l);
+    }
+}
+
+/* ---- keywords ---- */
+
+static void read_array(struct legacy *l, const char *name, int64_t components, int64_t tuples,
+                       const struct vtk_type *type)
+{
+    struct vtk_array array = {.kind = l->data, .components = components};
+    int64_t count;
+    snprintf(array.name, sizeof array.name, "%s", name);
+    decode_name(array.name);
+    if (__builtin_mul_overflow(components, tuples, &count)) {
+        msh_fail(l->v.in.r, "%s: %lld tuples of %lld numbers are too many", name, (long long)tuples,
+                 (long long)components);
+    } else if (type != NULL) {
+        (void)read_numbers(l, &array, type, count);
+    }
+}
+
+static void read_field(struct legacy *l, const char *at, const char *end)
+{
+    struct msh_reader *r = l->v.in.r;
+    char name[128];
+    copy_word(&at, end, name, sizeof name);
+    int64_t count = next_count(r, &at, end, 0);
+    for (int64_t i = 0; i < count && next_line(r, &at, &end);) {
+        copy_word(&at, end, name, sizeof name);
+        if (strcasecmp(name, "METADATA") == 0) {
+            while (next_line(r, &at, &end) && end > at) {
+            }
+        } else if (name[0] != '\0') {
+            int64_t components = next_count(r, &at, end, 0), tuples = next_count(r, &at, end, 0);
+            read_array(l, name, components, tuples, next_type(r, &at, end));
+            i++;
+        }
+    }
+}
+
+/* Data sets of one array: "SCALARS name type", ... */
+static bool read_attribute(struct legacy *l, const char *at, const char *end)
+{
+    static const struct {
+        const char *keyword;
+        int components; /* 0: the line tells it, behind the type; -1: before it */
+    } attributes[] = {{"SCALARS", 0},    {"VECTORS", 3},      {"NORMALS", 3},
+                      {"TENSORS", 9},    {"TENSORS6", 6},     {"TEXTURE_COORDINATES", -1},
+                      {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"COLOR_SCALARS", -2}};
+    struct msh_reader *r = l->v.in.r;
+    char name[128];
+    for (size_t i = 0; i < sizeof attributes / sizeof *attributes; i++) {
+        if (strcasecmp(l->keyword, attributes[i].keyword) != 0) {
+            continue;
+        }
+        int64_t components = attributes[i].components;
+        copy_word(&at, end, name, sizeof name);
+        components = components < 0 ? next_count(r, &at, end, 1) : components;
+        const struct vtk_type *type = attributes[i].components == -2
+                                          ? vtk_find_type(l->binary ? "unsigned_char" : "float")
+                                          : next_type(r, &at, end);
+        while (at < end && isspace((unsigned char)*at)) {
+            at++;
+        }
+        components = components > 0 ? components : at < end ? next_count(r, &at, end, 1) : 1;
+        const char *table = r->at; /* the line LOOKUP_TABLE, which may be left out */
+        if (attributes[i].components == 0 && next_line(r, &at, &end)) {
+            copy_word(&at, end, l->keyword, sizeof l->keyword);
+            r->at = strcasecmp(l->keyword, "LOOKUP_TABLE") == 0 ? r->at : table;
+        }
+        read_array(l, name, components, l->tuples, type);
+        return true;
+    }
+    return false;
+}
+
+static void read_keyword(struct legacy *l, const char *at, const char *end)
+{
+    struct msh_reader *r = l->v.in.r;
+    const char *key = l->keyword;
+    if (strcasecmp(key, "POINTS") == 0) {
+        struct vtk_array array = {.kind = VTK_POINTS, .components = 3, .name = "points"};
+        l->v.point_count = next_count(r, &at, end, 0);
+        const struct vtk_type *type = next_type(r, &at, end);
+        if (type != NULL) {
+            (void)read_numbers(l, &array, type, 3 * l->v.point_count);
+        }
+    } else if (strcasecmp(key, "CELLS") == 0) {
+        read_cells(l, at, end);
+    } else if (strcasecmp(key, "CELL_TYPES") == 0) {
+        struct vtk_array array = {.kind = VTK_TYPES, .components = 1, .name = "types"};
+        (void)read_numbers(l, &array, vtk_find_type("int"), next_count(r, &at, end, 0));
+    } else if (strcasecmp(key, "CELL_DATA") == 0 || strcasecmp(key, "POINT_DATA") == 0) {
+        l->data = toupper((unsigned char)key[0]) == 'C' ? VTK_OF_CELLS : VTK_OF_POINTS;
+        l->tuples = next_count(r, &at, end, 0);
+    } else if (strcasecmp(key, "FIELD") == 0) {
+        read_field(l, at, end);
+    } else if (strcasecmp(key, "METADATA") == 0) {
+        while (next_line(r, &at, &end) && end > at) {
+        }
+    } else if (strcasecmp(key, "LOOKUP_TABLE") == 0) {
+        char name[64];
+        copy_word(&at, end, name, sizeof name);
+        enum vtk_kind data = l->data;
+        l->data = VTK_OTHER;
+        read_array(l, name, 4, next_count(r, &at, end, 0),
+                   vtk_find_type(l->binary ? "unsigned_char" : "float"));
+        l->data = data;
+    } else if (!read_attribute(l, at, end)) {
+        msh_fail(r, "what this is, is not known: the file is damaged, or of another kind");
+    }
+}
+
+/* The head: version, title, ASCII or BINARY, the kind of data. */
+static void read_head(struct legacy *l)
+{
+    struct msh_reader *r = l->v.in.r;
+    const char *at = "", *end = at;
+    char word[64];
+    (void)next_line(r, &at, &end);
+    (void)next_line(r, &at, &end);
+    first_word(r, &at, &end, word, sizeof word);
+    l->binary = strcasecmp(word, "BINARY") == 0;
+    if (!l->binary && strcasecmp(word, "ASCII") != 0) {
+        msh_fail(r, "the third line is neither ASCII nor BINARY");
+    }
+    first_word(r, &at, &end, word, sizeof word);
+    if (strcasecmp(word, "FIELD") == 0) {
+        read_field(l, at, end);
+        first_word(r, &at, &end, word, sizeof word);
+    }
+    if (strcasecmp(word, "DATASET") == 0) {
+        copy_word(&at, end, word, sizeof word);
+    }
+    if (strcasecmp(word, "UNSTRUCTURED_GRID") != 0) {
+        msh_fail(r, "'%s' is no UNSTRUCTURED_GRID: ParaView's filter Append Datasets makes one of it", word);
+    }
+}
+
+void vtk_read(struct msh_reader *r)
+{
+    struct legacy l = {.v = {.in = {.r = r}}, .data = VTK_OF_FIELD};
+    const char *at, *end;
+    input_at(r, "head", 0);
+    read_head(&l);
+    r->section = l.keyword;
+    for (;;) {
+        first_word(r, &at, &end, l.keyword, sizeof l.keyword);
+        if (l.keyword[0] == '\0') {
+            break;
+        }
+        read_keyword(&l, at, end);
+    }
+    vtk_build(&l.v);
+}

@@ -1,0 +1,234 @@
+/* Files of VTK in XML: unstructured grids, with data as text, in base64, or appended. */
+#include "io/mesh/vtk_input.h"
+#include "io/mesh/xml.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An array whose data are appended. */
+struct appended {
+    struct vtk_array array;
+    const struct vtk_type *type;
+    int64_t offset, expected;
+};
+
+struct vtu {
+    struct vtk_input v;
+    char section[64]; /* "CellData" */
+    int pieces;
+    bool swap, compressed;
+    int word; /* bytes of the numbers of heads */
+    /* the array at hand */
+    struct vtk_array array;
+    const struct vtk_type *type; /* NULL: it is not read */
+    char format[16];
+    int64_t offset, expected; /* numbers, -1: as many as there are */
+    int64_t appended_count, appended_room;
+    struct appended *appended;
+};
+
+static int64_t number_of(struct vtu *u, const char **attributes, const char *name, int64_t otherwise)
+{
+    const char *value = xml_attribute(attributes, name);
+    return value != NULL ? input_whole(u->v.in.r, name, value, (int64_t)strlen(value), 0, INT32_MAX)
+                         : otherwise;
+}
+
+static bool equals(const char *value, const char *wanted)
+{
+    return value != NULL && strcmp(value, wanted) == 0;
+}
+
+/* ---- elements ---- */
+
+static void begin_file(struct vtu *u, const char **attributes)
+{
+    struct msh_reader *r = u->v.in.r;
+    const char *type = xml_attribute(attributes, "type"),
+               *compressor = xml_attribute(attributes, "compressor");
+    if (!equals(type, "UnstructuredGrid")) {
+        msh_fail(
+            r, "type '%s': only UnstructuredGrid is read: ParaView's filter Append Datasets makes one of it",
+            type != NULL ? type : "");
+    }
+    if (compressor != NULL && compressor[0] != '\0' && strcmp(compressor, "vtkZLibDataCompressor") != 0) {
+        msh_fail(r, "compressor %s: only zlib is read: save it so, or uncompressed", compressor);
+    }
+    u->compressed = compressor != NULL && compressor[0] != '\0';
+    u->swap = equals(xml_attribute(attributes, "byte_order"), "BigEndian");
+    u->word = equals(xml_attribute(attributes, "header_type"), "UInt64") ? 8 : 4;
+}
+
+/* What an array of that name in this section is of, and how many numbers it has to have. */
+static void find_kind(struct vtu *u, const char **attributes)
+{
+    static const struct {
+        const char *section, *name;
+        enum vtk_kind kind;
+    } kinds[] = {{"Points", NULL, VTK_POINTS},      {"Cells", "connectivity", VTK_CONNECTIVITY},
+                 {"Cells", "offsets", VTK_OFFSETS}, {"Cells", "types", VTK_TYPES},
+                 {"CellData", NULL, VTK_OF_CELLS},  {"PointData", NULL, VTK_OF_POINTS},
+                 {"FieldData", NULL, VTK_OF_FIELD}};
+    int64_t points = u->v.point_count * u->array.components, cells = u->v.cell_count * u->array.components;
+    const int64_t expected[] = {-1,
+                                points,
+                                -1,
+                                u->v.cell_count,
+                                u->v.cell_count,
+                                cells,
+                                points,
+                                u->array.components * number_of(u, attributes, "NumberOfTuples", 1)};
+    u->array.kind = VTK_OTHER;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (strcmp(u->section, kinds[i].section) == 0 &&
+            (kinds[i].name == NULL || strcmp(u->array.name, kinds[i].name) == 0)) {
+            u->array.kind = kinds[i].kind;
+        }
+    }
+    u->expected = expected[u->array.kind];
+}
+
+static void begin_array(struct vtu *u, const char **attributes)
+{
+    struct msh_reader *r = u->v.in.r;
+    const char *name = xml_attribute(attributes, "Name"), *type = xml_attribute(attributes, "type"),
+               *format = xml_attribute(attributes, "format");
+    snprintf(u->array.name, sizeof u->array.name, "%s", name != NULL ? name : u->section);
+    snprintf(u->format, sizeof u->format, "%s", format != NULL ? format : "ascii");
+    u->array.components = number_of(u, attributes, "NumberOfComponents", 1);
+    u->array.components += u->array.components == 0;
+    find_kind(u, attributes);
+    u->offset = number_of(u, attributes, "offset", 0);
+    u->type = vtk_find_type(type != NULL ? type : "");
+    if (u->type == NULL && u->array.kind >= VTK_POINTS && u->array.kind <= VTK_TYPES) {
+        msh_fail(r, "%s: numbers of type '%s' are not read", u->array.name, type != NULL ? type : "");
+    } else if (u->array.kind == VTK_POINTS && u->array.components != 3) {
+        msh_fail(r, "points of %lld coordinates, not 3", (long long)u->array.components);
+    } else if (u->type != NULL && (u->array.kind == VTK_OTHER || !vtk_is_wanted(&u->v, &u->array, u->type))) {
+        u->type = NULL;
+    }
+}
+
+static void begin(void *context, const char *name, const char **attributes, int depth)
+{
+    struct vtu *u = context;
+    struct msh_reader *r = u->v.in.r;
+    if (depth == 0) {
+        begin_file(u, attributes);
+    } else if (strcmp(name, "DataArray") == 0) {
+        begin_array(u, attributes);
+    } else if (strcmp(name, "Piece") == 0) {
+        if (u->pieces++ > 0) {
+            msh_fail(r, "several pieces: make them one (ParaView's filter Merge Blocks)");
+        }
+        u->v.point_count = number_of(u, attributes, "NumberOfPoints", 0);
+        u->v.cell_count = number_of(u, attributes, "NumberOfCells", 0);
+    } else if (depth == 2 || depth == 3) {
+        snprintf(u->section, sizeof u->section, "%s", name);
+    }
+}
+
+/* ---- data ---- */
+
+/* Read the array at hand from the bytes of its source. */
+static void read_binary(struct vtu *u, const struct vtu_source *source)
+{
+    struct msh_reader *r = u->v.in.r;
+    int64_t size;
+    SCRATCH char *bytes = vtu_bytes(r, source, &size);
+    if (bytes == NULL) {
+        return;
+    }
+    int64_t count = u->expected < 0 ? size / u->type->size : u->expected;
+    if (count > size / u->type->size || count * u->type->size != size) {
+        msh_fail(r, "%s: %lld bytes, not %lld numbers of %d", u->array.name, (long long)size,
+                 (long long)count, u->type->size);
+    }
+    struct vtk_array *array = vtk_add(&u->v, &u->array, count);
+    if (array != NULL) {
+        vtk_fill_binary(array, u->type, u->swap, bytes);
+    }
+}
+
+static void read_text(struct vtu *u, const char *text, const char *end)
+{
+    struct msh_reader *r = u->v.in.r;
+    const char *at = text;
+    int64_t length, count = 0;
+    while (input_word(&at, end, &length) != NULL) {
+        count++;
+    }
+    if (u->expected >= 0 && count != u->expected) {
+        msh_fail(r, "%s: %lld numbers, not %lld", u->array.name, (long long)count, (long long)u->expected);
+    }
+    struct vtk_array *array = vtk_add(&u->v, &u->array, count);
+    if (array != NULL) {
+        vtk_fill_text(r, array, &text, end);
+    }
+}
+
+static void end(void *context, const char *name, const char *text, int64_t size, int depth)
+{
+    struct vtu *u = context;
+    struct msh_reader *r = u->v.in.r;
+    (void)depth;
+    if (strcmp(name, "DataArray") != 0 || u->type == NULL) {
+        return;
+    }
+    if (strcmp(u->format, "ascii") == 0) {
+        read_text(u, text, text + size);
+    } else if (strcmp(u->format, "binary") == 0) {
+        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word});
+    } else if (strcmp(u->format, "appended") == 0) {
+        MSH_GROW(r, &u->appended, u->appended_count + 1, &u->appended_room);
+        if (r->status == STATUS_OK) {
+            u->appended[u->appended_count++] = (struct appended){u->array, u->type, u->offset, u->expected};
+        }
+    } else {
+        msh_fail(r, "%s: format '%s' is none of ascii, binary, appended", u->array.name, u->format);
+    }
+    u->type = NULL;
+}
+
+/* Read the appended data: behind the tag, which may be followed by blanks, and '_'. */
+static void read_appended(struct vtu *u)
+{
+    struct msh_reader *r = u->v.in.r;
+    const char *tag = r->at, *close = tag < r->end ? memchr(tag, '>', (size_t)(r->end - tag)) : NULL;
+    const char *data = close != NULL ? close + 1 : r->end;
+    while (data < r->end && isspace((unsigned char)*data)) {
+        data++;
+    }
+    input_at(r, "AppendedData", 0);
+    if (data == r->end || *data != '_') {
+        msh_fail(r, "it is missing, or does not begin with '_': the file is truncated");
+    }
+    bool base64 = r->status == STATUS_OK && memmem(tag, (size_t)(close - tag), "base64", 6) != NULL;
+    for (int64_t i = 0; r->status == STATUS_OK && i < u->appended_count; i++) {
+        u->array = u->appended[i].array;
+        u->type = u->appended[i].type;
+        u->expected = u->appended[i].expected;
+        if (u->appended[i].offset > r->end - data - 1) {
+            msh_fail(r, "%s: its offset %lld is behind the end of the file: it is truncated", u->array.name,
+                     (long long)u->appended[i].offset);
+            break;
+        }
+        read_binary(u, &(struct vtu_source){data + 1 + u->appended[i].offset, r->end, base64, u->swap,
+                                            u->compressed, u->word});
+    }
+}
+
+void vtu_read(struct msh_reader *r)
+{
+    struct vtu u = {.v = {.in = {.r = r}}};
+    const struct xml_handler handler = {&u, begin, end};
+    r->section = u.section;
+    xml_parse(r, "AppendedData", &handler);
+    if (r->status == STATUS_OK && u.appended_count > 0) {
+        read_appended(&u);
+    }
+    vtk_build(&u.v);
+    free(u.appended);
+}

@@ -1,0 +1,2 @@
+/* Fuzz target: files of VTK, in XML and legacy. */
+#include "mesh.h"
