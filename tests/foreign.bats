@@ -30,7 +30,9 @@ faulty() {
     [ "$(names "$corpus/inp/part")" = "Set-1 edge Set-1" ]
     [ "$(mts print facets body.mts)" = "1 2" ]
     [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 3" ]
-    [ "$(names --midside use "$corpus/inp/second")" = "a s" ]
+    [ "$(names "$corpus/inp/second")" = "a s n" ]
+    run ! grep "no cell" said # but a midside node
+    [ "$(names --midside use "$corpus/inp/second")" = "a s n" ]
     [ "$(mts print facets body.mts | wc -l)" -eq 8 ]
     names - < "$corpus/inp/solid" | grep -q Low
 }
@@ -43,6 +45,7 @@ solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6/|*ELEMENT: line 18: element 7 ends after 3 of 
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 9, 1/|*ELEMENT: line 17: element 7 has more than 4 nodes
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 8/|element 7 names the node 8, which is not in the file
 solid|s/type=C3D4/type=C3D7/|TYPE=C3D7: no element that is read
+solid|s/type=C3D4/type=SPRINGA/|TYPE=SPRINGA: no element that is read
 solid|s/^base, 9/base, 8/|sets: line 28: there is no node 8
 solid|s/^base, 9/bass, 9/|sets: line 28: there is no set 'bass'
 solid|s/^Low, S3/Low, S6/|sets: line 30: a prism has no face 'S6'
@@ -154,7 +157,8 @@ SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1,
 Mesh.MeshSizeMax = 0.5; Physical Volume("left", 3) = {1}; Physical Volume("right", 7) = {2}; Physical Surface("end", 5) = {1};
 END
     gmsh -v 1 -3 two.geo -order 2 -o two.msh
-    /usr/bin/python3 -c 'import meshio as m; a = m.read("two.msh"); a.write("two.vtu"); a.write("two.vtk")' 2> said
+    /usr/bin/python3 -c 'import meshio as m; a = m.read("two.msh"); a.write("two.vtu"); a.write("two.vtk")
+m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [[*range(len(a.cells_dict["tetra10"]))]]}).write("numbered.vtu")' 2> said
     nodes -u m --midside use two.msh > two.mts
     for file in two.vtu two.vtk; do
         [ "$(names --midside use $file)" = "gmsh_physical_3,gmsh_physical_7 gmsh_physical_surface_5" ]
@@ -165,7 +169,8 @@ END
     sed 's/gmsh:physical/one/; s/gmsh:geometrical/other/' two.vtu > unknown.vtu
     refused 2 "several arrays of whole numbers: --regions-of tells which has the regions: one, other" nodes -u m unknown.vtu
     refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
-    # one cell of each type, of volume 1 but for tetrahedra (1/6) and pyramids (1/3)
+    [ "$(names numbered.vtu)" = body ]
+    # one cell of each type, each of volume 1
     [ "$(names "$corpus/vtk/types.vtk")" = "a_b_-1,a_b_2" ]
     nodes -u m -v "$corpus/vtk/types.vtk" > body.mts 2> said
     grep -q "volume 5 m3" said

@@ -160,9 +160,9 @@ static int find_type(const char *name, bool *is_shell)
     static const struct {
         const char *begin;
         int dim;
-    } kinds[] = {{"C3D", 3}, {"DC3D", 3}, {"AC3D", 3},  {"CPS", 2}, {"CPE", 2},  {"CPEG", 2},
-                 {"S", 2},   {"M3D", 2},  {"SFM3D", 2}, {"R3D", 2}, {"STRI", 2}, {"DC2D", 2},
-                 {"DS", 2},  {"AC2D", 2}, {"T3D", 1},   {"T2D", 1}, {"R2D", 1},  {"F3D", 2}};
+    } kinds[] = {{"C3D", 3},  {"SC", 3},  {"DC3D", 3},  {"AC3D", 3}, {"CPS", 2},  {"CPE", 2},  {"CPEG", 2},
+                 {"S", 2},    {"M3D", 2}, {"SFM3D", 2}, {"R3D", 2},  {"STRI", 2}, {"DC2D", 2}, {"DS", 2},
+                 {"AC2D", 2}, {"T3D", 1}, {"T2D", 1},   {"R2D", 1},  {"F3D", 3}};
     size_t begin = strcspn(name, "0123456789");
     begin += begin > 0 && name[begin] != '\0' && strchr("32", name[begin]) != NULL && name[begin + 1] == 'D'
                  ? 2

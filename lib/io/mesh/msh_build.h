@@ -8,7 +8,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum mesh_role { MESH_UNUSED, MESH_MIDSIDE, MESH_CORNER }; /* a corner of any element is a corner */
+enum mesh_role {
+    MESH_UNUSED,
+    MESH_MIDSIDE,
+    MESH_CORNER
+}; /* a corner of any element but a point is a corner */
 
 struct mesh_draft {
     struct mesh *mesh;

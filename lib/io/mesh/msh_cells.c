@@ -24,9 +24,9 @@ enum status mesh_find_roles(struct mesh_draft *draft)
         }
         for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
             int8_t *role = &draft->role[msh->node_idx[k]];
-            if (k < corners) {
+            if (k < corners && type.dim > 0) {
                 *role = MESH_CORNER;
-            } else if (*role == MESH_UNUSED) {
+            } else if (k >= corners && *role == MESH_UNUSED) {
                 *role = MESH_MIDSIDE;
             }
         }

@@ -166,8 +166,9 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
         int64_t e = g->group_idx[i];
         int used = mesh_used_nodes(g->draft, e);
         for (int k = 0; k < used; k++) {
-            int32_t node = g->draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
-            lost += node < 0;
+            int32_t of_file = msh->node_idx[msh->node_ptr[e] + k];
+            int32_t node = g->draft->node_of[of_file];
+            lost += node < 0 && g->draft->role[of_file] != MESH_MIDSIDE;
             RETURN_IF_ERROR(add_set_node(g, group, node));
         }
     }

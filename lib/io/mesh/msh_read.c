@@ -8,7 +8,7 @@
 
 /* Number of bytes that identify a mesh of gmsh, and any. */
 #define MAGIC_SIZE 12
-#define HEAD_SIZE 4096
+#define HEAD_SIZE 65536
 
 /* ---- what the file is ---- */
 
