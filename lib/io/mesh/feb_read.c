@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* gmsh's number of a point. */
-#define POINT 15
-
 /* What an element of the mesh holds. */
 enum content { OTHERS, NODES, ELEMENTS, SURFACE, EDGE, NODE_SET };
 
@@ -167,7 +164,7 @@ static void add_list(struct feb *f, const char *text, const char *end)
     const char *word;
     while (f->in.r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
         int64_t node = input_whole(f->in.r, "node", word, length, 1, MSH_LARGEST_TAG);
-        (void)input_add_element(&f->in, INPUT_NO_TAG, POINT, &node, input_group(&f->in, 0, f->name));
+        (void)input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
     }
 }
 
@@ -188,7 +185,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (f->content == NODES) {
         add_node(f, text, text + size);
     } else if (f->content == NODE_SET) {
-        (void)input_add_element(&f->in, INPUT_NO_TAG, POINT, &f->id, input_group(&f->in, 0, f->name));
+        (void)input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &f->id, input_group(&f->in, 0, f->name));
     } else {
         add_element(f, text, text + size);
     }

@@ -12,9 +12,6 @@
 /* Members of all sets together, and elements of all groups, may be so many for each byte of the deck. */
 #define MOST_PER_BYTE 4
 
-/* gmsh's number of a point. */
-#define POINT 15
-
 /* ---- members ---- */
 
 /* What is done with each member of an item, its place among nodes or elements. */
@@ -103,6 +100,18 @@ static void add_member(struct inp *p, const struct inp_item *item, int64_t place
     if (set->kind == 'E' && (item->how == INP_PLACES || !set->of_surface)) {
         p->overlaid += p->region[place] != NULL && p->region[place] != set;
         p->region[place] = set;
+    }
+}
+
+/* Add the nodes of an element. */
+static void add_corners(struct inp *p, const struct inp_item *item, int64_t place)
+{
+    const struct input_element *element = &p->in.elements[place];
+    for (int k = 0; k < msh_type(element->type).node_count; k++) {
+        int64_t node = msh_index_find(&p->in.r->nodes, p->in.corners[element->first + k]);
+        if (node >= 0) { /* else found in the end */
+            add_member(p, item, node);
+        }
     }
 }
 
@@ -241,7 +250,7 @@ static void join_nodes(struct inp *p)
         }
         (void)group_of(p, p->sets[s], 0);
         for (int64_t m = p->sets[s]->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
-            add_to_group(p, p->sets[s], POINT, &p->in.nodes[p->members[m].place].tag);
+            add_to_group(p, p->sets[s], INPUT_POINT, &p->in.nodes[p->members[m].place].tag);
         }
     }
 }
@@ -254,7 +263,8 @@ void inp_join_sets(struct inp *p)
     for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {
         const struct inp_item *item = &p->items[i];
         if (item->set != NULL && item->set->kind != 'S') {
-            each_member(p, item, item->set->kind, add_member);
+            bool of_elements = item->set->kind == 'N' && item->how == INP_SET && item->members->kind == 'E';
+            each_member(p, item, item->set->kind, of_elements ? add_corners : add_member);
         }
     }
     for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {

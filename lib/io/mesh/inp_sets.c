@@ -121,13 +121,15 @@ void inp_read_set(struct inp *p, char kind)
     int64_t length;
     (void)inp_parameter(p, kind == 'N' ? "NSET" : "ELSET", name, sizeof name);
     struct inp_item item = {.set = find_set(p, kind, name, strlen(name))};
-    if (kind == 'N' && inp_parameter(p, "ELSET", value, sizeof value)) {
-        msh_fail(p->in.r, "the nodes of a set of elements are not read: list them");
-    }
     if (item.set == NULL) {
         return;
     }
     item.set->is_defined = true;
+    if (kind == 'N' && inp_parameter(p, "ELSET", value, sizeof value)) { /* the nodes of its elements */
+        item.how = INP_SET;
+        item.members = find_set(p, 'E', value, strlen(value));
+        add_item(p, &item);
+    }
     if (inp_parameter(p, "GENERATE", value, sizeof value)) {
         read_ranges(p, &item);
         return;

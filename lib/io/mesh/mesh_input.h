@@ -29,6 +29,9 @@ struct mesh_input {
 
 #define INPUT_NO_TAG (-1)
 
+/* gmsh's number of a point. */
+#define INPUT_POINT 15
+
 /* Say where the reader is, for messages: "*NODE: line 12: ..." */
 static inline void input_at(struct msh_reader *r, const char *section, int64_t line)
 {

@@ -155,5 +155,5 @@ int64_t msh_index_find(const struct msh_index *index, int64_t tag);
 
 /* ---- msh_foreign.c ---- */
 
-/* A hint how to convert a file of another program, from its first bytes: ": a VTK file: ...", or "". */
+/* A hint how to convert a file of another program, from its first bytes: ": a MEDIT mesh: ...", or "". */
 const char *msh_foreign_hint(const char *bytes, size_t size);

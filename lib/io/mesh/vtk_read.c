@@ -152,26 +152,32 @@ static void split_cells(struct legacy *l)
     l->v.arrays[place].count = to;
 }
 
+/* Lists of version 5: where the points of each cell begin, with one more, and all points. */
+static void read_lists(struct legacy *l, int64_t count, int64_t size)
+{
+    struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
+    if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
+        offsets->count--;
+        memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
+    }
+    l->v.cell_count = count > 0 ? count - 1 : 0;
+    (void)read_list(l, VTK_CONNECTIVITY, "CONNECTIVITY", size);
+}
+
 static void read_cells(struct legacy *l, const char *at, const char *end)
 {
     struct msh_reader *r = l->v.in.r;
+    struct vtk_array array = {.kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS"};
     int64_t count = next_count(r, &at, end, 0), size = next_count(r, &at, end, 0);
     const char *next = r->at;
     while (next < r->end && isspace((unsigned char)*next)) {
         next++;
     }
     if (r->end - next > 7 && strncasecmp(next, "OFFSETS", 7) == 0) {
-        struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
-        if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
-            offsets->count--;
-            memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
-        }
-        l->v.cell_count = count > 0 ? count - 1 : 0;
-        (void)read_list(l, VTK_CONNECTIVITY, "CONNECTIVITY", size);
+        read_lists(l, count, size);
         return;
     }
     l->v.cell_count = count;
-    struct vtk_array array = {.kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS"};
     if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL && count <= size) {
         split_cells(l);
     }
