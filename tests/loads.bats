@@ -209,6 +209,18 @@ immersed() {
     near max 2e-5
 }
 
+@test "a uniform pressure of six shear moduli: the closed form" {
+    cloud -d 3 -k jittered --jitter 0.2 -n 5 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
+    block quasi-static | sed 's/dim = 2/dim = 3/; s/^nu = .*/nu = 0.499/' > head
+    { cat head; printf '[pressure all]\nfacets = *\nvalue = 6004.002668\n[displacement pins]\npoints = pins.tsv\nunit = m\n'; } > deep.scene
+    printf '%s\n' '0.05 0.05 0.05 0 0 0' '0.07 0.05 0.05 nan 0 0' '0.05 0.07 0.05 nan nan 0' > pins.tsv
+    mtled -q deep.scene cube.mts > u.dat
+    # p = 6 mu, J = 1 - p / kappa.
+    paste -d ' ' <(rows nodes.x u.dat) <(rows u u.dat) | awk 'BEGIN { s = (1 - 6004.002668 / 500000)^(1 / 3) - 1 }
+        { for (a = 1; a <= 3; a++) { d = $(a + 3) - s * ($a - 0.05); worst = d * d > worst ? d * d : worst } }
+        END { print sqrt(worst) / (0.05 * -s); exit !(NR == 125 && worst < (1e-4 * 0.05 * s)^2) }'
+}
+
 @test "groups that are not there, surfaces that are none: the line of the section" {
     mv held.scene block.scene
     { cat block.scene; printf '%b\n' '[traction a]\nfacets = ymax\ncomponents = 0, 1\ncurve = smooth' '[pressure b]\nfacets = xmax\nvalue = 1\ncurve = smooth' \

@@ -175,8 +175,40 @@ static double pressure_at(const struct solid_system *system, const struct pressu
     return presses ? depth : 0.0;
 }
 
-/* Forces of a following pressure. The force on a deformed facet is divided among its quadrature points in
- * proportion to their areas at rest. */
+/* Add to the forces on the corners of a deformed facet what the volume within the boundary, sum V J with (9),
+ * varies by as the area vector turns and grows: the mean offset of the face from its corners times the change
+ * of the area vector. x: the corners; thrust: the mean pressure times that offset, N/m (2D: Pa m). */
+static void add_offset_force(const struct solid_system *system, const struct pressure_load *load, int64_t f,
+                             const double *x, const double *thrust, double *residual)
+{
+    int dim = system->dim;
+    double edge[2][3], force[3][3];
+    for (int k = 1; k < dim; k++) {
+        vector_subtract(dim, x + k * dim, x, edge[k - 1]);
+    }
+    if (dim == 2) { /* the area vector is (y, -x) of the edge */
+        force[1][0] = -thrust[1];
+        force[1][1] = thrust[0];
+    } else { /* half the product of the edges */
+        vector_cross(edge[1], thrust, force[1]);
+        vector_cross(thrust, edge[0], force[2]);
+    }
+    for (int a = 0; a < dim; a++) {
+        force[0][a] = 0.0;
+        for (int k = 1; k < dim; k++) {
+            force[k][a] *= dim == 2 ? 1.0 : 0.5;
+            force[0][a] -= force[k][a];
+        }
+    }
+    for (int k = 0; k < dim; k++) {
+        struct average average = average_of_boundary(&load->corners, load->corner[f * dim + k]);
+        average_spread(&average, dim, force[k], residual);
+    }
+}
+
+/* Forces of a following pressure: its mean over a facet times the gradient of the volume within the boundary.
+ * The part by the mean of the face is divided among its quadrature points in proportion to their areas at
+ * rest. */
 static void add_pressure(const struct solid_system *system, const struct pressure_load *load, double factor,
                          const double *u, double *residual)
 {
@@ -184,22 +216,31 @@ static void add_pressure(const struct solid_system *system, const struct pressur
     static const int32_t in_order[3] = {0, 1, 2};
     int64_t each = load->points.count / (load->facet_count > 0 ? load->facet_count : 1);
     for (int64_t f = 0; f < load->facet_count; f++) {
-        double x[9], area[3], at_rest = 0.0;
+        double x[9], area[3], thrust[3] = {0.0}, mean[3] = {0.0}, at_rest = 0.0, whole = 0.0;
         for (int k = 0; k < dim; k++) {
+            const int32_t *node = load->facet + f * dim;
             corner_position(system, &load->corners, load->corner[f * dim + k], u, x + k * dim);
+            add_scaled(dim, -1.0 / dim, x + k * dim, mean);
+            add_scaled(dim, 1.0 / dim, system->X + (int64_t)node[k] * dim, mean);
         }
         face_area_vector(dim, x, in_order, area);
         for (int64_t p = f * each; p < (f + 1) * each; p++) {
             at_rest += load->points.area[p];
         }
         for (int64_t p = f * each; p < (f + 1) * each; p++) {
-            double share[3], pressure = factor * pressure_at(system, load, p, u);
-            for (int a = 0; a < dim; a++) {
-                share[a] = -pressure * area[a] * load->points.area[p] / at_rest;
-            }
             struct average average = average_of_boundary(&load->points, p);
+            double value[3], share[3], part = load->points.area[p] / at_rest;
+            double pressure = factor * part * pressure_at(system, load, p, u);
+            average_take(&average, dim, u, value);
+            add_scaled(dim, part, value, mean);
+            whole += pressure;
+            for (int a = 0; a < dim; a++) {
+                share[a] = -pressure * area[a];
+            }
             average_spread(&average, dim, share, residual);
         }
+        add_scaled(dim, -whole, mean, thrust);
+        add_offset_force(system, load, f, x, thrust, residual);
     }
 }
 
