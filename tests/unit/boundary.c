@@ -113,42 +113,6 @@ TEST_IN_EACH_DIM(averages_split_at_corners)
     }
 }
 
-/* A side alone has one boundary average for each of its nodes, and that is the part of it in the whole
- * boundary. */
-TEST_IN_EACH_DIM(sides)
-{
-    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
-    FREED_BY(boundary_averages_free)
-    struct boundary_averages whole = averages_of(&sample, all_facets(&sample));
-    int64_t matched = 0;
-    for (int side = 0; side < 2 * dim; side++) {
-        FREED_BY(boundary_averages_free)
-        struct boundary_averages averages = averages_of(&sample, facets_of_side(&sample, side));
-        double area = 0.0;
-        check_averages(&sample, &averages);
-        assert_int_equal(averages.count, dim == 2 ? 4 : 16);
-        for (int64_t a = 0; a < averages.count; a++) {
-            NEAR_TO(averages.normal[a * dim + side / 2], side % 2 ? 1.0 : -1.0, 1e-15);
-            area += averages.area[a];
-            for (int64_t b = 0; b < whole.count; b++) {
-                if (whole.node[b] != averages.node[a] ||
-                    fabs(whole.normal[b * dim + side / 2] - averages.normal[a * dim + side / 2]) > 0.5) {
-                    continue;
-                }
-                int64_t length = averages.ptr[a + 1] - averages.ptr[a];
-                matched++;
-                assert_int_equal(whole.ptr[b + 1] - whole.ptr[b], length);
-                for (int64_t i = 0; i < length; i++) {
-                    assert_int_equal(whole.idx[whole.ptr[b] + i], averages.idx[averages.ptr[a] + i]);
-                    NEAR_TO(whole.phi[whole.ptr[b] + i], averages.phi[averages.ptr[a] + i], 1e-15);
-                }
-            }
-        }
-        NEAR_TO(area, pow(sample_size, dim - 1), 1e-15);
-    }
-    assert_int_equal(matched, whole.count);
-}
-
 /* The mean gradient of any field over the body is its boundary's: for every node j,
  * sum_cells V dphi_j = sum_averages A Phi_j n, to round-off, since cells and boundary averages share their
  * quadrature. */
@@ -503,11 +467,6 @@ TEST_IN_EACH_DIM(faults)
         inner++;
     }
     memcpy(facets + dim, sample.assembly.faces.node + inner * dim, (size_t)dim * sizeof *facets);
-    FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
-               "facets: row 1 of the set is no boundary face of the cells");
-    boundary_averages_free(&averages);
-    /* Nodes that are no face at all, and none that exist. */
-    facets[dim] = facets[dim + 1] = facets[0];
     FAILS_WITH(boundary_averages_build(&table, &set, &averages, &error), STATUS_INPUT,
                "facets: row 1 of the set is no boundary face of the cells");
     boundary_averages_free(&averages);

@@ -36,25 +36,12 @@ static void add_cell(struct shape *shape, const int32_t *node)
  */
 static void add_quadrangle(struct shape *shape, const int32_t corner[4], int64_t layer)
 {
-    static const int triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
     for (int t = 0; t < 2; t++) {
-        int32_t a = corner[triangles[t][0]], b = corner[triangles[t][1]], c = corner[triangles[t][2]];
-        int32_t up = (int32_t)layer;
-        if (shape->dim == 2) {
-            add_cell(shape, (int32_t[]){a, b, c});
-            continue;
-        }
         /* Prisms split alike on both sides of what they share: by ascending nodes. */
-        int32_t low = a < b ? a : b, high = a < b ? b : a, middle = c;
-        if (middle < low) {
-            int32_t kept = low;
-            low = middle;
-            middle = kept;
-        }
-        if (middle > high) {
-            int32_t kept = high;
-            high = middle;
-            middle = kept;
+        int32_t low = corner[0], middle = corner[1 + t], high = corner[3], up = (int32_t)layer;
+        if (shape->dim == 2) {
+            add_cell(shape, (int32_t[]){low, middle, high});
+            continue;
         }
         add_cell(shape, (int32_t[]){low, middle, high, high + up});
         add_cell(shape, (int32_t[]){low, middle, middle + up, high + up});
@@ -109,7 +96,7 @@ static void make_grid(struct shape *shape, int dim, int n, int m)
     for (int32_t j = 0; j < m; j++) {
         for (int32_t i = 0; i < n; i++) {
             int32_t a = j * (n + 1) + i;
-            add_quadrangle(shape, (int32_t[]){a, a + 1, a + n + 2, a + n + 1}, layer);
+            add_quadrangle(shape, (int32_t[]){a, a + 1, a + n + 1, a + n + 2}, layer);
         }
     }
     finish(shape, 1, 0.0);

@@ -72,24 +72,6 @@ static void random_gradient(struct random *random, double F[9])
     } while (determinant(F) < 0.3 || determinant(F) > 3.0);
 }
 
-TEST(cofactor_is_derivative)
-{
-    struct random random = {1};
-    for (int round = 0; round < 50; round++) {
-        double F[9], C[9], h = 1e-4;
-        random_gradient(&random, F);
-        cofactor(F, C);
-        for (int i = 0; i < 9; i++) { /* the determinant is linear in each entry */
-            double at = F[i], plus;
-            F[i] = at + h;
-            plus = determinant(F);
-            F[i] = at - h;
-            NEAR_TO(C[i], (plus - determinant(F)) / (2.0 * h), 1e-11);
-            F[i] = at;
-        }
-    }
-}
-
 TEST(stress_is_gradient)
 {
     struct random random = {2};

@@ -114,16 +114,6 @@ static void check_inverse(struct strained *s)
     AT_MOST(constraint_violation(&s->preconditioner.constraint, s->l.system.factor, y, NULL), 1e-10 * most);
 }
 
-TEST(mass_and_inverse_agree)
-{
-    for (int dim = 2; dim <= 3; dim++) {
-        struct strained s;
-        strain_bar(&s, dim, 0.0, true, true);
-        check_inverse(&s);
-        release(&s);
-    }
-}
-
 /* The shape x^2 along the second axis, as the bar bends. */
 static void add_bending(struct strained *s)
 {
@@ -136,12 +126,13 @@ static void add_bending(struct strained *s)
     GOOD(preconditioner_add_slow_mode(&s->preconditioner, move, &error));
 }
 
-TEST(mass_with_slow_modes_and_inverse_agree)
+TEST(mass_and_inverse_agree)
 {
     for (int dim = 2; dim <= 3; dim++) {
         struct strained s;
         struct random random = {3};
         strain_bar(&s, dim, 0.0, true, true);
+        check_inverse(&s);
         for (int i = 0; i < SLOW_MODES_MOST; i++) {
             double *move = random_move(&s, &random);
             GOOD(preconditioner_add_slow_mode(&s.preconditioner, move, &error));

@@ -100,28 +100,6 @@ TEST(linear_patch_at_gauss_points)
     assert_true(worst2 > 1e-9);
 }
 
-/* Simple shear by half: the stresses of the closed form in every cell. */
-TEST(simple_shear)
-{
-    static const double A[9] = {0, 0.5, 0, 0, 0, 0, 0, 0, 0};
-    struct lattice_options options = lattice_defaults(2, 7);
-    FREED_BY(lattice_free) struct lattice l = {0};
-    options.jitter = 0.2;
-    lattice_build(&l, &options);
-    prescribe_all(&l, A, lattice_curve(&l, curve_of_kind(CURVE_SMOOTH)));
-    double *u = relaxed(&l, 1e-10, NULL), *residual = lattice_vector(&l);
-    (void)system_residual(&l.system, u, residual);
-    double *stress = zeros(l.system.body.point_count * 9, sizeof *stress);
-    body_stress(&l.system.body, stress);
-    for (int64_t q = 0; q < l.system.body.point_count; q++) {
-        const double *P = stress + 9 * q;
-        NEAR_TO(P[0] + 0.5 * P[1], 167.78523, 1e-4); /* P F^T with F = 1 + A, J = 1 */
-        NEAR_TO(P[1], 503.35570, 1e-4);
-        NEAR_TO(P[4], -83.89262, 1e-4);
-        NEAR_TO(P[8], -83.89262, 1e-4);
-    }
-}
-
 /* A block between sliding supports, pushed along its last axis to `stretch`; confined: sliding on all sides.
  */
 static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)

@@ -238,34 +238,6 @@ TEST_IN_EACH_DIM(smoothing_is_consistent)
     }
 }
 
-/* The sum over cells of V grad phi_j is the integral of phi_j n over the boundary of the body. */
-TEST_IN_EACH_DIM(smoothing_telescopes)
-{
-    FREED_BY(smoothed_free) struct smoothed s = {0};
-    const struct quadrature_rule rule = quadrature_face_rule(dim);
-    smoothed_build(&s, dim, dim == 2 ? 9 : 6, BASIS_MODIFIED, 0.0);
-    double *sum = zeros(s.cells.node_count * dim, sizeof *sum);
-    for (int64_t c = 0; c < s.cells.count; c++) {
-        double volume = cell_volume(&s.cells, c);
-        for (int64_t i = s.smooth.ptr[c]; i < s.smooth.ptr[c + 1]; i++) {
-            for (int a = 0; a < dim; a++) {
-                sum[(int64_t)s.smooth.idx[i] * dim + a] += volume * s.smooth.dphi[i * dim + a];
-            }
-        }
-    }
-    for (int64_t p = 0; p < face_boundary_points(&s.faces); p++) {
-        double area[3];
-        face_area_vector(dim, s.cells.x, s.faces.node + p / FACE_POINTS(dim) * dim, area);
-        for (int64_t i = s.lists.ptr[p]; i < s.lists.ptr[p + 1]; i++) {
-            add_scaled(dim, -rule.weight[p % FACE_POINTS(dim)] * s.table.phi[i], area,
-                       sum + (int64_t)s.lists.idx[i] * dim);
-        }
-    }
-    for (int64_t i = 0; i < s.cells.node_count * dim; i++) {
-        AT_MOST(fabs(sum[i]) / pow(0.1, dim - 1), 1e-14);
-    }
-}
-
 /* Each row is the mean of the values at its points. */
 TEST_IN_EACH_DIM(rows_of_edges)
 {
