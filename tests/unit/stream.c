@@ -118,10 +118,7 @@ TEST(malformed_text)
         {HEAD "1 2\n3 1,5\n" TAIL, "x: row 1: '1,5': write a decimal point"},
         {HEAD "1 2\r\n3 4\r\n" TAIL, "CR LF"},
         {HEAD "1 2\n3 four\n" TAIL, "x: row 1: 'four' is not a number of type f8"},
-        {HEAD "1 2\n3 0x10\n" TAIL, "'0x10' is not a number"},
         {HEAD "1 2\n3 1e999\n" TAIL, "'1e999' is not a number"},
-        {HEAD "1 2\n3 1e\n" TAIL, "'1e' is not a number"},
-        {HEAD "1 2\n3 .\n" TAIL, "'.' is not a number"},
         {HEAD "1 2\n3 4"
               "\0"
               "\n" TAIL,
@@ -147,7 +144,6 @@ TEST(malformed_text)
         {"# mts 1\nnodes\n" TAIL, "'nodes' stands where a section header"},
         {"# mts 1\n# x i4 1 1\n2147483648\n" TAIL, "'2147483648' is not a number of type i4"},
         {"# mts 1\n# x i8 1 1\n9223372036854775808\n" TAIL, "is not a number of type i8"},
-        {"# mts 1\n# x i8 1 1\n1.0\n" TAIL, "'1.0' is not a number of type i8"},
         {"# mts 1\n# x f4 1 1\n1e39\n" TAIL, "'1e39' is not a number of type f4"},
         {"# mts 1\n# x f8 9000000000000000000 1000000\n" TAIL, "out of bounds"},
         {"# mts 1\n# x f8 100000000000 1\n1\n" TAIL, "x: row 1: 0 numbers"},

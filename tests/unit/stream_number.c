@@ -61,35 +61,41 @@ static void check_text(const char *text)
     }
 }
 
+static void check_value(const char *text)
+{
+    check_double(strtod(text, NULL));
+    check_float((float)fmin(fabs(strtod(text, NULL)), (double)FLT_MAX));
+}
+
+static void refuse_double(const char *text)
+{
+    double value;
+    assert_null(number_parse_double(text, text + strlen(text), &value));
+}
+
+static void refuse_integer(const char *text)
+{
+    int64_t value;
+    assert_null(number_parse_integer(text, text + strlen(text), INT64_MIN, INT64_MAX, &value));
+}
+
+/* Each of the words between bars. */
+static void for_each(const char *words, void (*check)(const char *word))
+{
+    char word[64];
+    for (size_t length; words != NULL; words = words[length] == '|' ? words + length + 1 : NULL) {
+        length = strcspn(words, "|");
+        snprintf(word, sizeof word, "%.*s", (int)length, words);
+        check(word);
+    }
+}
+
 TEST(hard_values)
 {
-    static const double values[] = {0.0,
-                                    -0.0,
-                                    5e-324,
-                                    DBL_MIN,
-                                    DBL_MAX,
-                                    -DBL_MAX,
-                                    2.2250738585072011e-308,
-                                    1e22,
-                                    1e23,
-                                    0.1,
-                                    0.3,
-                                    1.0 / 3,
-                                    9.5,
-                                    99999999999999990.0,
-                                    1e16,
-                                    1e17,
-                                    1e-4,
-                                    1e-5,
-                                    123456.0,
-                                    1e100,
-                                    9007199254740993.0,
-                                    DBL_EPSILON,
-                                    1.7976931348623155e308};
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-        check_double(values[i]);
-        check_float((float)fmin(fabs(values[i]), (double)FLT_MAX));
-    }
+    for_each("0|-0|5e-324|2.2250738585072014e-308|1.7976931348623157e308|-1.7976931348623157e308|"
+             "2.2250738585072011e-308|1e22|1e23|0.1|0.3|0.33333333333333331|9.5|99999999999999990|1e16|"
+             "1e17|1e-4|1e-5|123456|1e100|9007199254740993|2.2204460492503131e-16|1.7976931348623155e308",
+             check_value);
     for (int binary = -1074; binary < 1024; binary++) {
         check_double(ldexp(1.0, binary));
         check_double(nextafter(ldexp(1.0, binary), 0));
@@ -109,39 +115,14 @@ TEST(hard_values)
 
 TEST(hard_texts)
 {
-    static const char *const texts[] = {"9007199254740993",
-                                        "9007199254740992.9999999999999",
-                                        "9007199254740993.0000000000001",
-                                        "0.1e1",
-                                        "00000000000000000000000001.5",
-                                        ".5",
-                                        "5.",
-                                        "-.5e-3",
-                                        "+7",
-                                        "1e400",
-                                        "1e-400",
-                                        "1e99999999999999999999",
-                                        "0e99999999999999999999",
-                                        "0e50",
-                                        "-0e-100",
-                                        "0.000e23",
-                                        "2.4703282292062327e-324",
-                                        "2.4703282292062328e-324",
-                                        "1.7976931348623158e308",
-                                        "1.7976931348623159e308",
-                                        "3.4028235677973366e38",
-                                        "3.4028235677973365e38",
-                                        "1.00000005960464477539062",
-                                        "1.000000059604644775390625",
-                                        "1.00000005960464477539063",
-                                        "0.000000000000000000000000000000000000001",
-                                        "18446744073709551615",
-                                        "18446744073709551616",
-                                        "123456789012345678901234567890",
-                                        "8.5899345920000005e9"};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        check_text(texts[i]);
-    }
+    for_each("9007199254740993|9007199254740992.9999999999999|9007199254740993.0000000000001|0.1e1|"
+             "00000000000000000000000001.5|.5|5.|-.5e-3|+7|1e400|1e-400|1e99999999999999999999|"
+             "0e99999999999999999999|0e50|-0e-100|0.000e23|2.4703282292062327e-324|"
+             "2.4703282292062328e-324|1.7976931348623158e308|1.7976931348623159e308|3.4028235677973366e38|"
+             "3.4028235677973365e38|1.00000005960464477539062|1.000000059604644775390625|"
+             "1.00000005960464477539063|0.000000000000000000000000000000000000001|18446744073709551615|"
+             "18446744073709551616|123456789012345678901234567890|8.5899345920000005e9",
+             check_text);
     /* Halfway between two doubles, written in full, and a little beside. */
     char text[1200];
     for (int binary = -60; binary < 60; binary += 7) {
@@ -150,13 +131,7 @@ TEST(hard_texts)
         check_text(text);
         assert_true(length < (int)sizeof text);
     }
-    static const char *const wrong[] = {"",       "-",   "+",     ".",    "e5",  "1e",
-                                        "1e+",    "--1", "1.2.3", "0x1",  "1_0", "infinity",
-                                        "nan(1)", "1f",  "1,5",   "NaN0", "- 1"};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        double value;
-        assert_null(number_parse_double(wrong[i], wrong[i] + strlen(wrong[i]), &value));
-    }
+    for_each("|-|+|.|e5|1e|1e+|--1|1.2.3|0x1|1_0|infinity|nan(1)|1f|1,5|NaN0|- 1", refuse_double);
 }
 
 TEST(random_bit_patterns)
@@ -214,22 +189,9 @@ TEST(integers)
                          text + length);
         assert_int_equal(again, values[i]);
     }
-    static const char *const wrong[] = {"",
-                                        "-",
-                                        "1.0",
-                                        "1e3",
-                                        "0x1",
-                                        "99999999999999999999",
-                                        "9223372036854775808",
-                                        "-9223372036854775809",
-                                        "18446744073709551616",
-                                        "1a",
-                                        "1\r"};
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        int64_t value;
-        assert_null(
-            number_parse_integer(wrong[i], wrong[i] + strlen(wrong[i]), INT64_MIN, INT64_MAX, &value));
-    }
+    for_each("|-|1.0|1e3|0x1|99999999999999999999|9223372036854775808|-9223372036854775809|"
+             "18446744073709551616|1a|1\r",
+             refuse_integer);
 }
 
 RUN_TESTS(NULL, NULL)

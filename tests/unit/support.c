@@ -282,26 +282,17 @@ TEST(trap_sphere)
     }
 }
 
-TEST(trap_coplanar)
+/* Nodes in an oblique plane, in 2D on a line: no exact zeros. */
+TEST_IN_EACH_DIM(trap_flat)
 {
-    static struct trap trap = {.name = "25 coplanar nodes", .dim = 3, .count = 25};
+    static struct trap trap = {.name = "25 nodes in a plane or on a line", .count = 25};
+    trap.dim = dim;
     for (int n = 0; n < 25; n++) {
-        trap.x[3 * n] = n % 5;
-        trap.x[3 * n + 1] = n / 5;
-        trap.x[3 * n + 2] = 0.3 * (n % 5) - 0.2 * (n / 5) + 0.1; /* an oblique plane: no exact zeros */
-    }
-    for (int b = 0; b < BASIS_COUNT; b++) {
-        assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_VERDICT);
-        assert_int_equal(spring(&trap, (enum basis)b, false), STATUS_VERDICT);
-    }
-}
-
-TEST(trap_collinear)
-{
-    static struct trap trap = {.name = "12 collinear nodes", .dim = 2, .count = 12};
-    for (int n = 0; n < 12; n++) {
-        trap.x[2 * n] = 0.1 * n;
-        trap.x[2 * n + 1] = 0.7 - 0.37 * 0.1 * n;
+        trap.x[dim * n] = dim == 2 ? 0.1 * n : n % 5;
+        trap.x[dim * n + 1] = dim == 2 ? 0.7 - 0.037 * n : n / 5;
+        if (dim == 3) {
+            trap.x[3 * n + 2] = 0.3 * (n % 5) - 0.2 * (n / 5) + 0.1;
+        }
     }
     for (int b = 0; b < BASIS_COUNT; b++) {
         assert_int_equal(spring(&trap, (enum basis)b, true), STATUS_VERDICT);
