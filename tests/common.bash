@@ -32,6 +32,12 @@ setup() {
     enter
 }
 
+# section HEADER ROW...: of a text stream
+section() {
+    printf '# %s\n' "$1"
+    printf '%s\n' "${@:2}" '' ''
+}
+
 # Rows of section $1 of a text stream.
 rows() {
     awk -v name="$1" '/^# / { on = $2 == name; next } on && NF' "${2:--}"

@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # head of a scene in 3D with the base material
 head3() {

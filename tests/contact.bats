@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 @test "the default stiffness keeps a disc out on a graded body as it does on an even one" {
     awk 'BEGIN { for (i = -24; i <= 24; i++) { a = i * 0.05; printf "%.12g %.12g\n", 0.1 * sin(a), 0.1 * cos(a) - 0.1 } }' > disc.tsv

@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # keel SLOPE: a body, 80 mm wide, whose lower side goes up from a keel to either side; groove.tsv, one that it fits in.
 keel() {

@@ -6,114 +6,29 @@ setup() { enter_loosely; }
 
 # A square of two triangles, with everything that mts check looks at.
 square() {
-    cat <<'END'
-# mts 1
-# @ test 1 test
-# nodes.x f8 4 2 enc=text unit=m cols=x,y
-0 0
-1 0
-1 1
-0 1
-
-
-# cells i4 2 3 enc=text
-0 1 2
-0 2 3
-
-
-# cells.region i4 2 1 enc=text names=grey,white
-0
-1
-
-
-# facets i4 1 2 enc=text
-0 1
-
-
-# facets.set i4 1 1 enc=text names=bottom
-0
-
-
-# sets.ptr i8 2 1 enc=text names=corner
-0
-2
-
-
-# sets.idx i4 2 1 enc=text
-1
-3
-
-
-# points.x f8 2 2 enc=text unit=m
-0.6 0.3
-0.3 0.6
-
-
-# points.weight f8 2 1 enc=text unit=m2
-0.5
-0.25
-
-
-# points.cell i4 2 1 enc=text
-0
--1
-
-
-# support.radius f8 4 1 enc=text unit=m
-2
-2
-2
-2
-
-
-# nbr.ptr i8 3 1 enc=text
-0
-2
-5
-
-
-# nbr.idx i4 5 1 enc=text
-0
-1
-0
-2
-3
-
-
-# nbr.widen f8 2 1 enc=text
-1
-1.5
-
-
-# shape.phi f8 5 1 enc=text
-0.75
-0.25
--0.5
-1
-0.5
-
-
-# shape.dphi f8 5 2 enc=text unit=1/m
-1 1
--1 -1
-1 0
--1 0
-0 0
-
-
-# u f8 4 2 enc=text unit=m
-0 0
-0 0
-0 0
-0 1
-
-
-# end 17
-END
+    printf '%s\n' '# mts 1' '# @ test 1 test'
+    section 'nodes.x f8 4 2 enc=text unit=m cols=x,y' '0 0' '1 0' '1 1' '0 1'
+    section 'cells i4 2 3 enc=text' '0 1 2' '0 2 3'
+    section 'cells.region i4 2 1 enc=text names=grey,white' 0 1
+    section 'facets i4 1 2 enc=text' '0 1'
+    section 'facets.set i4 1 1 enc=text names=bottom' 0
+    section 'sets.ptr i8 2 1 enc=text names=corner' 0 2
+    section 'sets.idx i4 2 1 enc=text' 1 3
+    section 'points.x f8 2 2 enc=text unit=m' '0.6 0.3' '0.3 0.6'
+    section 'points.weight f8 2 1 enc=text unit=m2' 0.5 0.25
+    section 'points.cell i4 2 1 enc=text' 0 -1
+    section 'support.radius f8 4 1 enc=text unit=m' 2 2 2 2
+    section 'nbr.ptr i8 3 1 enc=text' 0 2 5
+    section 'nbr.idx i4 5 1 enc=text' 0 1 0 2 3
+    section 'nbr.widen f8 2 1 enc=text' 1 1.5
+    section 'shape.phi f8 5 1 enc=text' 0.75 0.25 -0.5 1 0.5
+    section 'shape.dphi f8 5 2 enc=text unit=1/m' '1 1' '-1 -1' '1 0' '-1 0' '0 0'
+    section 'u f8 4 2 enc=text unit=m' '0 0' '0 0' '0 0' '0 1'
+    echo '# end 17'
 }
 
 @test "list prints a line per section, with -v the provenance first" {
-    run -0 bash -c "$(declare -f square); square | mts list -v"
+    run -0 mts list -v <(square)
     [ "${lines[0]}" = "# @ test 1 test" ]
     [ "${lines[1]}" = $'nodes.x\tf8\t4\t2\tunit=m cols=x,y' ]
     [ "${#lines[@]}" -eq 18 ]
@@ -143,7 +58,7 @@ END
 }
 
 @test "check passes what the stages make" {
-    run -0 bash -c "$(declare -f square); square | mts check"
+    run -0 mts check <(square)
     [ "$output" = "" ]
     cloud -d 2 -k regular -n 5 --box 0,1,0,1 | shapefn 2> /dev/null > table2
     cloud -d 3 -k regular -n 4 --box 0,1,0,1,0,1 | shapefn 2> /dev/null > table3
@@ -244,28 +159,10 @@ finds() {
 }
 
 @test "check lists poor cells, the poorest first, and counts bodies, without a verdict; a face of three cells is one" {
-    cat > poor.mts << 'END'
-# mts 1
-# nodes.x f8 8 2 enc=text unit=m cols=x,y
-0 0
-1 0
-0.5 1e-4
-0.5 -2e-5
-5 0
-6 0
-5 1
-5.0001 0.5
-
-
-# cells i4 4 3 enc=text
-0 1 2
-1 0 3
-4 5 6
-4 6 7
-
-
-# end 2
-END
+    { printf '%s\n' '# mts 1'
+        section 'nodes.x f8 8 2 enc=text unit=m cols=x,y' '0 0' '1 0' '0.5 1e-4' '0.5 -2e-5' '5 0' '6 0' '5 1' '5.0001 0.5'
+        section 'cells i4 4 3 enc=text' '0 1 2' '1 0 3' '4 5 6' '4 6 7'
+        echo '# end 2'; } > poor.mts
     run -1 mts check poor.mts
     [[ "${lines[0]}" == "cells: row 3: inverted or of no volume"* ]]
     [ ${#lines[@]} -eq 1 ]

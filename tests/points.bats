@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # cloud_of DIM: a block of 0.1 m as block.mts
 cloud_of() {

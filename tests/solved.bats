@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # scene DIM LOW HIGH COMPONENTS: held at LOW, moved at HIGH.
 scene() {

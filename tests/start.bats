@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # clouds DIM COARSE FINE: coarse.mts and fine.mts, of a cube or square of .1 m, with so many nodes along an edge.
 clouds() {

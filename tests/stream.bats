@@ -1,6 +1,6 @@
 # The stream through pipes and files, on the command line; the programs of mts(5).
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
     mkdir "$BATS_TEST_TMPDIR/work"
@@ -15,31 +15,12 @@ from_page() {
 }
 
 small() {
-    cat <<'END'
-# mts 1
-# @ test 1 test 'a b'
-# nodes.x f8 3 2 enc=text unit=m cols=x,y
-0.10000000000000001 -0
-4.9406564584124654e-324 1.7976931348623157e+308
-nan inf
-
-
-# stranger i8 2 1 enc=text key=value
-9223372036854775807
--9223372036854775808
-
-
-# u f8 3 2 enc=text unit=m cols=x,y
-0.5 1
-0.25 -2
-3 4
-
-
-# none i4 0 3 enc=text
-
-
-# end 4
-END
+    printf '%s\n' '# mts 1' "# @ test 1 test 'a b'"
+    section 'nodes.x f8 3 2 enc=text unit=m cols=x,y' '0.10000000000000001 -0' '4.9406564584124654e-324 1.7976931348623157e+308' 'nan inf'
+    section 'stranger i8 2 1 enc=text key=value' 9223372036854775807 -9223372036854775808
+    section 'u f8 3 2 enc=text unit=m cols=x,y' '0.5 1' '0.25 -2' '3 4'
+    section 'none i4 0 3 enc=text'
+    echo '# end 4'
 }
 
 # About 5 MB, more than any buffer.

@@ -1,14 +1,8 @@
 # Contact between facets of the body: two bodies, two lips, a boundary with itself.
 
-bats_require_minimum_version 1.5.0
-
 load common.bash
 
-setup() {
-    cd "$BATS_TEST_TMPDIR"
-    set -o pipefail
-    export OMP_NUM_THREADS=1
-}
+setup() { enter_alone; }
 
 # gmsh_body DIM NAME: geometry on standard input, as NAME.mts with its tables.
 gmsh_body() {

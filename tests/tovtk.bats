@@ -6,60 +6,16 @@ setup() { enter_loosely; }
 
 # A triangle mesh of two cells in two regions, with a field, two frames of it, and a CSR list that is no field.
 two_triangles() {
-    cat <<'END'
-# mts 1
-# nodes.x f8 4 2 enc=text unit=m cols=x,y
-0 0
-1 0
-1 1
-0 0.1
-
-
-# cells i4 2 3 enc=text
-0 1 2
-0 2 3
-
-
-# cells.region i4 2 1 enc=text names=grey<&"matter,white
-1
-0
-
-
-# sets.idx i4 4 1 enc=text
-0
-1
-2
-3
-
-
-# u f8 4 2 enc=text unit=m cols=x,y
-0 0
-0 0
-0 0.25
-0 -0.1
-
-
-# stress f8 2 3 enc=text unit=Pa cols=xx,yy,xy
-1 2 3
-4 5 6
-
-
-# u.frame.1 f8 4 2 enc=text unit=m time=0.5
-0 0
-0 0
-0 0.125
-0 -0.05
-
-
-# u.frame.2 f8 4 2 enc=text unit=m time=1
-0 0
-0 0
-0 0.25
-0 -0.1
-
-
-# end 8
-END
+    printf '%s\n' '# mts 1'
+    section 'nodes.x f8 4 2 enc=text unit=m cols=x,y' '0 0' '1 0' '1 1' '0 0.1'
+    section 'cells i4 2 3 enc=text' '0 1 2' '0 2 3'
+    section 'cells.region i4 2 1 enc=text names=grey<&"matter,white' 1 0
+    section 'sets.idx i4 4 1 enc=text' 0 1 2 3
+    section 'u f8 4 2 enc=text unit=m cols=x,y' '0 0' '0 0' '0 0.25' '0 -0.1'
+    section 'stress f8 2 3 enc=text unit=Pa cols=xx,yy,xy' '1 2 3' '4 5 6'
+    section 'u.frame.1 f8 4 2 enc=text unit=m time=0.5' '0 0' '0 0' '0 0.125' '0 -0.05'
+    section 'u.frame.2 f8 4 2 enc=text unit=m time=1' '0 0' '0 0' '0 0.25' '0 -0.1'
+    echo '# end 8'
 }
 
 # Every tag closed in order, one root: enough XML for what tovtk writes.
@@ -141,28 +97,11 @@ squeezed_cube() {
 }
 
 @test "tensors in VTK's order: a glyph's principal stress is that of the stream" {
-    cat > shear << 'END'
-# mts 1
-# nodes.x f8 5 3 enc=text
-0 0 0
-1 0 0
-0 1 0
-0 0 1
-1 1 1
-
-
-# cells i4 2 4 enc=text
-0 1 2 3
-1 2 3 4
-
-
-# stress f8 2 6 enc=text unit=Pa cols=xx,yy,zz,xy,xz,yz
-0 0 0 0 100 0
-30 30 30 0 0 40
-
-
-# end 3
-END
+    { printf '%s\n' '# mts 1'
+        section 'nodes.x f8 5 3 enc=text' '0 0 0' '1 0 0' '0 1 0' '0 0 1' '1 1 1'
+        section 'cells i4 2 4 enc=text' '0 1 2 3' '1 2 3 4'
+        section 'stress f8 2 6 enc=text unit=Pa cols=xx,yy,zz,xy,xz,yz' '0 0 0 0 100 0' '30 30 30 0 0 40'
+        echo '# end 3'; } > shear
     tovtk -o shear.vtu shear
     [ "$(vtu largest shear.vtu stress)" = $'100.0\n70.0' ] # one pure shear along xz, one along yz in a pressure
     squeezed_cube > cube

@@ -2,9 +2,7 @@
 
 load common.bash
 
-setup() {
-    enter_alone
-}
+setup() { enter_alone; }
 
 # blocks GAP: blocks.mts, two blocks of 20 x 10 mm with nodes every 2 mm, GAP mm apart.
 blocks() {

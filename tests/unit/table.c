@@ -78,6 +78,7 @@ TEST(faults)
     fails("1,5 2\n", 1, "'1,5' is not a finite number: write decimal points, and blanks");
     fails("1;2\n", 1, "blanks between numbers");
     fails("1 2\n# c\n3 nan\n", 3, "'nan' is not a finite number");
+    fails("1 -inf\n", 1, "'-inf' is not a finite number");
     fails("1 2#3\n", 1, "'2#3' is not a finite number");
     fails("1 2\n1 2 3\n", 2, "has 3 columns, the rows before 2");
     fails("1 2 3\n1 2\n", 2, "has 2 columns, the rows before 3");
