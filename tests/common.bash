@@ -132,6 +132,34 @@ END
     gmsh -v 1 -2 square.geo -o body.msh
 }
 
+# The unit square in MSH 2.2: two triangles, a named side, a node of no cell, gaps in the tags.
+mesh() {
+    cat << 'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 2 "bottom"
+2 4 "body"
+$EndPhysicalNames
+$Nodes
+5
+10 0 0 0
+20 1 0 0
+30 1 1 0
+7 0 1 0
+99 5 5 0
+$EndNodes
+$Elements
+3
+2 1 2 2 1 20 10
+4 2 2 4 1 10 30 20
+5 2 2 4 1 10 30 7
+$EndElements
+END
+}
+
 # begin_and_end SIGNAL SCENE [SECTION]: begin a run on table.mts with a checkpoint after every step, and end it when two are there, or
 # when SECTION of one is not 0 any more; leaves status, part.dat and what was said. The run may be over before that is seen: then once more.
 begin_and_end() {

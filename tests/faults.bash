@@ -37,31 +37,3 @@ accepted() {
     record "$1" "$status" "$(head -n 1 message)" "$survived"
     [ "$survived" = yes ]
 }
-
-# The unit square in MSH 2.2: two triangles, a named side, a node of no cell, gaps in the tags.
-mesh() {
-    cat << 'END'
-$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-2
-1 2 "bottom"
-2 4 "body"
-$EndPhysicalNames
-$Nodes
-5
-10 0 0 0
-20 1 0 0
-30 1 1 0
-7 0 1 0
-99 5 5 0
-$EndNodes
-$Elements
-3
-2 1 2 2 1 20 10
-4 2 2 4 1 10 30 20
-5 2 2 4 1 10 30 7
-$EndElements
-END
-}

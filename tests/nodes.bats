@@ -4,36 +4,10 @@ load common.bash
 
 setup() { enter_loosely; }
 
-# The unit square in MSH 2.2, in two triangles, with a named side, corner and a diagonal.
+# The unit square of common.bash with a named corner and a diagonal.
 square() {
-    cat <<'END'
-$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-4
-0 1 "corner"
-1 2 "bottom"
-1 3 "diagonal"
-2 4 "body"
-$EndPhysicalNames
-$Nodes
-5
-10 0 0 0
-20 1 0 0
-30 1 1 0
-7 0 1 0
-99 5 5 0
-$EndNodes
-$Elements
-5
-1 15 2 1 1 30
-2 1 2 2 1 20 10
-3 1 2 3 2 10 30
-4 2 2 4 1 10 30 20
-5 2 2 4 1 10 30 7
-$EndElements
-END
+    mesh | sed 's/^2$/4/; s/^1 2 "bottom"/0 1 "corner"\n&\n1 3 "diagonal"/
+        s/^3$/5/; s/^2 1 2 2 1 20 10/1 15 2 1 1 30\n&\n3 1 2 3 2 10 30/'
 }
 
 # A unit cube by gmsh: $1 "hex" or "tet", $2 more options.

@@ -1,6 +1,6 @@
 # The scripts of pipelines/ and examples/: reading streams in awk, decks for CalculiX, tables of the studies.
 
-bats_require_minimum_version 1.5.0
+load common.bash
 
 setup() {
     cd "$BATS_TEST_TMPDIR" || return
@@ -79,22 +79,11 @@ make_cube() {
 # A block of a jittered cloud in D dimensions, pressed by a fifth between sides on which it slides: confined, the stress is uniform.
 make_confined() {
     cloud -d "$1" -k jittered -n 4 --box 0,0.1,0,0.1"$([ "$1" -eq 2 ] || echo ,0,0.1)" --jitter 0.3 -t -o body.dat
-    cat > confined.scene << END
-[scene]
-dim = $1
-analysis = quasi-static
-[material all]
-region = body
-E = 3000
-nu = 0.49
-rho = 1000
-[displacement walls]
-facets = xmin, xmax, $([ "$1" -eq 2 ] && echo ymin || echo ymin, ymax, zmin)
-normal = 0
-[displacement lid]
-facets = $([ "$1" -eq 2 ] && echo ymax || echo zmax)
-normal = -0.02
-END
+    local walls=ymin top=ymax
+    [ "$1" -eq 2 ] || { walls='ymin, ymax, zmin' && top=zmax; }
+    { block quasi-static | sed "s/dim = 2/dim = $1/; s/0.45/0.49/"
+        printf '[displacement walls]\nfacets = xmin, xmax, %s\nnormal = 0\n' "$walls"
+        printf '[displacement lid]\nfacets = %s\nnormal = -0.02\n' $top; } > confined.scene
 }
 
 @test "mixed elements: a confined block, exact to round-off in 2D and 3D, nodes of the mesh first" {

@@ -35,10 +35,7 @@ press() {
             for (k = 1; k <= NF; k++) printf "%s%.9g", (k > 1 ? ", " : ""), (k == axis ? -.1 * (high[k] - low[k]) : 0)
         }')
     {
-        printf '[scene]\ndim = %s\nanalysis = quasi-static\n' "${2:-3}"
-        for region in $(names cells.region "$1"); do
-            printf '[material %s]\nregion = %s\nE = 3000\nnu = 0.49\nrho = 1000\n' "$region" "$region"
-        done
+        block quasi-static | sed "s/dim = 2/dim = ${2:-3}/; s/= body/= $(names cells.region "$1" | paste -sd ,)/; s/0.45/0.49/"
         printf '[displacement held]\nfacets = held\ncomponents = %s\n' "$([ "${2:-3}" = 3 ] && echo 0, 0, 0 || echo 0, 0)"
         printf '[displacement pushed]\nfacets = pushed\ncomponents = %s\n' "$push"
     } > press.scene
@@ -346,24 +343,9 @@ rim() {
     refused 2 "--gap goes with --surface" voxels -h 5mm --gap 1mm two.nii.gz
     refused 2 "--surface goes without -t" voxels -h 5mm -t --surface label_1 two.nii.gz
 
-    cat > slide.scene << 'END'
-[scene]
-dim = 3
-analysis = quasi-static
-[material body]
-region = label_1
-E = 3000
-nu = 0.45
-rho = 1000
-[displacement held]
-facets = held
-components = 0, 0, 0.001
-[contact skull]
-facets = label_1|outside
-rigid = gap.tsv
-unit = m
-side = back
-END
+    { block quasi-static | sed 's/dim = 2/dim = 3/; s/= body/= label_1/'
+        printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0.001\n'
+        printf '[contact skull]\nfacets = label_1|outside\nrigid = gap.tsv\nunit = m\nside = back\n'; } > slide.scene
     # A body with a furrow narrower than twice the gap moves freely in it, where the surface is told to be nearer.
     /usr/bin/python3 - << 'END'
 import nibabel as nib, numpy as np
