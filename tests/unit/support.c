@@ -288,10 +288,11 @@ TEST_IN_EACH_DIM(trap_flat)
     static struct trap trap = {.name = "25 nodes in a plane or on a line", .count = 25};
     trap.dim = dim;
     for (int n = 0; n < 25; n++) {
-        trap.x[dim * n] = dim == 2 ? 0.1 * n : n % 5;
-        trap.x[dim * n + 1] = dim == 2 ? 0.7 - 0.037 * n : n / 5;
+        int column = n % 5, row = n / 5;
+        trap.x[dim * n] = dim == 2 ? 0.1 * n : column;
+        trap.x[dim * n + 1] = dim == 2 ? 0.7 - 0.037 * n : row;
         if (dim == 3) {
-            trap.x[3 * n + 2] = 0.3 * (n % 5) - 0.2 * (n / 5) + 0.1;
+            trap.x[3 * n + 2] = 0.3 * column - 0.2 * row + 0.1;
         }
     }
     for (int b = 0; b < BASIS_COUNT; b++) {
