@@ -205,3 +205,25 @@ END
         done
     done
 }
+
+@test "files that do not say where they end, or where and how large things are" {
+    printf '# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n' > t.vtk
+    nodes -u m t.vtk 2> note | mts check
+    { cat t.vtk; printf 'CELL_DATA 1\nFIELD F 2\nmat 1 1 int\n1\n'; } > cut.vtk
+    refused 2 "FIELD has 1 of 2 arrays" nodes -u m cut.vtk
+    { cat t.vtk; printf 'CELL_DATA 1\nFIELD F 1\nmat 1 1 int\n123'; } > cut.vtk
+    refused 2 "cut within its last number" nodes -u m cut.vtk
+    for unit in cm mm; do
+        printf '{"markups": [{"coordinateUnits": ["%s", "UCUM", "%s"], "controlPoints": [{"position": [-0.2, -0.2, 0.2]}]}]}\n' $unit $unit > $unit.mrk.json
+    done
+    cloud -d 3 -k regular -n 3 --box 0,0.001,0,0.001,0,0.001 > cube.mts
+    tag -u mm -n tip=near:1,mm.mrk.json cube.mts > at.mts 2> note
+    refused 2 "coordinateUnits is not mm" tag -u mm -n tip=near:1,cm.mrk.json cube.mts
+    head='NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n'
+    refused 2 "axis maxs without space directions" voxels -h 2mm <(printf "${head}axis maxs: 8 8 8\n\n%064d" 1)
+    refused 2 "a space without space directions" voxels -h 2mm <(printf "${head}space: LPS\nspacings: 2 2 2\n\n%064d" 1)
+    refused 2 "axis mins of cells without" voxels -h 2mm <(printf "${head}spacings: 2 2 2\ncenters: cell cell cell\naxis mins: 0 0 0\n\n%064d" 1)
+    # A pipe by its name is read once.
+    tomesh -u m -o body.msh <(cat cube.mts)
+    nodes -u m body.msh 2> note | mts check
+}

@@ -42,6 +42,10 @@ bool overwrite_is_same(const char *name, const char *other)
 bool overwrite_is_stream(const char *name)
 {
     char begin[6] = "";
+    struct stat status;
+    if (stat(name, &status) != 0 || !S_ISREG(status.st_mode)) { /* a pipe would lose what is read here */
+        return false;
+    }
     FILE *file = fopen(name, "rb");
     bool is = file != NULL && fread(begin, 1, sizeof begin, file) == sizeof begin &&
               memcmp(begin, "# mts ", sizeof begin) == 0;

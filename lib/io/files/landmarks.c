@@ -69,7 +69,7 @@ static void read_point(struct landmarks *landmarks, struct json *json)
     }
 }
 
-/* The axes: "LPS" or "RAS", in old files a number. */
+/* The axes: "LPS" or "RAS". */
 static double read_system(struct json *json)
 {
     char name[8] = "";
@@ -83,11 +83,18 @@ static double read_system(struct json *json)
 static void read_units(struct json *json)
 {
     char name[8] = "";
-    if (json_peek(json) == '[') { /* a code of UCUM */
-        json_skip(json);
-        return;
+    if (json_peek(json) == '[') { /* a code of UCUM, the unit first */
+        for (bool first = true, more = json_open(json, '['); more;
+             more = json_next(json, ']'), first = false) {
+            if (first) {
+                json_string(json, name, sizeof name);
+            } else {
+                json_skip(json);
+            }
+        }
+    } else {
+        json_string(json, name, sizeof name);
     }
-    json_string(json, name, sizeof name);
     if (strcmp(name, "mm") != 0) {
         json_fail(json, "coordinateUnits is not mm");
     }

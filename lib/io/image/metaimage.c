@@ -12,7 +12,7 @@ struct metaimage {
     int dimension;
     double size[3], spacing[3], origin[3], axes[9];
     int64_t channels;
-    bool has_size, has_spacing, has_axes;
+    bool has_size, has_spacing, has_element, has_axes;
 };
 
 const struct header_type metaimage_types[IMAGE_TYPES] = {
@@ -68,6 +68,7 @@ static enum status set_spacing(void *context, const struct text_header *header, 
 static enum status set_element(void *context, const struct text_header *header, struct error *error)
 {
     struct metaimage *meta = context;
+    meta->has_element = true;
     return meta->has_spacing ? STATUS_OK : header_vector(header, meta->dimension, meta->spacing, error);
 }
 
@@ -168,6 +169,9 @@ static enum status place(const struct metaimage *meta, struct error *error)
             matrix[r][a] = sign[r] * meta->spacing[a] * (meta->has_axes ? meta->axes[n * a + r] : r == a);
         }
         matrix[r][3] = sign[r] * meta->origin[r];
+    }
+    if (!meta->has_spacing && !meta->has_element) {
+        image_note(image, "tells no spacing: 1 mm taken");
     }
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
     image->unit = 1e-3;

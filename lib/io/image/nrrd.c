@@ -19,6 +19,7 @@ struct nrrd {
     int dimension, space_dimension;
     double size[AXES], direction[AXES][3], spacing[AXES], first[AXES], origin[3];
     bool has_sizes, has_direction[AXES], has_directions, has_endian;
+    bool has_spacing, has_first, has_last, is_cell_centred;
     enum kind kind[AXES];
     double sign[3];      /* of the space's axes, to RAS */
     double unit[3];      /* of the space's axes, m */
@@ -96,13 +97,30 @@ static enum status set_sizes(void *context, const struct text_header *header, st
 
 static enum status set_spacings(void *context, const struct text_header *header, struct error *error)
 {
-    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->spacing,
-                         error);
+    struct nrrd *nrrd = context;
+    nrrd->has_spacing = true;
+    return header_vector(header, nrrd->dimension, nrrd->spacing, error);
 }
 
 static enum status set_first(void *context, const struct text_header *header, struct error *error)
 {
-    return header_vector(header, ((struct nrrd *)context)->dimension, ((struct nrrd *)context)->first, error);
+    struct nrrd *nrrd = context;
+    nrrd->has_first = true;
+    return header_vector(header, nrrd->dimension, nrrd->first, error);
+}
+
+static enum status set_last(void *context, const struct text_header *header, struct error *error)
+{
+    (void)header, (void)error;
+    ((struct nrrd *)context)->has_last = true;
+    return STATUS_OK;
+}
+
+static enum status set_centers(void *context, const struct text_header *header, struct error *error)
+{
+    (void)error;
+    ((struct nrrd *)context)->is_cell_centred = strstr(header->value, "cell") != NULL;
+    return STATUS_OK;
 }
 
 /* Take a vector "(1,0,0)" of the space. */
@@ -263,6 +281,10 @@ static const struct header_field fields[] = {
     {"spacings", set_spacings},
     {"axis mins", set_first},
     {"axismins", set_first},
+    {"axis maxs", set_last},
+    {"axismaxs", set_last},
+    {"centers", set_centers},
+    {"centerings", set_centers},
     {"space directions", set_directions},
     {"space origin", set_origin},
     {"space units", set_space_units},
@@ -347,7 +369,9 @@ static enum status place(struct nrrd *nrrd, struct error *error)
         places++;
     }
     if (image->space == IMAGE_SPACE_UNKNOWN) {
-        image_note(image, "tells no anatomical space: axes taken to be RAS");
+        image_note(image, nrrd->has_directions || nrrd->has_spacing
+                              ? "tells no anatomical space: axes taken to be RAS"
+                              : "tells neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
                                  component >= 0 && nrrd->kind[component] == COLOUR, nrrd->layout, image,
@@ -364,6 +388,15 @@ static enum status check(const struct nrrd *nrrd, const struct text_header *head
     }
     if (header->cut && layout->data_file[0] == '\0') {
         return fail(error, STATUS_INPUT, "cut short: the header ends without an empty line");
+    }
+    if (!nrrd->has_directions && (nrrd->space_dimension > 0 || (nrrd->has_last && !nrrd->has_spacing) ||
+                                  (nrrd->is_cell_centred && nrrd->has_first))) {
+        return fail(
+            error, STATUS_INPUT,
+            "header: %s without space directions: where the voxels lie is not known: save it with these",
+            nrrd->space_dimension > 0              ? "a space"
+            : nrrd->has_last && !nrrd->has_spacing ? "axis maxs"
+                                                   : "axis mins of cells");
     }
     if (layout->type->bytes > 1 && layout->encoding != IMAGE_ASCII && !nrrd->has_endian) {
         return fail(error, STATUS_INPUT, "header: no endian: the byte order of %s is not known",

@@ -105,6 +105,9 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
         r->at += r->at < r->end && *r->at == '\n';
     } else if (added != NULL) {
         vtk_fill_text(r, added, &r->at, r->end);
+        if (r->status == STATUS_OK && count > 0 && r->at == r->end) {
+            msh_fail(r, "%s: the file ends without a line's end: cut within its last number?", array->name);
+        }
     } else {
         for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
             if (input_word(&r->at, r->end, &length) == NULL) {
@@ -157,6 +160,9 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
 {
     struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
     if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
+        if (offsets->whole[0] != 0) {
+            msh_fail(l->v.in.r, "OFFSETS begin with %lld, not with 0", (long long)offsets->whole[0]);
+        }
         offsets->count--;
         memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
     }
@@ -206,7 +212,8 @@ static void read_field(struct legacy *l, const char *at, const char *end)
     char name[128];
     copy_word(&at, end, name, sizeof name);
     int64_t count = next_count(r, &at, end, 0);
-    for (int64_t i = 0; i < count && next_line(r, &at, &end);) {
+    int64_t i = 0;
+    while (i < count && next_line(r, &at, &end)) {
         copy_word(&at, end, name, sizeof name);
         if (strcasecmp(name, "METADATA") == 0) {
             while (next_line(r, &at, &end) && end > at) {
@@ -216,6 +223,9 @@ static void read_field(struct legacy *l, const char *at, const char *end)
             read_array(l, name, components, tuples, next_type(r, &at, end));
             i++;
         }
+    }
+    if (i < count) {
+        msh_fail(r, "FIELD has %lld of %lld arrays: the file is truncated", (long long)i, (long long)count);
     }
 }
 
