@@ -12,21 +12,10 @@ struct metaimage {
     int dimension;
     double size[3], spacing[3], origin[3], axes[9];
     int64_t channels;
-    bool has_size, has_spacing, has_element, has_axes;
 };
 
-const struct header_type metaimage_types[IMAGE_TYPES] = {
-    {IMAGE_UINT8, "MET_UCHAR|MET_UCHAR_ARRAY"},
-    {IMAGE_INT8, "MET_CHAR|MET_CHAR_ARRAY"},
-    {IMAGE_INT16, "MET_SHORT|MET_SHORT_ARRAY"},
-    {IMAGE_UINT16, "MET_USHORT|MET_USHORT_ARRAY"},
-    {IMAGE_INT32, "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY"},
-    {IMAGE_UINT32, "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY"},
-    {IMAGE_INT64, "MET_LONG_LONG|MET_LONG_LONG_ARRAY"},
-    {IMAGE_UINT64, "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY"},
-    {IMAGE_FLOAT32, "MET_FLOAT|MET_FLOAT_ARRAY"},
-    {IMAGE_FLOAT64, "MET_DOUBLE|MET_DOUBLE_ARRAY"},
-};
+/* Fields of which it counts whether they are there. */
+enum { SIZE, SPACING, ELEMENT, MATRIX };
 
 static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
 {
@@ -53,23 +42,15 @@ static enum status set_dimension(void *context, const struct text_header *header
 static enum status set_size(void *context, const struct text_header *header, struct error *error)
 {
     struct metaimage *meta = context;
-    meta->has_size = true;
     return header_vector(header, meta->dimension, meta->size, error);
 }
 
+/* The size of an element is its spacing where none is given. */
 static enum status set_spacing(void *context, const struct text_header *header, struct error *error)
 {
     struct metaimage *meta = context;
-    meta->has_spacing = true;
-    return header_vector(header, meta->dimension, meta->spacing, error);
-}
-
-/* The size of an element is its spacing where none is given. */
-static enum status set_element(void *context, const struct text_header *header, struct error *error)
-{
-    struct metaimage *meta = context;
-    meta->has_element = true;
-    return meta->has_spacing ? STATUS_OK : header_vector(header, meta->dimension, meta->spacing, error);
+    bool given = header_has(header, SPACING) && header_is("ElementSize", header->key);
+    return given ? STATUS_OK : header_vector(header, meta->dimension, meta->spacing, error);
 }
 
 static enum status set_origin(void *context, const struct text_header *header, struct error *error)
@@ -81,7 +62,6 @@ static enum status set_origin(void *context, const struct text_header *header, s
 static enum status set_axes(void *context, const struct text_header *header, struct error *error)
 {
     struct metaimage *meta = context;
-    meta->has_axes = true;
     return header_vector(header, meta->dimension * meta->dimension, meta->axes, error);
 }
 
@@ -103,7 +83,7 @@ static enum status set_big_endian(void *context, const struct text_header *heade
 static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
 {
     struct image_layout *layout = ((struct metaimage *)context)->layout;
-    bool is_compressed = strcasecmp(header->key, "CompressedData") == 0, flag;
+    bool is_compressed = header_is("CompressedData", header->key), flag;
     RETURN_IF_ERROR(take_flag(header, &flag, error));
     if (flag == is_compressed) {
         layout->encoding = flag ? IMAGE_PACKED : IMAGE_ASCII;
@@ -125,24 +105,18 @@ static enum status set_comment(void *context, const struct text_header *header, 
 }
 
 static const struct header_field fields[] = {
+    [SIZE] = {"DimSize", set_size},
+    [SPACING] = {"ElementSpacing", set_spacing},
+    [ELEMENT] = {"ElementSize", set_spacing},
+    [MATRIX] = {"TransformMatrix|Rotation|Orientation", set_axes},
     {"ObjectType", set_object},
     {"Comment", set_comment},
     {"NDims", set_dimension},
-    {"DimSize", set_size},
-    {"ElementSpacing", set_spacing},
-    {"ElementSize", set_element},
-    {"Offset", set_origin},
-    {"Position", set_origin},
-    {"Origin", set_origin},
-    {"TransformMatrix", set_axes},
-    {"Rotation", set_axes},
-    {"Orientation", set_axes},
+    {"Offset|Position|Origin", set_origin},
     {"ElementNumberOfChannels", set_channels},
     {"ElementType", set_type},
-    {"BinaryDataByteOrderMSB", set_big_endian},
-    {"ElementByteOrderMSB", set_big_endian},
-    {"CompressedData", set_encoding},
-    {"BinaryData", set_encoding},
+    {"BinaryDataByteOrderMSB|ElementByteOrderMSB", set_big_endian},
+    {"CompressedData|BinaryData", set_encoding},
     {"HeaderSize", set_skip},
 };
 
@@ -157,7 +131,7 @@ bool metaimage_begins(const unsigned char bytes[4])
     return false;
 }
 
-static enum status place(const struct metaimage *meta, struct error *error)
+static enum status place(const struct metaimage *meta, const struct text_header *header, struct error *error)
 {
     int n = meta->dimension;
     double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
@@ -166,11 +140,12 @@ static enum status place(const struct metaimage *meta, struct error *error)
     for (int r = 0; r < n; r++) {
         size[r] = meta->size[r];
         for (int a = 0; a < n; a++) {
-            matrix[r][a] = sign[r] * meta->spacing[a] * (meta->has_axes ? meta->axes[n * a + r] : r == a);
+            matrix[r][a] =
+                sign[r] * meta->spacing[a] * (header_has(header, MATRIX) ? meta->axes[n * a + r] : r == a);
         }
         matrix[r][3] = sign[r] * meta->origin[r];
     }
-    if (!meta->has_spacing && !meta->has_element) {
+    if (!header_has(header, SPACING) && !header_has(header, ELEMENT)) {
         image_note(image, "tells no spacing: 1 mm taken");
     }
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
@@ -202,8 +177,8 @@ enum status metaimage_header(struct image_source *source, const unsigned char be
     } else if (header.cut) {
         return fail(error, STATUS_INPUT, "cut short: no data behind the header");
     }
-    if (layout->type == NULL || !meta.has_size) {
+    if (layout->type == NULL || !header_has(&header, SIZE)) {
         return fail(error, STATUS_INPUT, "header: no %s", layout->type == NULL ? "ElementType" : "DimSize");
     }
-    return place(&meta, error);
+    return place(&meta, &header, error);
 }

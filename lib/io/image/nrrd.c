@@ -3,7 +3,6 @@
 
 #include "base/options.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -18,25 +17,11 @@ struct nrrd {
     struct image_layout *layout;
     int dimension, space_dimension;
     double size[AXES], direction[AXES][3], spacing[AXES], first[AXES], origin[3];
-    bool has_sizes, has_direction[AXES], has_directions, has_endian;
-    bool has_spacing, has_first, has_last, is_cell_centred;
+    bool has_direction[AXES], has_directions, is_cell_centred;
     enum kind kind[AXES];
     double sign[3];      /* of the space's axes, to RAS */
     double unit[3];      /* of the space's axes, m */
     double length[AXES]; /* unit of an axis, m */
-};
-
-const struct header_type nrrd_types[IMAGE_TYPES] = {
-    {IMAGE_UINT8, "uint8|uchar|unsigned char|uint8_t"},
-    {IMAGE_INT8, "int8|signed char|int8_t"},
-    {IMAGE_INT16, "int16|short|short int|signed short|signed short int|int16_t"},
-    {IMAGE_UINT16, "uint16|ushort|unsigned short|unsigned short int|uint16_t"},
-    {IMAGE_INT32, "int32|int|signed int|int32_t"},
-    {IMAGE_UINT32, "uint32|uint|unsigned int|uint32_t"},
-    {IMAGE_INT64, "int64|longlong|long long|long long int|signed long long|signed long long int|int64_t"},
-    {IMAGE_UINT64, "uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t"},
-    {IMAGE_FLOAT32, "float"},
-    {IMAGE_FLOAT64, "double"},
 };
 
 static enum status set_type(void *context, const struct text_header *header, struct error *error)
@@ -63,18 +48,16 @@ static enum status set_space_dimension(void *context, const struct text_header *
 static enum status set_space(void *context, const struct text_header *header, struct error *error)
 {
     static const struct {
-        const char *name, *letters;
+        const char *names;
         double sign[3];
         int space;
-    } spaces[] = {{"right-anterior-superior", "RAS", {1, 1, 1}, IMAGE_SPACE_SCANNER},
-                  {"left-anterior-superior", "LAS", {-1, 1, 1}, IMAGE_SPACE_SCANNER},
-                  {"left-posterior-superior", "LPS", {-1, -1, 1}, IMAGE_SPACE_SCANNER},
-                  {"scanner-xyz", "scanner-xyz", {1, 1, 1}, IMAGE_SPACE_UNKNOWN},
-                  {"3D-right-handed", "3D-right-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN}};
+    } spaces[] = {{"right-anterior-superior|RAS", {1, 1, 1}, IMAGE_SPACE_SCANNER},
+                  {"left-anterior-superior|LAS", {-1, 1, 1}, IMAGE_SPACE_SCANNER},
+                  {"left-posterior-superior|LPS", {-1, -1, 1}, IMAGE_SPACE_SCANNER},
+                  {"scanner-xyz|3D-right-handed", {1, 1, 1}, IMAGE_SPACE_UNKNOWN}};
     struct nrrd *nrrd = context;
     for (size_t s = 0; s < sizeof spaces / sizeof *spaces; s++) {
-        if (strcasecmp(header->value, spaces[s].name) == 0 ||
-            strcasecmp(header->value, spaces[s].letters) == 0) {
+        if (header_is(spaces[s].names, header->value)) {
             memcpy(nrrd->sign, spaces[s].sign, sizeof nrrd->sign);
             nrrd->image->space = spaces[s].space;
             nrrd->space_dimension = 3;
@@ -91,29 +74,19 @@ static enum status set_space(void *context, const struct text_header *header, st
 static enum status set_sizes(void *context, const struct text_header *header, struct error *error)
 {
     struct nrrd *nrrd = context;
-    nrrd->has_sizes = true;
     return header_vector(header, nrrd->dimension, nrrd->size, error);
 }
 
 static enum status set_spacings(void *context, const struct text_header *header, struct error *error)
 {
     struct nrrd *nrrd = context;
-    nrrd->has_spacing = true;
     return header_vector(header, nrrd->dimension, nrrd->spacing, error);
 }
 
 static enum status set_first(void *context, const struct text_header *header, struct error *error)
 {
     struct nrrd *nrrd = context;
-    nrrd->has_first = true;
     return header_vector(header, nrrd->dimension, nrrd->first, error);
-}
-
-static enum status set_last(void *context, const struct text_header *header, struct error *error)
-{
-    (void)header, (void)error;
-    ((struct nrrd *)context)->has_last = true;
-    return STATUS_OK;
 }
 
 static enum status set_centers(void *context, const struct text_header *header, struct error *error)
@@ -199,28 +172,25 @@ static enum status set_units(void *context, const struct text_header *header, st
 /* Kinds that are not here are lists of values. */
 static enum status set_kinds(void *context, const struct text_header *header, struct error *error)
 {
-    static const struct {
-        const char *name;
-        enum kind kind;
-    } kinds[] = {{"domain", DOMAIN},   {"space", DOMAIN},      {"???", DOMAIN},
-                 {"none", DOMAIN},     {"vector", VECTOR},     {"covariant-vector", VECTOR},
-                 {"normal", VECTOR},   {"3-vector", VECTOR},   {"3-gradient", VECTOR},
-                 {"3-normal", VECTOR}, {"2-vector", VECTOR},   {"RGB-color", COLOUR},
-                 {"3-color", COLOUR},  {"RGBA-color", COLOUR}, {"4-color", COLOUR}};
+    static const char *const names[] = {
+        [DOMAIN] = "domain|space|???|none",
+        [LIST] = "",
+        [VECTOR] = "vector|covariant-vector|normal|3-vector|3-gradient|3-normal|2-vector",
+        [COLOUR] = "RGB-color|3-color|RGBA-color|4-color"};
     struct nrrd *nrrd = context;
     const char *at = header->value;
     for (int a = 0; a < nrrd->dimension; a++) {
+        char word[32];
         size_t length = strcspn(at, " \t");
+        snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : 0), at);
         nrrd->kind[a] = LIST;
-        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
-            if (strlen(kinds[k].name) == length && strncasecmp(at, kinds[k].name, length) == 0) {
-                nrrd->kind[a] = kinds[k].kind;
-            }
+        for (int k = DOMAIN; k <= COLOUR; k++) {
+            nrrd->kind[a] = header_is(names[k], word) ? (enum kind)k : nrrd->kind[a];
         }
         if (length == 0) {
             return header_fail(header, "a word for each dimension is expected", error);
         }
-        if (length == 4 && strncasecmp(at, "time", length) == 0) {
+        if (header_is("time", word)) {
             return header_fail(header, "choose one volume and save it as an image of its own", error);
         }
         at += length + strspn(at + length, " \t");
@@ -230,12 +200,11 @@ static enum status set_kinds(void *context, const struct text_header *header, st
 
 static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
 {
-    static const char *const names[][3] = {
-        {"raw", "raw", "raw"}, {"gzip", "gz", "gz"}, {"ascii", "text", "txt"}};
-    struct image_layout *layout = ((struct nrrd *)context)->layout;
-    for (int e = 0; e < 9; e++) {
-        if (strcasecmp(names[e / 3][e % 3], header->value) == 0) {
-            layout->encoding = (enum image_encoding)(e / 3);
+    static const char *const names[] = {
+        [IMAGE_RAW] = "raw", [IMAGE_PACKED] = "gzip|gz", [IMAGE_ASCII] = "ascii|text|txt"};
+    for (int e = IMAGE_RAW; e <= IMAGE_ASCII; e++) {
+        if (header_is(names[e], header->value)) {
+            ((struct nrrd *)context)->layout->encoding = (enum image_encoding)e;
             return STATUS_OK;
         }
     }
@@ -244,10 +213,9 @@ static enum status set_encoding(void *context, const struct text_header *header,
 
 static enum status set_endian(void *context, const struct text_header *header, struct error *error)
 {
-    struct nrrd *nrrd = context;
-    nrrd->layout->swapped = strcasecmp(header->value, "big") == 0;
-    nrrd->has_endian = nrrd->layout->swapped || strcasecmp(header->value, "little") == 0;
-    return nrrd->has_endian ? STATUS_OK : header_fail(header, "little and big are read", error);
+    ((struct nrrd *)context)->layout->swapped = header_is("big", header->value);
+    return header_is("little|big", header->value) ? STATUS_OK
+                                                  : header_fail(header, "little and big are read", error);
 }
 
 static enum status set_line_skip(void *context, const struct text_header *header, struct error *error)
@@ -272,32 +240,29 @@ static enum status set_content(void *context, const struct text_header *header, 
     return STATUS_OK;
 }
 
+/* Fields of which it counts whether they are there. */
+enum { SIZES, SPACINGS, MINS, MAXS, ENDIAN };
+
 static const struct header_field fields[] = {
+    [SIZES] = {"sizes", set_sizes},
+    [SPACINGS] = {"spacings", set_spacings},
+    [MINS] = {"axis mins|axismins", set_first},
+    [MAXS] = {"axis maxs|axismaxs", NULL},
+    [ENDIAN] = {"endian", set_endian},
     {"type", set_type},
     {"dimension", set_dimension},
     {"space dimension", set_space_dimension},
     {"space", set_space},
-    {"sizes", set_sizes},
-    {"spacings", set_spacings},
-    {"axis mins", set_first},
-    {"axismins", set_first},
-    {"axis maxs", set_last},
-    {"axismaxs", set_last},
-    {"centers", set_centers},
-    {"centerings", set_centers},
+    {"centers|centerings", set_centers},
     {"space directions", set_directions},
     {"space origin", set_origin},
     {"space units", set_space_units},
     {"units", set_units},
     {"kinds", set_kinds},
     {"encoding", set_encoding},
-    {"endian", set_endian},
-    {"line skip", set_line_skip},
-    {"lineskip", set_line_skip},
-    {"byte skip", set_byte_skip},
-    {"byteskip", set_byte_skip},
-    {"data file", set_data_file},
-    {"datafile", set_data_file},
+    {"line skip|lineskip", set_line_skip},
+    {"byte skip|byteskip", set_byte_skip},
+    {"data file|datafile", set_data_file},
     {"content", set_content},
 };
 
@@ -342,7 +307,7 @@ static void set_values(struct nrrd *nrrd, int component)
 }
 
 /* The image's sizes and place. */
-static enum status place(struct nrrd *nrrd, struct error *error)
+static enum status place(struct nrrd *nrrd, const struct text_header *header, struct error *error)
 {
     double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
     struct image *image = nrrd->image;
@@ -369,7 +334,7 @@ static enum status place(struct nrrd *nrrd, struct error *error)
         places++;
     }
     if (image->space == IMAGE_SPACE_UNKNOWN) {
-        image_note(image, nrrd->has_directions || nrrd->has_spacing
+        image_note(image, nrrd->has_directions || header_has(header, SPACINGS)
                               ? "tells no anatomical space: axes taken to be RAS"
                               : "tells neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
@@ -382,23 +347,24 @@ static enum status place(struct nrrd *nrrd, struct error *error)
 static enum status check(const struct nrrd *nrrd, const struct text_header *header, struct error *error)
 {
     const struct image_layout *layout = nrrd->layout;
-    if (layout->type == NULL || !nrrd->has_sizes) {
+    bool ends_alone = header_has(header, MAXS) && !header_has(header, SPACINGS);
+    bool cells = header_has(header, MINS) && nrrd->is_cell_centred;
+    if (layout->type == NULL || !header_has(header, SIZES)) {
         return fail(error, STATUS_INPUT, "header: no %s: cut short?",
                     layout->type == NULL ? "type" : "sizes");
     }
     if (header->cut && layout->data_file[0] == '\0') {
         return fail(error, STATUS_INPUT, "cut short: the header ends without an empty line");
     }
-    if (!nrrd->has_directions && (nrrd->space_dimension > 0 || (nrrd->has_last && !nrrd->has_spacing) ||
-                                  (nrrd->is_cell_centred && nrrd->has_first))) {
+    if (!nrrd->has_directions && (nrrd->space_dimension > 0 || ends_alone || cells)) {
         return fail(
             error, STATUS_INPUT,
             "header: %s without space directions: where the voxels lie is not known: save it with these",
-            nrrd->space_dimension > 0              ? "a space"
-            : nrrd->has_last && !nrrd->has_spacing ? "axis maxs"
-                                                   : "axis mins of cells");
+            nrrd->space_dimension > 0 ? "a space"
+            : ends_alone              ? "axis maxs"
+                                      : "axis mins of cells");
     }
-    if (layout->type->bytes > 1 && layout->encoding != IMAGE_ASCII && !nrrd->has_endian) {
+    if (layout->type->bytes > 1 && layout->encoding != IMAGE_ASCII && !header_has(header, ENDIAN)) {
         return fail(error, STATUS_INPUT, "header: no endian: the byte order of %s is not known",
                     layout->type->name);
     }
@@ -429,5 +395,5 @@ enum status nrrd_header(struct image_source *source, struct image *image, struct
                                        : header_set(&header, fields, FIELDS, &nrrd, error));
     }
     RETURN_IF_ERROR(check(&nrrd, &header, error));
-    return place(&nrrd, error);
+    return place(&nrrd, &header, error);
 }

@@ -56,12 +56,25 @@ enum status header_next(struct text_header *header, struct error *error)
     return STATUS_OK;
 }
 
-enum status header_set(const struct text_header *header, const struct header_field *fields, size_t count,
+bool header_is(const char *names, const char *word)
+{
+    size_t length = strlen(word), name;
+    for (const char *at = names; *at != '\0'; at += name + (at[name] == '|')) {
+        name = strcspn(at, "|");
+        if (name == length && strncasecmp(at, word, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
                        void *context, struct error *error)
 {
     for (size_t f = 0; f < count; f++) {
-        if (strcasecmp(header->key, fields[f].key) == 0) {
-            return fields[f].set(context, header, error);
+        if (header_is(fields[f].keys, header->key)) {
+            header->given |= (uint64_t)1 << f;
+            return fields[f].set != NULL ? fields[f].set(context, header, error) : STATUS_OK;
         }
     }
     return STATUS_OK;
@@ -114,17 +127,39 @@ enum status header_integer(const struct text_header *header, int64_t least, int6
     return header_fail(header, why, error);
 }
 
+const struct header_type nrrd_types[IMAGE_TYPES] = {
+    {IMAGE_UINT8, "uint8|uchar|unsigned char|uint8_t"},
+    {IMAGE_INT8, "int8|signed char|int8_t"},
+    {IMAGE_INT16, "int16|short|short int|signed short|signed short int|int16_t"},
+    {IMAGE_UINT16, "uint16|ushort|unsigned short|unsigned short int|uint16_t"},
+    {IMAGE_INT32, "int32|int|signed int|int32_t"},
+    {IMAGE_UINT32, "uint32|uint|unsigned int|uint32_t"},
+    {IMAGE_INT64, "int64|longlong|long long|long long int|signed long long|signed long long int|int64_t"},
+    {IMAGE_UINT64, "uint64|ulonglong|unsigned long long|unsigned long long int|uint64_t"},
+    {IMAGE_FLOAT32, "float"},
+    {IMAGE_FLOAT64, "double"},
+};
+
+const struct header_type metaimage_types[IMAGE_TYPES] = {
+    {IMAGE_UINT8, "MET_UCHAR|MET_UCHAR_ARRAY"},
+    {IMAGE_INT8, "MET_CHAR|MET_CHAR_ARRAY"},
+    {IMAGE_INT16, "MET_SHORT|MET_SHORT_ARRAY"},
+    {IMAGE_UINT16, "MET_USHORT|MET_USHORT_ARRAY"},
+    {IMAGE_INT32, "MET_INT|MET_LONG|MET_INT_ARRAY|MET_LONG_ARRAY"},
+    {IMAGE_UINT32, "MET_UINT|MET_ULONG|MET_UINT_ARRAY|MET_ULONG_ARRAY"},
+    {IMAGE_INT64, "MET_LONG_LONG|MET_LONG_LONG_ARRAY"},
+    {IMAGE_UINT64, "MET_ULONG_LONG|MET_ULONG_LONG_ARRAY"},
+    {IMAGE_FLOAT32, "MET_FLOAT|MET_FLOAT_ARRAY"},
+    {IMAGE_FLOAT64, "MET_DOUBLE|MET_DOUBLE_ARRAY"},
+};
+
 enum status header_type(const struct text_header *header, const struct header_type *types,
                         struct image_layout *layout, struct error *error)
 {
-    size_t length = strlen(header->value), name;
     for (int t = 0; t < IMAGE_TYPES; t++) {
-        for (const char *at = types[t].names; *at != '\0'; at += name + (at[name] == '|')) {
-            name = strcspn(at, "|");
-            if (name == length && strncasecmp(at, header->value, name) == 0) {
-                layout->type = nifti_type(types[t].code);
-                return STATUS_OK;
-            }
+        if (header_is(types[t].names, header->value)) {
+            layout->type = nifti_type(types[t].code);
+            return STATUS_OK;
         }
     }
     return header_fail(header, "integers of 8 to 64 bits and floats of 32 and 64 are read", error);

@@ -16,26 +16,37 @@ struct text_header {
     size_t begun; /* bytes of the next line that line[] holds already */
     char *key;    /* of the field read last, in line[]; NULL: the header has ended */
     char *value;
-    bool is_pair; /* it is KEY:=VALUE */
-    bool cut;     /* the file has ended without an empty line */
+    bool is_pair;   /* it is KEY:=VALUE */
+    bool cut;       /* the file has ended without an empty line */
+    uint64_t given; /* bit f: field f of the table of header_set was there */
 };
 
-/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 64 KiB
- * and a header of more than 4 MiB. */
+/* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 64
+ * KiB and a header of more than 4 MiB. */
 MUST_CHECK enum status header_line(struct text_header *header, struct error *error);
 
 /* Read the next field; comment lines of NRRD are skipped. */
 MUST_CHECK enum status header_next(struct text_header *header, struct error *error);
 
-/* A key, in any case, and the function that takes its value. */
+/* Whether a word is one of the names A|B|..., in any case. */
+bool header_is(const char *names, const char *word);
+
+/* The keys of a field, A|B, and the function that takes its value; NULL: only whether it is there counts. */
 struct header_field {
-    const char *key;
+    const char *keys;
     enum status (*set)(void *context, const struct text_header *header, struct error *error);
 };
 
-/* Give the field read last to the function of its key, if there is one. */
-MUST_CHECK enum status header_set(const struct text_header *header, const struct header_field *fields,
-                                  size_t count, void *context, struct error *error);
+/* Note that the field read last is there, and give it to its function; keys that are not in the table, of at
+ * most 64 fields, are left. */
+MUST_CHECK enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
+                                  void *context, struct error *error);
+
+/* Whether field f of the table was there. */
+static inline bool header_has(const struct text_header *header, int f)
+{
+    return (header->given >> f & 1) != 0;
+}
 
 /* fail() with STATUS_INPUT for the field read last: "header: KEY: VALUE: WHY". */
 enum status header_fail(const struct text_header *header, const char *why, struct error *error);
