@@ -182,7 +182,7 @@ static void add_offset_force(const struct solid_system *system, const struct pre
                              const double *x, const double *thrust, double *residual)
 {
     int dim = system->dim;
-    double edge[2][3], force[3][3];
+    double edge[2][3], force[3][3] = {{0.0}}, half[3];
     for (int k = 1; k < dim; k++) {
         vector_subtract(dim, x + k * dim, x, edge[k - 1]);
     }
@@ -190,15 +190,14 @@ static void add_offset_force(const struct solid_system *system, const struct pre
         force[1][0] = -thrust[1];
         force[1][1] = thrust[0];
     } else { /* half the product of the edges */
-        vector_cross(edge[1], thrust, force[1]);
-        vector_cross(thrust, edge[0], force[2]);
-    }
-    for (int a = 0; a < dim; a++) {
-        force[0][a] = 0.0;
-        for (int k = 1; k < dim; k++) {
-            force[k][a] *= dim == 2 ? 1.0 : 0.5;
-            force[0][a] -= force[k][a];
+        for (int a = 0; a < 3; a++) {
+            half[a] = 0.5 * thrust[a];
         }
+        vector_cross(edge[1], half, force[1]);
+        vector_cross(half, edge[0], force[2]);
+    }
+    for (int k = 1; k < dim; k++) {
+        add_scaled(dim, -1.0, force[k], force[0]);
     }
     for (int k = 0; k < dim; k++) {
         struct average average = average_of_boundary(&load->corners, load->corner[f * dim + k]);

@@ -30,19 +30,25 @@ static void read_moduli(const struct assembly *input, struct moduli *of)
     }
 }
 
-/* Whether the shear moduli of two cells differ by so much that supports should stop between them. */
+/* The ratio of the largest shear modulus of two cells to the least. */
 static double jump_between(const struct moduli *a, const struct moduli *b)
 {
     return fmax(a->high, b->high) / fmin(a->low, b->low);
 }
 
-/* side[cells]: the parts into which jumps of the modulus within a region divide the sides of the input. Two
- * cells with a common face are on one side if they were so before, and no such jump is between them.
- * `*divided`: whether there are more than before. */
+/* Whether two cells are on one side of the input's interfaces. */
+static bool on_one_side(const struct assembly *input, int32_t a, int32_t b)
+{
+    return input->cell_side == NULL || input->cell_side[a] == input->cell_side[b];
+}
+
+/* side[cells]: the parts into which jumps of the modulus within a region divide the sides of the input.
+ * `*divided`: whether there are such. Cells on both sides of a jump that hang together around it stay on one
+ * side. */
 static enum status divide(const struct assembly *input, const struct faces *faces, const int32_t *region,
                           const struct moduli *of, int32_t *side, bool *divided, struct error *error)
 {
-    int64_t cells = input->cells.count;
+    int64_t cells = input->cells.count, count = 0;
     NEW_SCRATCH(int32_t, first, cells, error);
     *divided = false;
     for (int64_t c = 0; c < cells; c++) {
@@ -50,16 +56,18 @@ static enum status divide(const struct assembly *input, const struct faces *face
     }
     for (int64_t f = 0; f < faces->count; f++) {
         int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
-        bool together = b >= 0 && (input->cell_side == NULL || input->cell_side[a] == input->cell_side[b]);
-        if (together && region[a] == region[b] && jump_between(&of[a], &of[b]) > least_jump) {
-            *divided = true;
-        } else if (together) {
+        if (b >= 0 && on_one_side(input, a, b) &&
+            !(region[a] == region[b] && jump_between(&of[a], &of[b]) > least_jump)) {
             set_join(first, a, b);
         }
     }
-    for (int64_t c = 0, count = 0; c < cells; c++) {
+    for (int64_t c = 0; c < cells; c++) {
         int32_t head = set_first(first, (int32_t)c);
         side[c] = head == c ? (int32_t)count++ : side[head];
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        *divided = *divided || (b >= 0 && on_one_side(input, a, b) && side[a] != side[b]);
     }
     return STATUS_OK;
 }

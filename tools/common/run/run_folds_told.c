@@ -104,24 +104,22 @@ void run_folds_describe(const struct run *run, char *text, size_t size)
 
 void run_folds_judge(struct run *run)
 {
-    static const char press_less[] = ": press less, hold it there";
     char text[500];
-    run_folds_describe(run, text, sizeof text);
-    const char *remedy = "";
-    if (text[0] == '\0' && run_stability_describe(run, text, sizeof text)) {
+    bool stands = false, folds = run->folds.seen;
+    if (folds) {
+        run_folds_describe(run, text, sizeof text);
+    } else {
+        stands = run_stability_describe(run, text, sizeof text);
+    }
+    if (text[0] == '\0') {
+        return;
+    }
+    if (stands || run->scene->output.folds_allowed) {
         tool_note(run->tool, "%s: %s", run->scene->path, text);
         return;
     }
-    if (!run->folds.seen) {
-        remedy = press_less;
-    }
-    if (text[0] != '\0' && !run->scene->output.folds_allowed) {
-        run->folds.reported = true;
-        run->last_good = -1.0; /* the frames are all there */
-        run_fail(run, STATUS_VERDICT, "%s: %s%s, or allow it ([output] folds = allowed)", run->scene->path,
-                 text, remedy);
-    }
-    if (text[0] != '\0') {
-        tool_note(run->tool, "%s: %s", run->scene->path, text);
-    }
+    run->folds.reported = true;
+    run->last_good = -1.0; /* the frames are all there */
+    run_fail(run, STATUS_VERDICT, "%s: %s%s, or allow it ([output] folds = allowed)", run->scene->path, text,
+             folds ? "" : ": press less, hold it there");
 }
