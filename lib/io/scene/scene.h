@@ -128,7 +128,10 @@ struct scene_output {
     bool folds_allowed; /* a body that folds is not refused */
 };
 
+enum scene_method { SCENE_RELAXATION, SCENE_NEWTON };
+
 struct scene_solver {
+    enum scene_method method; /* quasi-static */
     enum scene_constraints constraints;
     enum scene_constraint_points constraint_points;
     enum scene_volume volume;

@@ -185,8 +185,14 @@ static enum status check_output(const struct place *place, struct scene *scene)
 static enum status check_solver(const struct place *place, struct scene *scene)
 {
     if (scene->analysis == SCENE_DYNAMIC) {
+        RETURN_IF_ERROR(place_forbid(place, "method", "a dynamic scene is stepped in time"));
         RETURN_IF_ERROR(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
         return place_forbid(place, "tolerance", "a dynamic scene ends at end_time");
+    }
+    if (scene->solver.method == SCENE_NEWTON) {
+        static const char why[] = "method = newton chooses its own increments of the load";
+        RETURN_IF_ERROR(place_forbid(place, "ramp_steps", why));
+        RETURN_IF_ERROR(place_forbid(place, "time_step_margin", why));
     }
     RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has no time"));
     return place_forbid(place, "damping", "a quasi-static scene chooses its own");
@@ -299,6 +305,7 @@ static const struct scene_key output_keys[] = {
     {NULL}};
 
 static const struct scene_key solver_keys[] = {
+    {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("relaxation", "newton")},
     {"constraints", VALUE_CHOICE, AT(scene, solver.constraints), WORDS("ebciem", "direct")},
     {"constraint_points", VALUE_CHOICE, AT(scene, solver.constraint_points), WORDS("hat", "node")},
     {"volume", VALUE_CHOICE, AT(scene, solver.volume), WORDS("nodal", "pointwise")},

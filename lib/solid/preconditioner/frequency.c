@@ -305,7 +305,7 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
 {
     int count = spectrum->iterations;
     int64_t size = system->node_count * system->dim;
-    *stability = (struct stability){spectrum->lowest / spectrum->largest, 0};
+    *stability = (struct stability){.least = spectrum->lowest / spectrum->largest};
     if (!(spectrum->lowest < least_told * spectrum->largest)) {
         return STATUS_OK;
     }

@@ -41,9 +41,10 @@ enum status system_state(struct solid_system *system, const struct state *state,
 {
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
-                                            {"node", STATE_COUNTS, &system->stability.node, 1}};
+                                            {"node", STATE_COUNTS, &system->stability.node, 1},
+                                            {"left", STATE_NUMBERS, &system->stability.left, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
-    RETURN_IF_ERROR(state_visit(state, "stability", stability, 2, error));
+    RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 3, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);
@@ -277,7 +278,7 @@ void system_resist(struct solid_system *system, const double *u, double *force)
     body_gather(&system->body, force);
 }
 
-struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
+struct deformation system_smooth_residual(struct solid_system *system, const double *u, double *residual)
 {
     double started = clock_seconds();
     struct deformation deformation = body_own_force(&system->body, u, residual);
@@ -287,16 +288,27 @@ struct deformation system_residual(struct solid_system *system, const double *u,
     double loaded = clock_seconds();
     system_add_penalties(system, u, residual);
     double held = clock_seconds();
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_move(&system->contacts[c], system->factor);
-        contact_force(&system->contacts[c], u, residual);
-    }
-    double touched = clock_seconds();
     body_gather(&system->body, residual);
-    system->cost.force += forced - started + clock_seconds() - touched;
+    system->cost.force += forced - started + clock_seconds() - held;
     system->cost.loads += loaded - forced;
     system->cost.constraints += held - loaded;
-    system->cost.contact += touched - held;
+    return deformation;
+}
+
+void system_add_contacts(struct solid_system *system, const double *u, double *force)
+{
+    double started = clock_seconds();
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        contact_move(&system->contacts[c], system->factor);
+        contact_force(&system->contacts[c], u, force);
+    }
+    system->cost.contact += clock_seconds() - started;
+}
+
+struct deformation system_residual(struct solid_system *system, const double *u, double *residual)
+{
+    struct deformation deformation = system_smooth_residual(system, u, residual);
+    system_add_contacts(system, u, residual);
     return deformation;
 }
 

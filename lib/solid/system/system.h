@@ -44,6 +44,8 @@ struct cost {
 struct stability {
     double least; /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
     int64_t node; /* of an unstable state: where its mode is largest */
+    double left;  /* Newton's method: share of the load at which it first left an equilibrium that is not stable;
+                     0: it has not */
 };
 
 struct condition;
@@ -111,6 +113,10 @@ void system_add_loads(const struct solid_system *system, const double *u, double
 
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
+
+/* Its two parts: without contacts; and what contacts add to force[node_count * dim]. */
+struct deformation system_smooth_residual(struct solid_system *system, const double *u, double *residual);
+void system_add_contacts(struct solid_system *system, const double *u, double *force);
 
 /* Accept the state that was evaluated last as the next step: see contact_accept. Evaluations alone do not
  * change the state. */

@@ -1,6 +1,6 @@
 #include "run/run.h"
 
-#include "solid/relaxation/relaxation.h"
+#include "solid/equilibrium/newton.h"
 
 static const char beyond_limit[] =
     "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
@@ -101,8 +101,8 @@ void run_quasi_static(struct run *run)
     struct error error;
     run_check_rigid_modes(run);
     double started = clock_seconds();
-    enum status status =
-        relaxation_run(&run->model->system, &options, run->u, run->model->row_force, &report, &error);
+    enum status status = (solver->method == SCENE_NEWTON ? newton_run : relaxation_run)(
+        &run->model->system, &options, run->u, run->model->row_force, &report, &error);
     run->solve_seconds += clock_seconds() - started;
     run_clear_progress(&run->display);
     tool_check(run->tool, status, &error);

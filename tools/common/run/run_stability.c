@@ -235,6 +235,14 @@ bool run_stability_describe(const struct run *run, char *text, size_t size)
                  when, moved, place);
         return stands;
     }
+    if (system->stability.left > 0.0 && !stability->negative) {
+        snprintf(text, size,
+                 "at %.4g of the load the body has left an equilibrium that is not stable: this one is, and "
+                 "so may be "
+                 "others, as its mirror image",
+                 system->stability.left);
+        return true;
+    }
     if (stability->negative) {
         point_text(system->dim, system->X + stability->node * system->dim, place);
         snprintf(text, size,

@@ -1,0 +1,224 @@
+/* The model of a Newton step, and conjugate gradients that lower it. */
+#include "base/vector.h"
+#include "solid/equilibrium/newton_private.h"
+#include "solid/system/energy.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double strain = 1e-6; /* about that much is a cell strained by the move of a product */
+enum { MOST_TURNS = 20 };          /* of the search along a direction */
+/* What is left of the gradient's norm when the multipliers of contacts advance. */
+static const double inner_left = 0.3;
+/* The estimated error below which a state is near an equilibrium. */
+static const double near_error = 0.1;
+/* The slope at the end of that search, by the one at its start: at most. */
+static const double slope_left = 0.1;
+
+double newton_longest(const struct newton *n, const double *x, int64_t *node)
+{
+    int dim = n->system->dim;
+    double most = 0.0;
+    for (int64_t k = 0; k < n->system->node_count; k++) {
+        double length2 = vector_dot(dim, x + k * dim, x + k * dim);
+        if (length2 > most) {
+            most = length2;
+            *node = k;
+        }
+    }
+    return sqrt(most);
+}
+
+void newton_touch(struct newton *n, const double *u, struct newton_forces *forces)
+{
+    if (n->system->contact_count > 0) {
+        memset(forces->contact, 0, (size_t)n->size * sizeof *forces->contact);
+        system_add_contacts(n->system, u, forces->contact);
+        forces->contact_energy = energy_contact(n->system);
+    }
+}
+
+struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces)
+{
+    struct deformation deformation = system_smooth_residual(n->system, u, forces->smooth);
+    n->report->force_evaluations++;
+    newton_touch(n, u, forces);
+    return deformation;
+}
+
+double newton_difference(const struct newton *n, const double *move)
+{
+    int64_t unused = 0;
+    double longest = newton_longest(n, move, &unused);
+    return strain * n->spacing / (longest > 0.0 ? longest : 1.0);
+}
+
+/* product = K move, with the stiffness K at u of all but the contacts. */
+static void multiply(struct newton *n, const double *move, double *product)
+{
+    double epsilon = newton_difference(n, move);
+    for (int64_t i = 0; i < n->size; i++) {
+        n->trial[i] = n->u[i] + epsilon * move[i];
+    }
+    (void)system_smooth_residual(n->system, n->trial, product);
+    n->report->force_evaluations++;
+    for (int64_t i = 0; i < n->size; i++) {
+        product[i] = (n->at_u.smooth[i] - product[i]) / epsilon;
+    }
+}
+
+/* Take the forces of the conditions, as they balance it, from minus the gradient of the model: under a large
+ * pressure their round-off would be more than what is left. */
+static void take_reactions(struct newton *n)
+{
+    const struct constraint *constraint = &n->preconditioner.constraint;
+    const struct constraint_rows *rows = &n->system->rows;
+    if (rows->count == 0) {
+        return;
+    }
+    preconditioner_smooth(&n->preconditioner, n->model.smooth, n->scaled);
+    constraint_values(constraint, n->scaled, constraint->multiplier);
+    constraint_solve(constraint, constraint->multiplier);
+    for (int64_t r = 0; r < rows->count; r++) {
+        struct average average = constraint_rows_average(rows, r);
+        double force[3];
+        for (int a = 0; a < rows->dim; a++) {
+            force[a] = -constraint->multiplier[r] * rows->direction[r * rows->dim + a];
+        }
+        average_spread(&average, rows->dim, force, n->model.smooth);
+    }
+}
+
+/* The forces of contacts at u + step + share search. */
+static void touch(struct newton *n, double share)
+{
+    for (int64_t i = 0; i < n->size; i++) {
+        n->trial[i] = n->u[i] + n->step[i] + share * n->search[i];
+    }
+    newton_touch(n, n->trial, &n->model);
+}
+
+/* scaled = M^-1 g of minus the model's gradient g at u + step; returns their product. */
+static double scale_gradient(struct newton *n)
+{
+    double *gradient = n->trial;
+    for (int64_t i = 0; i < n->size; i++) {
+        gradient[i] = n->model.smooth[i] + n->model.contact[i];
+    }
+    preconditioner_apply(&n->preconditioner, gradient, n->scaled);
+    return vector_product(n->size, gradient, n->scaled);
+}
+
+/* Near an equilibrium, a direction of negative stiffness: it is not stable, and the run leaves it. */
+static void note_bend(struct newton *n, bool is_negative)
+{
+    struct stability *stability = &n->system->stability;
+    if (is_negative && n->corrections > 0 && stability->left == 0.0 && n->report->error < near_error) {
+        stability->left = newton_load_share(n);
+    }
+}
+
+/* Along the search direction the model falls by `down` at first, and contacts apart by `slope` less `bend`
+ * times the way: the way to its minimum, at most `most`. Leaves the forces of contacts there. */
+static double search_along(struct newton *n, double down, double slope, double bend, double most)
+{
+    double way = bend * most > down ? down / bend : most, low = 0.0, high = INFINITY, at_low = down,
+           at_high = 0.0;
+    if (n->system->contact_count == 0) {
+        note_bend(n, bend < 0.0);
+        return way;
+    }
+    for (int turn = 0;; turn++) {
+        touch(n, way);
+        double at = slope - way * bend + vector_product(n->size, n->search, n->model.contact);
+        if (fabs(at) <= slope_left * down || (at > 0.0 && way >= most) || turn == MOST_TURNS) {
+            note_bend(n, at > down);
+            return way;
+        }
+        if (at > 0.0) {
+            low = way;
+            at_low = at;
+        } else {
+            high = way;
+            at_high = at;
+        }
+        double part = fmin(0.9, fmax(0.1, at_low / (at_low - at_high)));
+        way = isinf(high) ? fmin(most, 2.0 * way) : low + part * (high - low);
+    }
+}
+
+/* search = scaled + what makes it conjugate to the one before (Polak and Ribiere), or scaled alone where that
+ * does not lead down. Returns by how much the model falls along it at first. */
+static double turn_search(struct newton *n, double square, double square_before)
+{
+    double part = 0.0, down = 0.0;
+    if (square_before > 0.0) {
+        part = fmax(0.0, (square - vector_product(n->size, n->before, n->scaled)) / square_before);
+    }
+    for (int64_t i = 0; i < n->size; i++) {
+        n->before[i] = n->model.smooth[i] + n->model.contact[i];
+        n->search[i] = n->scaled[i] + part * n->search[i];
+        down += n->search[i] * n->before[i];
+    }
+    if (down > 0.0) {
+        return down;
+    }
+    memcpy(n->search, n->scaled, (size_t)n->size * sizeof *n->search);
+    return square;
+}
+
+/* Begin the model at u + step: minus its gradient, without reactions. */
+static void begin_model(struct newton *n)
+{
+    int64_t unused = 0;
+    memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
+    if (newton_longest(n, n->step, &unused) > 0.0) {
+        multiply(n, n->step, n->product);
+        add_scaled((int)n->size, -1.0, n->product, n->model.smooth);
+    }
+    take_reactions(n);
+    memset(n->search, 0, (size_t)n->size * sizeof *n->search);
+    touch(n, 0.0);
+}
+
+double newton_square(struct newton *n)
+{
+    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+    begin_model(n);
+    return scale_gradient(n);
+}
+
+bool newton_solve_model(struct newton *n, double share, double radius, double *square)
+{
+    int64_t unused = 0;
+    double before = 0.0, length = newton_longest(n, n->step, &unused), mark = 0.0;
+    begin_model(n);
+    for (int k = 0; k < NEWTON_MOST_ITERATIONS; k++) {
+        double now = scale_gradient(n);
+        *square = k == 0 ? now : *square;
+        mark = k == 0 ? now : mark;
+        if (n->system->contact_count > 0 && now < inner_left * inner_left * mark) {
+            system_augment_contacts(n->system, false);
+            touch(n, 0.0);
+            now = mark = scale_gradient(n);
+        }
+        if (!(now > share * share * *square)) {
+            return true;
+        }
+        double down = turn_search(n, now, before);
+        double most = (radius - length) / newton_longest(n, n->search, &unused);
+        multiply(n, n->search, n->product);
+        double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
+                                  vector_product(n->size, n->search, n->product), most);
+        for (int64_t i = 0; i < n->size; i++) {
+            n->step[i] += way * n->search[i];
+            n->model.smooth[i] -= way * n->product[i];
+        }
+        if (way >= most) {
+            return false;
+        }
+        before = now;
+        length = newton_longest(n, n->step, &unused);
+    }
+    return true;
+}

@@ -1,0 +1,96 @@
+/* The state of newton_run and the functions of its parts. */
+#pragma once
+
+#include "solid/preconditioner/preconditioner.h"
+#include "solid/equilibrium/newton.h"
+
+/* Forces at some parameters: of the body and its loads, and of the contacts; node_count * dim each. */
+struct newton_forces {
+    double *smooth, *contact;
+    double contact_energy; /* J (2D: J/m) */
+};
+
+struct newton {
+    struct solid_system *system;
+    const struct relaxation_options *options;
+    struct relaxation_report *report;
+    struct preconditioner preconditioner;
+    int64_t size;
+    double *u, *row_force;     /* the caller's; row_force may be NULL */
+    struct newton_forces at_u; /* residual at u */
+    double *trial;             /* parameters that are tried, */
+    struct newton_forces at_trial;
+    double *step;                               /* the minimum of the model, from u; */
+    struct newton_forces model;                 /* and minus the gradient of the model there */
+    double *search, *product, *scaled, *before; /* of the conjugate gradients */
+    double *last;                               /* the last increment's change of u, */
+    double last_change;                         /* and of the load; 0: none yet */
+    double *factor_change;                      /* of the load curves */
+    double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
+    double load, load_change;                   /* share of the load at u; the next increment, */
+    double most_change;                         /* and its most */
+    double radius;                              /* bound of a step at each node, m */
+    double square;                              /* r . M^-1 r at the start of the last correction */
+    double length;         /* of that step at the node that moved most, m; INFINITY: it was cut short */
+    double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
+    double largest_move;   /* so far, of a node, m */
+    double best_error;     /* at this load, */
+    int64_t best_step;     /* and when; the error has not halved since */
+    int64_t corrections;   /* at this load */
+    int64_t frames;        /* reported so far, without frame 0 */
+    enum status failure;
+};
+
+enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
+
+/* ---- newton_model.c ---- */
+
+/* By what a move is multiplied for a difference of forces that gives the stiffness along it. */
+double newton_difference(const struct newton *n, const double *move);
+
+/* The forces at u, and how far from inversion it is; only those of contacts. */
+struct deformation newton_evaluate(struct newton *n, const double *u, struct newton_forces *forces);
+void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
+
+/* Lower the model at u, from n->step, until the norm of its gradient is below `share` of what it was at
+ * first. False where the step reaches the radius at a node before. *square: the first norm squared. */
+bool newton_solve_model(struct newton *n, double share, double radius, double *square);
+
+/* r . M^-1 r of the residual r at u, without reactions. n->step becomes 0. */
+double newton_square(struct newton *n);
+
+/* Length of the longest of the nodes' vectors, and its node. */
+double newton_longest(const struct newton *n, const double *x, int64_t *node);
+
+/* ---- newton_stability.c ---- */
+
+/* Whether the equilibrium u is stable, into system->stability: conjugate gradients on a pseudo-random
+ * residual meet a direction of negative stiffness, if there is one. Until they have, they reduce the residual
+ * along it by nothing: their polynomial is 1 at 0, its roots are positive. So there is none once the
+ * residual's square, r . M^-1 r, is less than the share of one mode. */
+void newton_judge_stability(struct newton *n);
+
+/* ---- newton_state.c: memory, checkpoints, progress and frames ---- */
+
+MUST_CHECK enum status newton_allocate(struct newton *n, struct error *error);
+void newton_release(struct newton *n);
+
+/* Visit all that the next step needs from the steps before; see base/state.h. */
+MUST_CHECK enum status newton_visit(void *run, const struct state *state, struct error *error);
+
+/* The share of the load at u. A run with a given start (system_start) has the whole load from its first step
+ * on. */
+double newton_load_share(const struct newton *n);
+
+/* Call the caller's progress function; false where that ends the run. */
+bool newton_tell(struct newton *n);
+
+/* The load of the next equilibrium: that of the next frame, or 1. */
+double newton_load_to_hold(const struct newton *n);
+
+/* The forces of the conditions at u, which balance the residual along them, N (2D: N/m), into n->row_force.
+ */
+MUST_CHECK enum status newton_row_forces(struct newton *n, struct error *error);
+
+/* Report u, which is in equilibrium, as the next frame. */
+MUST_CHECK enum status newton_give_frame(struct newton *n, struct error *error);

@@ -1,0 +1,116 @@
+/* Memory, checkpoints, progress and frames of a run by Newton's method. */
+#include "base/memory.h"
+#include "solid/equilibrium/newton_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status newton_allocate(struct newton *n, struct error *error)
+{
+    double **vectors[] = {&n->at_u.smooth,  &n->at_u.contact,  &n->at_trial.smooth, &n->at_trial.contact,
+                          &n->model.smooth, &n->model.contact, &n->trial,           &n->step,
+                          &n->search,       &n->product,       &n->scaled,          &n->before,
+                          &n->last};
+    RETURN_IF_ERROR(preconditioner_build(n->system, true, &n->preconditioner, error));
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
+    }
+    return NEW_ARRAY(&n->factor_change, n->system->curve_count, error);
+}
+
+void newton_release(struct newton *n)
+{
+    FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
+             n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->before, n->last,
+             n->factor_change);
+    preconditioner_free(&n->preconditioner);
+}
+
+enum status newton_visit(void *run, const struct state *state, struct error *error)
+{
+    struct newton *n = run;
+    struct relaxation_report *report = n->report;
+    struct nodal_pressures *pressures = &n->system->body.volumes.pressures;
+    const struct state_value values[] = {
+        {"u", STATE_NUMBERS, n->u, n->size},
+        {"last", STATE_NUMBERS, n->last, n->size},
+        {"last_change", STATE_NUMBERS, &n->last_change, 1},
+        {"load", STATE_NUMBERS, &n->load, 1},
+        {"load_change", STATE_NUMBERS, &n->load_change, 1},
+        {"radius", STATE_NUMBERS, &n->radius, 1},
+        {"square", STATE_NUMBERS, &n->square, 1},
+        {"length", STATE_NUMBERS, &n->length, 1},
+        {"largest_move", STATE_NUMBERS, &n->largest_move, 1},
+        {"best_error", STATE_NUMBERS, &n->best_error, 1},
+        {"best_step", STATE_COUNTS, &n->best_step, 1},
+        {"corrections", STATE_COUNTS, &n->corrections, 1},
+        {"frames", STATE_COUNTS, &n->frames, 1},
+        {"held", STATE_NUMBERS, pressures->held, pressures->matrix.row_count},
+        {"change", STATE_NUMBERS, pressures->change, pressures->matrix.row_count},
+        {"lack", STATE_NUMBERS, &n->pressures_lack, 1},
+        {"steps", STATE_COUNTS, &report->steps, 1},
+        {"loading_steps", STATE_COUNTS, &report->loading_steps, 1},
+        {"force_evaluations", STATE_COUNTS, &report->force_evaluations, 1},
+        {"error", STATE_NUMBERS, &report->error, 1},
+        {"move", STATE_NUMBERS, &report->move, 1},
+        {"least_jacobian", STATE_NUMBERS, &report->least_jacobian, 1},
+    };
+    RETURN_IF_ERROR(state_visit(state, NULL, values, sizeof values / sizeof *values, error));
+    RETURN_IF_ERROR(preconditioner_state(&n->preconditioner, state, error));
+    return system_state(n->system, state, error);
+}
+
+double newton_load_share(const struct newton *n)
+{
+    return n->system->rows.start != NULL ? 1.0 : n->load;
+}
+
+bool newton_tell(struct newton *n)
+{
+    struct progress progress = {.step = n->report->steps,
+                                .time = newton_load_share(n),
+                                .error = n->report->error,
+                                .remaining = -1.0,
+                                .u = n->u,
+                                .state = newton_visit,
+                                .run = n};
+    return n->options->progress == NULL || n->options->progress(n->options->context, &progress);
+}
+
+static bool gives_frames(const struct newton *n)
+{
+    return n->options->frame != NULL && n->options->frames > 0;
+}
+
+double newton_load_to_hold(const struct newton *n)
+{
+    return gives_frames(n) ? fmin(1.0, (double)(n->frames + 1) / (double)n->options->frames) : 1.0;
+}
+
+enum status newton_row_forces(struct newton *n, struct error *error)
+{
+    struct constraint *constraint = &n->preconditioner.constraint;
+    int64_t count = n->system->rows.count;
+    (void)newton_evaluate(n, n->u, &n->at_u);
+    if (n->row_force == NULL || count == 0) {
+        return STATUS_OK;
+    }
+    for (int64_t i = 0; i < n->size; i++) {
+        n->trial[i] = n->at_u.smooth[i] + n->at_u.contact[i];
+    }
+    preconditioner_smooth(&n->preconditioner, n->trial, n->scaled);
+    constraint_project(constraint, NULL, n->scaled);
+    memcpy(n->row_force, constraint->multiplier, (size_t)count * sizeof *n->row_force);
+    return constraint_share_out(constraint, n->row_force, error);
+}
+
+enum status newton_give_frame(struct newton *n, struct error *error)
+{
+    RETURN_IF_ERROR(newton_row_forces(n, error));
+    if (gives_frames(n)) {
+        n->frames++;
+        n->options->frame(n->options->context, n->frames, newton_load_share(n), n->u);
+    }
+    return STATUS_OK;
+}
