@@ -69,5 +69,5 @@ bool text_ends(const char *text, const char *ending)
 
 enum status fail_memory(struct error *error, const char *what)
 {
-    return fail(error, STATUS_SYSTEM, "%s: out of memory", what);
+    return fail(error, STATUS_SYSTEM, "%s: out of memory", what + (what[0] == '&'));
 }

@@ -57,11 +57,12 @@ void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **a
 struct vtu_source {
     const char *at, *end;
     bool base64, swap, compressed;
-    int word; /* bytes of each number of the head: 4 or 8 */
+    int word;      /* bytes of each number of the head: 4 or 8 */
+    int64_t taken; /* bytes, out of base64, that the array took */
 };
 
 /* The bytes of an array, uncompressed and out of base64, to be freed; NULL after a failure. (vtu_data.c) */
-char *vtu_bytes(struct msh_reader *r, const struct vtu_source *source, int64_t *size);
+char *vtu_bytes(struct msh_reader *r, struct vtu_source *source, int64_t *size);
 
 /* Group elements by the array of the regions, add those of sets: all cells are there. (vtk_groups.c) */
 void vtk_add_groups(struct vtk_input *v);

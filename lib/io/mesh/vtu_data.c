@@ -5,8 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
-/* zlib compresses to 1/1032 at most (zlib.net, "Maximum compression factor"). */
-#define MOST_COMPRESSED 1032
+/* Memory for what is unpacked grows by so much. */
+#define STRIDE (1 << 20)
 
 /* The value of a digit of base64, -1: none. */
 static int digit_value(char c)
@@ -85,7 +85,7 @@ static int64_t head_word(const struct vtu_source *source, const char *bytes, int
     return number <= INT64_MAX ? (int64_t)number : INT64_MAX;
 }
 
-static char *read_plain(struct msh_reader *r, const struct vtu_source *source, int64_t *size)
+static char *read_plain(struct msh_reader *r, struct vtu_source *source, int64_t *size)
 {
     SCRATCH char *head = read_bytes(r, source, source->word);
     *size = head != NULL ? head_word(source, head, 0) : 0;
@@ -95,6 +95,7 @@ static char *read_plain(struct msh_reader *r, const struct vtu_source *source, i
     char *bytes = r->status == STATUS_OK ? read_bytes(r, source, source->word + *size) : NULL;
     if (bytes != NULL) {
         memmove(bytes, bytes + source->word, (size_t)*size);
+        source->taken = source->word + *size;
     }
     return bytes;
 }
@@ -116,8 +117,7 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
     blocks->count = head_word(source, first, 0);
     blocks->size = head_word(source, first, 1);
     blocks->last = head_word(source, first, 2);
-    if (blocks->count > left / source->word || blocks->last > blocks->size ||
-        (blocks->count > 0 && blocks->size > MOST_COMPRESSED * left / blocks->count)) {
+    if (blocks->count > left / source->word || blocks->last > blocks->size) {
         msh_fail(r, "%lld blocks of %lld bytes cannot be in what is left of the file",
                  (long long)blocks->count, (long long)blocks->size);
         return;
@@ -130,33 +130,51 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
     }
 }
 
-static char *read_compressed(struct msh_reader *r, const struct vtu_source *source, int64_t *size)
+/* Append what a block is unpacked to, `wanted` bytes: memory grows with what comes out. */
+static void unpack(struct msh_reader *r, const char *packed, int64_t count, int64_t wanted, char **bytes,
+                   int64_t *size, int64_t *room)
+{
+    z_stream stream = {.next_in = (const Bytef *)packed, .avail_in = (uInt)count};
+    int result = inflateInit(&stream);
+    while (r->status == STATUS_OK && result == Z_OK) {
+        MSH_GROW(r, bytes, *size + 1, room);
+        int64_t free_bytes = *room - *size < STRIDE ? *room - *size : STRIDE;
+        stream.next_out = (Bytef *)*bytes + *size;
+        stream.avail_out = (uInt)(free_bytes < wanted ? free_bytes : wanted);
+        uInt before = stream.avail_out;
+        result = r->status == STATUS_OK ? inflate(&stream, Z_NO_FLUSH) : result;
+        *size += before - stream.avail_out;
+        wanted -= before - stream.avail_out;
+    }
+    (void)inflateEnd(&stream);
+    if (result == Z_MEM_ERROR) {
+        r->status = fail_memory(r->error, "zlib");
+    } else if (result != Z_STREAM_END || wanted != 0) {
+        msh_fail(r, "a block of the compressed data is damaged");
+    }
+}
+
+static char *read_compressed(struct msh_reader *r, struct vtu_source *source, int64_t *size)
 {
     struct blocks blocks = {0};
     char *bytes = NULL;
+    int64_t room = 0;
     *size = 0;
     read_blocks(r, source, &blocks);
     SCRATCH char *head = blocks.head;
     if (r->status != STATUS_OK) {
         return NULL;
     }
-    int64_t at = (3 + blocks.count) * source->word;
-    SCRATCH char *packed = read_bytes(r, source, at + blocks.packed);
-    MSH_NEW(r, &bytes, blocks.count * blocks.size);
+    int64_t at = (3 + blocks.count) * source->word, end = at + blocks.packed;
+    SCRATCH char *packed = read_bytes(r, source, end);
+    source->taken = end;
+    MSH_GROW(r, &bytes, 1, &room);
     for (int64_t b = 0; r->status == STATUS_OK && b < blocks.count; b++) {
-        int64_t from = head_word(source, head, 3 + b);
+        int64_t count = head_word(source, head, 3 + b);
         bool is_last = b == blocks.count - 1 && blocks.last > 0;
-        uLongf wanted = (uLongf)(is_last ? blocks.last : blocks.size), got = wanted;
-        int result = from > blocks.packed
-                         ? Z_DATA_ERROR
-                         : uncompress((Bytef *)bytes + *size, &got, (const Bytef *)packed + at, (uLong)from);
-        if (result == Z_MEM_ERROR) {
-            r->status = fail_memory(r->error, "zlib");
-        } else if (result != Z_OK || got != wanted) {
-            msh_fail(r, "block %lld of the compressed data is damaged", (long long)b);
-        }
-        at += from;
-        *size += (int64_t)wanted;
+        count = count < end - at ? count : end - at;
+        unpack(r, packed + at, count, is_last ? blocks.last : blocks.size, &bytes, size, &room);
+        at += count;
     }
     if (r->status != STATUS_OK) {
         free(bytes);
@@ -165,7 +183,7 @@ static char *read_compressed(struct msh_reader *r, const struct vtu_source *sour
     return bytes;
 }
 
-char *vtu_bytes(struct msh_reader *r, const struct vtu_source *source, int64_t *size)
+char *vtu_bytes(struct msh_reader *r, struct vtu_source *source, int64_t *size)
 {
     return source->compressed ? read_compressed(r, source, size) : read_plain(r, source, size);
 }

@@ -133,7 +133,7 @@ static void begin(void *context, const char *name, const char **attributes, int 
 /* ---- data ---- */
 
 /* Read the array at hand from the bytes of its source. */
-static void read_binary(struct vtu *u, const struct vtu_source *source)
+static void read_binary(struct vtu *u, struct vtu_source *source)
 {
     struct msh_reader *r = u->v.in.r;
     int64_t size;
@@ -180,7 +180,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (strcmp(u->format, "ascii") == 0) {
         read_text(u, text, text + size);
     } else if (strcmp(u->format, "binary") == 0) {
-        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word});
+        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word, 0});
     } else if (strcmp(u->format, "appended") == 0) {
         MSH_GROW(r, &u->appended, u->appended_count + 1, &u->appended_room);
         if (r->status == STATUS_OK) {
@@ -206,6 +206,7 @@ static void read_appended(struct vtu *u)
         msh_fail(r, "it is missing, or does not begin with '_': the file is truncated");
     }
     bool base64 = r->status == STATUS_OK && memmem(tag, (size_t)(close - tag), "base64", 6) != NULL;
+    int64_t left = r->end - data; /* arrays do not share their bytes: they would be more than the file */
     for (int64_t i = 0; r->status == STATUS_OK && i < u->appended_count; i++) {
         u->array = u->appended[i].array;
         u->type = u->appended[i].type;
@@ -215,8 +216,14 @@ static void read_appended(struct vtu *u)
                      (long long)u->appended[i].offset);
             break;
         }
-        read_binary(u, &(struct vtu_source){data + 1 + u->appended[i].offset, r->end, base64, u->swap,
-                                            u->compressed, u->word});
+        struct vtu_source source = {
+            data + 1 + u->appended[i].offset, r->end, base64, u->swap, u->compressed, u->word, 0};
+        read_binary(u, &source);
+        left -= source.taken;
+        if (left < 0) {
+            msh_fail(r, "%s: the arrays together are larger than the file: their offsets are damaged",
+                     u->array.name);
+        }
     }
 }
 
