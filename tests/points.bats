@@ -85,6 +85,13 @@ for p in json.load(open("moved.mrk.json"))["markups"][0]["controlPoints"]: print
     awk -F, '!/^#/ { gsub(/"/, ""); print $12, $2, $3, $4 }' moved.fcsv >> moved
     awk -F, '!/^#/ { print $12, $2, $3, $4 }' after.fcsv after.fcsv | paste -d ' ' - moved | awk '
         { for (k = 2; k < 5; k++) if (($k - $(k + 4))^2 > 1e-6) exit 1; n += $1 == $5 } END { exit n != 16 }'
+    # Names are kept whole, in both formats and from one to the other.
+    sed 's/"p1"/"'"$(printf '%62s' '')"'é\\ud83d\\ude00, \\"a\\\\"/' before.mrk.json > named.mrk.json
+    interp -p named.mrk.json --deformed -o named.fcsv u.dat
+    interp -p named.fcsv --deformed -o again.mrk.json u.dat
+    /usr/bin/python3 -c 'import json
+a, b = ([p["label"] for p in json.load(open(f))["markups"][0]["controlPoints"]] for f in ("named.mrk.json", "again.mrk.json"))
+assert a == b and a[0].strip() == "\u00e9\U0001f600, \"a\\" and len(a[0]) == 69, (a, b)'
     refused 2 "landmarks are places: give those that they move to, as moved" mtled alone.scene block.mts
     sed 's/moved = after.fcsv/&\nunit = cm/' seen.scene > unit.scene
     refused 2 "landmarks are in mm" mtled unit.scene block.mts

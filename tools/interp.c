@@ -62,9 +62,9 @@ static const char usage[] =
 struct points {
     struct recorded solved; /* the computed field whose shape functions these are, if any */
     int64_t count;
-    double *x;    /* count * dim, m; owned */
-    int64_t *row; /* count: of the file; owned */
-    struct table_label *label; /* of its rows; NULL: none; owned */
+    double *x;           /* count * dim, m; owned */
+    int64_t *row;        /* count: of the file; owned */
+    char **label, *text; /* names of its rows, in text; NULL: none; owned */
     struct field_table table;
 };
 
@@ -86,7 +86,8 @@ static struct support_options parse(const struct tool *tool, int dim)
     if (tool_given(tool, "skip-outside") && !tool_given(tool, "points")) {
         tool_fail(tool, STATUS_INPUT, "--skip-outside needs -p (the stream's own points are in cells)");
     }
-    if (writes_landmarks(tool) && (!tool_given(tool, "deformed") || tool_given(tool, "field") || tool->text)) {
+    if (writes_landmarks(tool) &&
+        (!tool_given(tool, "deformed") || tool_given(tool, "field") || tool->text)) {
         tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are moved points: give --deformed, without -f and -t",
                   tool->output);
     }
@@ -113,6 +114,7 @@ static void read_table(const struct tool *tool, const char *file, const char *un
     points->count = table.rows;
     points->x = array_take(&table.values);
     points->label = array_take(&table.label);
+    points->text = array_take(&table.text);
     for (int64_t i = 0; i < points->count * dim; i++) {
         points->x[i] *= unit;
     }
@@ -327,7 +329,8 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
 }
 
 /* Write the moved points, with the names that they have in their file. */
-static void write_landmarks(const struct tool *tool, int dim, const struct points *points, const double *moved)
+static void write_landmarks(const struct tool *tool, int dim, const struct points *points,
+                            const double *moved)
 {
     struct target target;
     if (dim != 3) {
@@ -369,6 +372,6 @@ int main(int argc, char *argv[])
         tool_write(&tool, &output);
     }
     field_table_free(&points.table);
-    FREE_ALL(points.row, points.label);
+    FREE_ALL(points.row, points.label, points.text);
     return tool_end(&tool);
 }

@@ -67,72 +67,85 @@ bool json_next(struct json *json, char bracket)
     return json->status == STATUS_OK;
 }
 
-/* The bytes of a code point in UTF-8; returns their number. A half of a pair is '?'. */
-static int utf8(unsigned code, char bytes[3])
+/* Append a code point in UTF-8; what is none, or a NUL, is '?'. */
+static void put_utf8(unsigned code, char **to)
 {
-    bytes[0] = '?';
-    if (code >= 0xd800 && code < 0xe000) {
-        return 1;
+    int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    static const unsigned first[] = {0, 0xc0, 0xe0, 0xf0};
+    if (code == 0 || (code >= 0xd800 && code < 0xe000)) {
+        code = '?';
+        more = 0;
     }
-    if (code < 0x80) {
-        bytes[0] = (char)code;
-        return 1;
+    *(*to)++ = (char)(first[more] | code >> 6 * more);
+    while (more-- > 0) {
+        *(*to)++ = (char)(0x80 | (code >> 6 * more & 0x3f));
     }
-    int more = code < 0x800 ? 1 : 2;
-    bytes[0] = (char)(more == 1 ? 0xc0 | code >> 6 : 0xe0 | code >> 12);
-    bytes[1] = (char)(0x80 | (code >> 6 * (unsigned)(more - 1) & 0x3f));
-    bytes[2] = (char)(0x80 | (code & 0x3f));
-    return more + 1;
 }
 
-/* Take an escaped character, whose backslash has been taken; returns the number of its bytes, 0: none. */
-static int take_escape(struct json *json, char bytes[3])
+/* Take four digits behind "u"; -1: they are not there. */
+static int take_unit(struct json *json)
 {
-    static const char letters[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
-    char digits[5] = "", c = *json->at;
-    const char *letter = c != '\0' ? strchr(letters, c) : NULL;
-    if (letter != NULL) {
-        json->at++;
-        bytes[0] = meant[letter - letters];
-        return 1;
-    }
-    if (c != 'u' || strspn(json->at + 1, "0123456789abcdefABCDEF") < 4) {
-        return 0;
+    char digits[5] = "";
+    if (*json->at != 'u' || strspn(json->at + 1, "0123456789abcdefABCDEF") < 4) {
+        return -1;
     }
     memcpy(digits, json->at + 1, 4);
     json->at += 5;
-    return utf8((unsigned)strtoul(digits, NULL, 16), bytes);
+    return (int)strtol(digits, NULL, 16);
 }
 
-void json_string(struct json *json, char *text, size_t size)
+/* Take an escaped character, whose backslash has been taken; false: there is none. */
+static bool take_escape(struct json *json, char **to)
 {
-    size_t length = 0;
+    static const char letters[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
+    char c = *json->at;
+    const char *letter = c != '\0' ? strchr(letters, c) : NULL;
+    if (letter != NULL) {
+        json->at++;
+        *(*to)++ = meant[letter - letters];
+        return true;
+    }
+    int code = take_unit(json);
+    if (code >= 0xd800 && code < 0xdc00 && *json->at == '\\') { /* the first of a pair */
+        char *behind = json->at++;
+        int low = take_unit(json);
+        bool is_pair = low >= 0xdc00 && low < 0xe000;
+        json->at = is_pair ? json->at : behind;
+        code = is_pair ? 0x10000 + ((code - 0xd800) << 10) + low - 0xdc00 : code;
+    }
+    if (code >= 0) {
+        put_utf8((unsigned)code, to);
+    }
+    return code >= 0;
+}
+
+char *json_string(struct json *json)
+{
     if (!take(json, '"')) {
         json_fail(json, "a string is expected");
     }
+    char *text = json->at, *to = text;
     while (json->status == STATUS_OK && *json->at != '"') {
-        char bytes[3] = {*json->at};
-        json->at += bytes[0] != '\0';
-        int count = bytes[0] == '\\' ? take_escape(json, bytes) : (unsigned char)bytes[0] >= ' ';
-        if (count == 0) {
+        char c = *json->at;
+        json->at += c != '\0';
+        if (c == '\\' ? !take_escape(json, &to) : (unsigned char)c < ' ') {
             json_fail(json, "a string does not end, or has a control character or an unknown escape");
-            break;
-        }
-        if (length + (size_t)count < size) {
-            memcpy(text + length, bytes, (size_t)count);
-            length += (size_t)count;
+        } else if (c != '\\') {
+            *to++ = c;
         }
     }
     json->at += json->status == STATUS_OK;
-    text[length] = '\0';
+    *to = '\0';
+    return text;
 }
 
-void json_key(struct json *json, char *text, size_t size)
+char *json_key(struct json *json)
 {
-    json_string(json, text, size);
+    char *text = json_string(json);
     if (!take(json, ':')) {
         json_fail(json, "':' is expected behind a key");
     }
+    return text;
 }
 
 double json_number(struct json *json)
@@ -152,16 +165,16 @@ double json_number(struct json *json)
 
 void json_skip(struct json *json)
 {
-    char text[1], c = json_peek(json);
+    char c = json_peek(json);
     if (c == '{' || c == '[') {
         for (bool more = json_open(json, c); more; more = json_next(json, closing(c))) {
             if (c == '{') {
-                json_key(json, text, sizeof text);
+                (void)json_key(json);
             }
             json_skip(json);
         }
     } else if (c == '"') {
-        json_string(json, text, sizeof text);
+        (void)json_string(json);
     } else if (c >= 'a' && c <= 'z') {
         size_t length = strspn(json->at, "abcdefghijklmnopqrstuvwxyz");
         bool known =

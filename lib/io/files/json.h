@@ -5,7 +5,7 @@
 
 /* A text that is being scanned. The first failure stays: then nothing more is found, and every loop ends. */
 struct json {
-    const char *at; /* ends with a NUL */
+    char *at; /* ends with a NUL; strings are decoded in place */
     enum status status;
     struct error *error;
     int depth;
@@ -13,13 +13,13 @@ struct json {
 };
 
 /* The items of an object or array: for (bool more = json_open(json, '{'); more; more = json_next(json, '}')),
- * in an object with json_string(key) and json_colon in front of each value. */
+ * in an object with json_key in front of each value. */
 bool json_open(struct json *json, char bracket);
 bool json_next(struct json *json, char bracket);
 
-/* Take a string, as UTF-8, cut to size - 1 bytes; the key of an item with the colon behind it; a number. */
-void json_string(struct json *json, char *text, size_t size);
-void json_key(struct json *json, char *text, size_t size);
+/* Take a string, as UTF-8, which stays where it is; the key of an item with the colon behind it; a number. */
+char *json_string(struct json *json);
+char *json_key(struct json *json);
 double json_number(struct json *json);
 
 /* The next character that is no blank; NUL at the end and after a failure. */

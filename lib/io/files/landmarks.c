@@ -16,6 +16,7 @@ struct landmarks {
     struct table *table;
     int64_t room;
     double sign; /* of x and y, to RAS */
+    char *empty; /* label */
 };
 
 bool landmarks_named(const char *path)
@@ -23,7 +24,7 @@ bool landmarks_named(const char *path)
     return text_ends(path, ".mrk.json") || text_ends(path, ".fcsv");
 }
 
-static enum status append(struct landmarks *landmarks, const double x[3], const char *label, int64_t line,
+static enum status append(struct landmarks *landmarks, const double x[3], char *label, int64_t line,
                           struct error *error)
 {
     struct table *table = landmarks->table;
@@ -33,7 +34,7 @@ static enum status append(struct landmarks *landmarks, const double x[3], const 
     if (landmarks->room > room) {
         RETURN_IF_ERROR(RESIZE_ARRAY(&table->label, landmarks->room, error));
     }
-    snprintf(table->label[table->rows - 1].text, sizeof table->label->text, "%s", label);
+    table->label[table->rows - 1] = label;
     return STATUS_OK;
 }
 
@@ -41,16 +42,17 @@ static enum status append(struct landmarks *landmarks, const double x[3], const 
 
 static void read_point(struct landmarks *landmarks, struct json *json)
 {
-    char key[32], label[sizeof(struct table_label)] = "", status[16] = "defined";
+    char *label = landmarks->empty;
+    const char *status = "defined";
     double x[3] = {0};
     int count = 0;
     int64_t line = json->line;
     for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
-        json_key(json, key, sizeof key);
+        const char *key = json_key(json);
         if (strcmp(key, "label") == 0) {
-            json_string(json, label, sizeof label);
+            label = json_string(json);
         } else if (strcmp(key, "positionStatus") == 0) {
-            json_string(json, status, sizeof status);
+            status = json_string(json);
         } else if (strcmp(key, "position") == 0) {
             for (bool next = json_open(json, '['); next; next = json_next(json, ']')) {
                 double value = json_number(json);
@@ -72,8 +74,7 @@ static void read_point(struct landmarks *landmarks, struct json *json)
 /* The axes: "LPS" or "RAS". */
 static double read_system(struct json *json)
 {
-    char name[8] = "";
-    json_string(json, name, sizeof name);
+    const char *name = json_string(json);
     if (strcmp(name, "LPS") != 0 && strcmp(name, "RAS") != 0) {
         json_fail(json, "coordinateSystem is neither LPS nor RAS");
     }
@@ -82,18 +83,18 @@ static double read_system(struct json *json)
 
 static void read_units(struct json *json)
 {
-    char name[8] = "";
+    const char *name = "";
     if (json_peek(json) == '[') { /* a code of UCUM, the unit first */
         for (bool first = true, more = json_open(json, '['); more;
              more = json_next(json, ']'), first = false) {
             if (first) {
-                json_string(json, name, sizeof name);
+                name = json_string(json);
             } else {
                 json_skip(json);
             }
         }
     } else {
-        json_string(json, name, sizeof name);
+        name = json_string(json);
     }
     if (strcmp(name, "mm") != 0) {
         json_fail(json, "coordinateUnits is not mm");
@@ -102,12 +103,11 @@ static void read_units(struct json *json)
 
 static void read_markup(struct landmarks *landmarks, struct json *json)
 {
-    char key[32];
     struct table *table = landmarks->table;
     int64_t first = table->rows;
     double sign = -1; /* LPS if nothing is said */
     for (bool more = json_open(json, '{'); more; more = json_next(json, '}')) {
-        json_key(json, key, sizeof key);
+        const char *key = json_key(json);
         if (strcmp(key, "coordinateSystem") == 0) {
             sign = read_system(json);
         } else if (strcmp(key, "coordinateUnits") == 0) {
@@ -126,12 +126,11 @@ static void read_markup(struct landmarks *landmarks, struct json *json)
     }
 }
 
-static enum status read_markups(struct landmarks *landmarks, const char *text, struct error *error)
+static enum status read_markups(struct landmarks *landmarks, char *text, struct error *error)
 {
     struct json json = {.at = text, .error = error, .line = 1};
-    char key[32];
     for (bool more = json_open(&json, '{'); more; more = json_next(&json, '}')) {
-        json_key(&json, key, sizeof key);
+        const char *key = json_key(&json);
         if (strcmp(key, "markups") != 0) {
             json_skip(&json);
             continue;
@@ -148,17 +147,29 @@ static enum status read_markups(struct landmarks *landmarks, const char *text, s
 
 enum { COLUMNS = 32 };
 
-/* Split a line at its commas; quotes may stand around a field. Returns the number of fields. */
+/* Take a field of a line, which *rest moves behind, NULL at the end; quotes may stand around it, two within
+ * for one. */
+static char *take_field(char **rest)
+{
+    char *field = *rest + (**rest == '"'), *to = field, *at = field;
+    if (at == *rest) {
+        return strsep(rest, ",");
+    }
+    while (*at != '\0' && (*at != '"' || *++at == '"')) {
+        *to++ = *at++;
+    }
+    *rest = strchr(at, ',');
+    *rest += *rest != NULL;
+    *to = '\0';
+    return field;
+}
+
+/* Split a line at its commas. Returns the number of fields. */
 static int split(char *line, char *field[COLUMNS])
 {
     int count = 0;
     for (char *rest = line; rest != NULL && count < COLUMNS; count++) {
-        char *quote = *rest == '"' ? strchr(rest + 1, '"') : NULL;
-        field[count] = quote != NULL ? rest + 1 : rest;
-        rest = quote != NULL ? (*quote = '\0', strchr(quote + 1, ',')) : strchr(rest, ',');
-        if (rest != NULL) {
-            *rest++ = '\0';
-        }
+        field[count] = take_field(&rest);
     }
     return count;
 }
@@ -209,7 +220,7 @@ static enum status read_line(struct landmarks *landmarks, char *line, int64_t nu
         RETURN_IF_ERROR(parse_double(field[column[c]], column_names[c], -DBL_MAX, DBL_MAX, &x[c], error));
         x[c] *= c < 2 ? landmarks->sign : 1;
     }
-    const char *label = column[3] >= 0 && column[3] < count ? field[column[3]] : "";
+    char *label = column[3] >= 0 && column[3] < count ? field[column[3]] : landmarks->empty;
     return count == 0 ? STATUS_OK : append(landmarks, x, label, number, error);
 }
 
@@ -233,14 +244,17 @@ static enum status read_fcsv(struct landmarks *landmarks, char *text, struct err
 
 enum status landmarks_read(const char *path, struct table *table, struct error *error)
 {
-    FREED_BY(textfile_free) struct textfile file = {0};
+    struct textfile file;
     struct landmarks landmarks = {.table = table};
-    RETURN_IF_ERROR(bytefile_read(path, size_limit, &file, error));
+    enum status status = bytefile_read(path, size_limit, &file, error);
+    table->text = file.text;
+    RETURN_IF_ERROR(status);
+    landmarks.empty = file.text + file.size;
     if (strlen(file.text) != file.size) {
         return fail(error, STATUS_INPUT, "%s: a byte of value 0: not a text", path);
     }
-    enum status status = text_ends(path, ".fcsv") ? read_fcsv(&landmarks, file.text, error)
-                                                  : read_markups(&landmarks, file.text, error);
+    status = text_ends(path, ".fcsv") ? read_fcsv(&landmarks, file.text, error)
+                                      : read_markups(&landmarks, file.text, error);
     if (status == STATUS_INPUT) {
         struct error why = *error; /* begins with the line */
         return fail(error, status, "%s:%s", path, why.text);
@@ -251,24 +265,46 @@ enum status landmarks_read(const char *path, struct table *table, struct error *
 
 /* ---- writing ---- */
 
-/* Print a label, in JSON with what must be escaped. */
+/* The bytes of a character of UTF-8; 0: it is none. */
+static int utf8_length(const char *text)
+{
+    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned char c = (unsigned char)*text;
+    int length = c < 0x80 ? 1 : c < 0xc0 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : c < 0xf8 ? 4 : 0;
+    unsigned code = length > 1 ? c & (0x7fu >> length) : c;
+    for (int k = 1; k < length; k++) {
+        c = (unsigned char)text[k];
+        if ((c & 0xc0) != 0x80) {
+            return 0;
+        }
+        code = code << 6 | (c & 0x3f);
+    }
+    bool is_none = code < least[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
+    return is_none ? 0 : length;
+}
+
+/* Print a label: with what must be escaped, and '?' for what is no text. */
 static void print_label(FILE *file, const char *label, int64_t row, bool json)
 {
     if (label == NULL || label[0] == '\0') {
         fprintf(file, "F-%lld", (long long)row + 1);
         return;
     }
-    for (; *label != '\0'; label++) {
-        bool control = (unsigned char)*label < ' ';
-        if (json && (*label == '"' || *label == '\\')) {
-            fputc('\\', file);
+    for (int length; *label != '\0'; label += length > 0 ? length : 1) {
+        length = utf8_length(label);
+        if (*label == '"' || (json && *label == '\\')) {
+            fputc(json ? '\\' : '"', file);
         }
-        fputc(control || (!json && *label == '"') ? '?' : *label, file);
+        if (length == 0 || (unsigned char)*label < ' ') {
+            fputc('?', file);
+        } else {
+            fwrite(label, 1, (size_t)length, file);
+        }
     }
 }
 
 void landmarks_print(FILE *file, const char *path, int64_t count, const double *x, const int64_t *of,
-                     const struct table_label *label)
+                     char *const *label)
 {
     bool json = !text_ends(path, ".fcsv");
     fputs(json ? "{\"@schema\": \"https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/"
@@ -280,7 +316,7 @@ void landmarks_print(FILE *file, const char *path, int64_t count, const double *
           file);
     for (int64_t i = 0; i < count; i++) {
         int64_t row = of != NULL ? of[i] : i;
-        const char *name = label != NULL ? label[row].text : NULL;
+        const char *name = label != NULL ? label[row] : NULL;
         double sign = json ? -1e3 : 1e3; /* .fcsv in RAS: not all programs read another system there */
         const double mm[3] = {sign * x[3 * i] + 0.0, sign * x[3 * i + 1] + 0.0, 1e3 * x[3 * i + 2] + 0.0};
         if (json) {

@@ -15,4 +15,4 @@ MUST_CHECK enum status landmarks_read(const char *path, struct table *table, str
 /* Print points, x[3 * count] in RAS, m, in the format that `path` names: in mm, LPS in JSON, RAS in .fcsv.
  * label: NULL, or the names of the points of[0 .. count - 1]. */
 void landmarks_print(FILE *file, const char *path, int64_t count, const double *x, const int64_t *of,
-                     const struct table_label *label);
+                     char *const *label);

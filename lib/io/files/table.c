@@ -159,6 +159,6 @@ double table_unit(const char *path, double given)
 
 void table_free(struct table *table)
 {
-    FREE_ALL(table->values, table->line, table->block_ptr, table->label);
+    FREE_ALL(table->values, table->line, table->block_ptr, table->label, table->text);
     *table = (struct table){0};
 }

@@ -8,19 +8,15 @@
 
 #include <stdint.h>
 
-/* The name of a row. */
-struct table_label {
-    char text[64];
-};
-
 struct table {
-    int64_t rows, cols; /* both >= 1 */
-    double *values;     /* rows x cols, finite; NAN where table_read_open read none */
-    int64_t *line;      /* rows: the line of each row in its file (the triangle's number for binary STL) */
-    struct table_label *label; /* rows: of landmarks; NULL: rows have no names */
-    int64_t block_count;       /* >= 1 */
-    int64_t *block_ptr; /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
-                           one */
+    int64_t rows, cols;  /* both >= 1 */
+    double *values;      /* rows x cols, finite; NAN where table_read_open read none */
+    int64_t *line;       /* rows: the line of each row in its file (the triangle's number for binary STL) */
+    char **label;        /* rows: names of landmarks, in `text`; NULL: rows have no names */
+    char *text;          /* of the file, decoded */
+    int64_t block_count; /* >= 1 */
+    int64_t *block_ptr;  /* block_count + 1: block b holds rows block_ptr[b] .. block_ptr[b + 1] - 1, at least
+                            one */
 };
 
 /* The unit of a table's lengths, m: what its format states (landmarks: mm), else the one given. */

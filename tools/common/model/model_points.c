@@ -40,8 +40,8 @@ static enum status check_pairs(const struct point_section *p, const struct table
     }
     for (int64_t i = 0; i < table->rows && table->label != NULL && moved->label != NULL; i++) {
         for (int64_t k = 0; k < table->rows; k++) {
-            if (strcmp(moved->label[i].text, table->label[k].text) == 0 &&
-                strcmp(moved->label[i].text, table->label[i].text) != 0) {
+            if (strcmp(moved->label[i], table->label[k]) == 0 &&
+                strcmp(moved->label[i], table->label[i]) != 0) {
                 return fail_moved(p, error, "its points have another order than those of points");
             }
         }
