@@ -223,6 +223,10 @@ END
     refused 2 "axis maxs without space directions" voxels -h 2mm <(printf "${head}axis maxs: 8 8 8\n\n%064d" 1)
     refused 2 "a space without space directions" voxels -h 2mm <(printf "${head}space: LPS\nspacings: 2 2 2\n\n%064d" 1)
     refused 2 "axis mins of cells without" voxels -h 2mm <(printf "${head}spacings: 2 2 2\ncenters: cell cell cell\naxis mins: 0 0 0\n\n%064d" 1)
+    mkfifo data.raw
+    timeout 5 bash -c 'echo > data.raw' 3>&- & # whoever reads it waits no longer than this
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: data.raw\n' > piped.nhdr
+    refused 2 "its data, data.raw: is a folder, pipe or device, not a file" voxels -h 2mm piped.nhdr
     # A pipe by its name is read once.
     tomesh -u m -o body.msh <(cat cube.mts)
     nodes -u m body.msh 2> note | mts check

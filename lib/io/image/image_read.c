@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const double exact_integers = 9007199254740992.0; /* 2^53: all up to there are doubles */
 static const char pair_magic[] = "ni1";
@@ -180,9 +181,11 @@ static enum status read_partner(const char *name, const struct image_layout *lay
     NEW_SCRATCH(char, partner, (int64_t)(folder + sizeof layout->data_file), error);
     memcpy(partner, name, folder);
     memcpy(partner + folder, layout->data_file, sizeof layout->data_file);
-    FREED_BY(descriptor_close) int descriptor = open(partner, O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        return fail(error, STATUS_INPUT, "its data, %s: %s", partner, strerror(errno));
+    FREED_BY(descriptor_close) int descriptor = open(partner, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    struct stat facts;
+    if (descriptor < 0 || fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
+        return fail(error, STATUS_INPUT, "its data, %s: %s", partner,
+                    descriptor < 0 ? strerror(errno) : "is a folder, pipe or device, not a file");
     }
     enum status status = image_source_open(&source, descriptor, error);
     if (status == STATUS_OK) {
