@@ -37,6 +37,29 @@ faulty() {
     names - < "$corpus/inp/solid" | grep -q Low
 }
 
+@test "decks of Abaqus: nodes of the assembly, reference points, are left out, and not taken for those of the part" {
+    sed '/^.End Instance/r /dev/stdin' "$corpus/inp/part" > points.inp << 'END'
+*Node
+1, 5., 0., 0.
+*Node, nset=rp2
+2, 5., 0., 0.
+*Nset, nset=RP-1
+1,
+*Nset, nset=gen, generate
+1, 2, 1
+*Nset, nset=picked, instance=plate-1
+1, 2
+*Nset, nset=mixed
+plate-1.3, RP-1, 4
+*Element, type=MASS, elset=m
+1, 1
+END
+    [ "$(names points.inp)" = "Set-1 edge picked,mixed,Set-1" ]
+    grep -q "left out: \*NODE of the assembly, \*ELEMENT, " said
+    grep -q "group 'RP-1' of dimension 0 is empty: left out" said
+    [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 1 2 0 3" ]
+}
+
 @test "decks of Abaqus: what is wrong is told by keyword and line" {
     faulty inp << 'END'
 solid|s/^2, 1.D0/2, nan/|*NODE: line 6: coordinate: 'nan' is not a finite number
@@ -46,6 +69,8 @@ solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 9, 1/|*ELEMENT: line 17: element 7 has more t
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 8/|element 7 names the node 8, which is not in the file
 solid|s/type=C3D4/type=C3D7/|TYPE=C3D7: no element that is read
 solid|s/type=C3D4/type=SPRINGA/|TYPE=SPRINGA: no element that is read
+solid|s/type=C3D4/type=F3D4/|TYPE=F3D4: no element that is read
+solid|s/type=C3D4/type=C3D27/|TYPE=C3D27: no element that is read (C3D4, C3D20, CPE3, S3, ...; no beams, fluids, C3D27): take it out
 solid|s/^base, 9/base, 8/|sets: line 28: there is no node 8
 solid|s/^base, 9/bass, 9/|sets: line 28: there is no set 'bass'
 solid|s/^Low, S3/Low, S6/|sets: line 31: a prism has no face 'S6'

@@ -38,6 +38,7 @@ struct inp {
     char keyword[64];              /* "*SOLID SECTION": upper case, one blank between words */
     int parts, instances;
     bool in_assembly; /* and not in an instance */
+    bool is_apart;    /* the numbers of a set are those of the assembly itself, which are left out */
     char instance[INP_LONGEST_NAME + 1];
 
     bool *is_shell; /* of each element */

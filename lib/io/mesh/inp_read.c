@@ -146,7 +146,12 @@ static void read_nodes(struct inp *p)
         for (int k = 0; k < 3 && inp_next_field(p, &word, &length); k++) {
             x[k] = length > 0 ? input_real(r, "coordinate", word, length) : 0;
         }
-        input_add_node(&p->in, tag, x);
+        if (!p->in_assembly) {
+            input_add_node(&p->in, tag, x);
+        }
+    }
+    if (p->in_assembly) { /* of reference points, in a count of its own */
+        input_leave_out(&p->in, "*NODE of the assembly");
     }
     if (is_set) {
         inp_add_places(p, 'N', value, first, p->in.node_count);
@@ -154,15 +159,18 @@ static void read_nodes(struct inp *p)
 }
 
 /* The type of gmsh of an element type: its beginning tells the dimension, the digits behind it the number of
- * nodes. 0: it is not read. */
+ * nodes. 0: it is not read; F3D4 is a tetrahedron in CalculiX, a quadrangle in Abaqus. */
 static int find_type(const char *name, bool *is_shell)
 {
     static const struct {
         const char *begin;
         int dim;
-    } kinds[] = {{"C3D", 3},  {"SC", 3},  {"DC3D", 3},  {"AC3D", 3}, {"CPS", 2},  {"CPE", 2},  {"CPEG", 2},
-                 {"S", 2},    {"M3D", 2}, {"SFM3D", 2}, {"R3D", 2},  {"STRI", 2}, {"DC2D", 2}, {"DS", 2},
-                 {"AC2D", 2}, {"T3D", 1}, {"T2D", 1},   {"R2D", 1},  {"F3D", 3}};
+        bool is_shell;
+    } kinds[] = {{"C3D", 3, false},  {"SC", 3, false},  {"DC3D", 3, false}, {"AC3D", 3, false},
+                 {"CPS", 2, false},  {"CPE", 2, false}, {"CPEG", 2, false}, {"DC2D", 2, false},
+                 {"AC2D", 2, false}, {"S", 2, true},    {"STRI", 2, true},  {"M3D", 2, true},
+                 {"SFM3D", 2, true}, {"R3D", 2, true},  {"DS", 2, true},    {"T3D", 1, false},
+                 {"T2D", 1, false},  {"R2D", 1, false}};
     size_t begin = strcspn(name, "0123456789");
     begin += begin > 0 && name[begin] != '\0' && strchr("32", name[begin]) != NULL && name[begin + 1] == 'D'
                  ? 2
@@ -171,7 +179,7 @@ static int find_type(const char *name, bool *is_shell)
     *is_shell = false;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         if (strlen(kinds[i].begin) == begin && strncasecmp(name, kinds[i].begin, begin) == 0) {
-            *is_shell = kinds[i].dim == 2 && strchr("CDA", toupper((unsigned char)name[0])) == NULL;
+            *is_shell = kinds[i].is_shell;
             return nodes < 27 ? input_type(kinds[i].dim, nodes == 65 ? 6 : nodes) : 0;
         }
     }
@@ -218,7 +226,8 @@ static void read_elements(struct inp *p)
     int type = find_type(name, &is_shell);
     if (type == 0) {
         msh_fail(r,
-                 "%s%s: no element that is read (C3D4, CPE3, S3, ... of first or second order): take it out",
+                 "%s%s: no element that is read (C3D4, C3D20, CPE3, S3, ...; no beams, fluids, C3D27): take "
+                 "it out",
                  has_type ? "TYPE=" : "no TYPE", name);
     }
     while (r->status == STATUS_OK && inp_next_data(p)) {
@@ -289,7 +298,7 @@ static void read_keyword(struct inp *p)
     bool of_parts = is_of_parts(p);
     if (strcmp(key, "*NODE") == 0) {
         read_nodes(p);
-    } else if (strcmp(key, "*ELEMENT") == 0) {
+    } else if (strcmp(key, "*ELEMENT") == 0 && !p->in_assembly) {
         read_elements(p);
     } else if (strcmp(key, "*NSET") == 0 || strcmp(key, "*ELSET") == 0) {
         inp_read_set(p, key[1]);

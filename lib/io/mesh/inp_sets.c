@@ -83,9 +83,15 @@ static void add_word(struct inp *p, struct inp_item *item, char kind, const char
     if (length > 0 && isdigit((unsigned char)word[0])) {
         item->how = INP_TAG;
         item->first = input_whole(p->in.r, "member", word, length, 1, MSH_LARGEST_TAG);
+        if (p->is_apart && !numbered) {
+            return;
+        }
     } else {
         item->how = INP_SET;
         item->members = find_set(p, kind, word, (size_t)length);
+        if (item->members != NULL && item->set->kind == 'S') {
+            item->members->of_surface = true;
+        }
     }
     add_item(p, item);
 }
@@ -108,7 +114,7 @@ static void read_ranges(struct inp *p, struct inp_item *item)
         item->first = number[0];
         item->last = number[1];
         item->step = number[2];
-        if (count > 1) {
+        if (count > 1 && !p->is_apart) {
             add_item(p, item);
         }
     }
@@ -124,6 +130,7 @@ void inp_read_set(struct inp *p, char kind)
     if (item.set == NULL) {
         return;
     }
+    p->is_apart = p->in_assembly && !inp_parameter(p, "INSTANCE", value, sizeof value);
     item.set->is_defined = true;
     if (kind == 'N' && inp_parameter(p, "ELSET", value, sizeof value)) { /* the nodes of its elements */
         item.how = INP_SET;
@@ -151,6 +158,7 @@ void inp_read_surface(struct inp *p)
     (void)inp_parameter(p, "NAME", name, sizeof name);
     (void)inp_parameter(p, "TYPE", value, sizeof value);
     bool of_nodes = strcasecmp(value, "NODE") == 0;
+    p->is_apart = p->in_assembly;
     if ((!of_nodes && strcasecmp(value, "ELEMENT") != 0) ||
         inp_parameter(p, "COMBINE", value, sizeof value)) {
         msh_fail(p->in.r, "only surfaces of element faces and of nodes are read: take '%s' out", name);
@@ -171,9 +179,6 @@ void inp_read_surface(struct inp *p)
             item.label[count] = '\0';
         }
         add_word(p, &item, of_nodes ? 'N' : 'E', word, length);
-        if (!of_nodes && p->in.r->status == STATUS_OK && p->items[p->item_count - 1].how == INP_SET) {
-            p->items[p->item_count - 1].members->of_surface = true;
-        }
     }
 }
 
