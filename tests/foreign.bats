@@ -92,6 +92,9 @@ END
     [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 1" ]
     [ "$(names "$corpus/feb/v40")" = "low,top side base,rim" ]
     grep -q "left out: Material, SurfacePair, MeshDomains" said
+    sed 's|<NodeSet name="base">|<NodeSet name="none"/><Surface name="bare"/>&|' "$corpus/feb/v40" > empty
+    [ "$(names empty)" = "low,top side base,rim" ]
+    [ "$(grep -c "group '\(none\|bare\)' of dimension [02] is empty: left out" said)" -eq 2 ]
     [ "$(mts print cells.region body.mts | paste -sd' ')" = "0 0 0 1 0" ]
     [ "$(mts print sets.ptr body.mts | paste -sd' ')" = "0 3 5" ]
     [ "$(mts print facets body.mts | wc -l)" -eq 3 ]
@@ -105,6 +108,8 @@ END
     faulty feb << 'END'
 v25|s/version="2.5"/version="1.2"/|<febio_spec>: line 3: version '1.2': open it in FEBio Studio
 v25|s/ 2, 1, 0</ 2, inf, 0</|<Nodes>: line 6: coordinate: 'inf' is not a finite number
+v25|s/ 2, 1, 0</ 2, 1, 0, 0</|<Nodes>: line 6: node 5 has more than three coordinates
+v25|s/brick/&&&&&&&&&&&&&&&&&&&&&&&&&&/|<Elements>: line 11: the name 'brickbrickbrickbrickbrickbrickbrickbrick...' is longer than 127 bytes
 v25|s/ 2, 1, 0</ 2, 1</|<Nodes>: line 6: coordinate: '' is not
 v25|s/id="4"> 2/id="3"> 2/|nodes: node tag 3 stands twice
 v25|s/"hex8"/"hex9"/|<Elements>: line 11: type 'hex9': no element that is read
@@ -195,6 +200,11 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
     refused 2 "several arrays of whole numbers: --regions-of tells which has the regions: one, other" nodes -u m unknown.vtu
     refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
     [ "$(names numbered.vtu)" = body ]
+    # facets of tovtk are not nodes of a set of that name
+    sed 's/^<PointData>/&<DataArray type="Int8" Name="facets.n">0 1 0 0 1<\/DataArray><DataArray type="Int8" Name="set.">1 1 1 1 1<\/DataArray>/' \
+        "$corpus/vtk/text.vtu" > both.vtu
+    [ "$(names both.vtu)" = "a,b n_3,n_4" ]
+    grep -q "left out: set\.$" said
     # one cell of each type, each of volume 1
     [ "$(names "$corpus/vtk/types.vtk")" = "a_b_-1,a_b_2" ]
     nodes -u m -v "$corpus/vtk/types.vtk" > body.mts 2> said
@@ -221,6 +231,12 @@ text.vtk|s/^POINTS 5/POINTS 2147483647/|POINTS: 6442450941 numbers cannot be in
 text.vtk|s/^4 0 1 2 3/7 0 1 2 3/|CELLS: cell 1: more points than there are
 text.vtk|s/^CELLS/CELLZ/|CELLZ: what this is, is not known
 text.vtk|s/ double/ triple/|numbers of type 'triple' are not read
+text.vtk|s/^CELLS 2 10/CELLS 2 11/;s/^4 1 2 3 4/& 0/|CELLS: 11 numbers, where 2 cells take 10
+text.vtk|s/^CELLS 2 10/CELLS 12 10/|CELLS: 12 cells cannot have 10 numbers
+text.vtk|s/^CELLS/&&&&&&&&&&&&&&/|a word of more than 63 bytes
+text.vtk|s/^set.n 1 5/set.n 1 4/;s/^1 1 0 0 0/1 1 0 0/|set.n: 4 numbers, not one for each of 5 points
+text.vtu|s/region.a/&&&&&&&&&&&&&&&&&&&/|FieldData: line 5: the name 'region.aregion.aregion.aregion.aregion.a...' is longer than 127 bytes
+text.vtk|s/^4 0 1 2 3/4 0 1 2 9/|elements: element 0 names the node 9
 END
     for file in text.vtu packed.vtu raw.vtu text.vtk binary.vtk; do
         size=$(wc -c < "$corpus/vtk/$file")
@@ -252,6 +268,7 @@ END
     timeout 5 bash -c 'echo > data.raw' 3>&- & # whoever reads it waits no longer than this
     printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: data.raw\n' > piped.nhdr
     refused 2 "its data, data.raw: is a folder, pipe or device, not a file" voxels -h 2mm piped.nhdr
+    refused 2 "more data than 2 values" sample <(printf 'NRRD0004\ntype: uint8\ndimension: 2\nsizes: 1 2\nencoding: ascii\n\n1 2 300\n') cube.mts
     # A pipe by its name is read once.
     tomesh -u m -o body.msh <(cat cube.mts)
     nodes -u m body.msh 2> note | mts check

@@ -114,7 +114,7 @@ static enum status read_values(struct image_source *source, const struct image_l
                                struct image *image, struct error *error)
 {
     size_t size = (size_t)layout->type->bytes, done_count = 0, capacity = 0, got;
-    double more[2];
+    char word[64]; /* what is behind them */
     NEW_SCRATCH(unsigned char, block, (int64_t)(block_values * size + 8), error);
     RETURN_IF_ERROR(skip(source, layout, count * size, error));
     while (done_count < count) {
@@ -130,10 +130,13 @@ static enum status read_values(struct image_source *source, const struct image_l
             return fail(error, STATUS_INPUT, "cut short: %zu values, the header says %zu", done_count, count);
         }
     }
-    struct image_layout byte = *layout;
-    byte.type = nifti_type(IMAGE_UINT8);
-    RETURN_IF_ERROR(take_numbers(source, &byte, 1, block, more, &got, error));
-    return got == 0
+    if (layout->encoding == IMAGE_ASCII) {
+        RETURN_IF_ERROR(take_word(source, word, error));
+    } else {
+        RETURN_IF_ERROR(image_source_take(source, word, 1, &got, error));
+        word[0] = got > 0 ? 'x' : '\0';
+    }
+    return word[0] == '\0'
                ? STATUS_OK
                : fail(error, STATUS_INPUT,
                       "more data than %zu values, as the header says: it lies about size or type", count);

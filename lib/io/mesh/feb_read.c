@@ -14,9 +14,10 @@ struct feb {
     struct mesh_input in;
     bool in_mesh;
     enum content content;
-    int type;       /* of the elements */
-    char name[128]; /* of the part, surface or set */
-    int64_t id;     /* of the node or element, or INPUT_NO_TAG */
+    int type;                  /* of the elements */
+    char name[INPUT_NAME + 1]; /* of the part, surface or set */
+    bool is_empty;             /* nothing in it yet */
+    int64_t id;                /* of the node or element, or INPUT_NO_TAG */
     char section[64];
 };
 
@@ -54,7 +55,10 @@ static void begin_content(struct feb *f, const char *element, const char **attri
     for (int k = NODES; k <= NODE_SET; k++) {
         f->content = strcmp(element, contents[k]) == 0 ? (enum content)k : f->content;
     }
-    snprintf(f->name, sizeof f->name, "%s", name != NULL ? name : "");
+    f->is_empty = true;
+    if (snprintf(f->name, sizeof f->name, "%s", name != NULL ? name : "") > INPUT_NAME) {
+        msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
+    }
     if (f->content == ELEMENTS) {
         if (name == NULL) {
             const char *material = xml_attribute(attributes, "mat");
@@ -127,6 +131,9 @@ static void add_node(struct feb *f, const char *text, const char *end)
         const char *word = input_word(&text, end, &length);
         x[k] = input_real(f->in.r, "coordinate", word != NULL ? word : "", length);
     }
+    if (input_word(&text, end, &length) != NULL) {
+        msh_fail(f->in.r, "node %lld has more than three coordinates", (long long)f->id);
+    }
     input_add_node(&f->in, f->id, x);
 }
 
@@ -165,7 +172,21 @@ static void add_list(struct feb *f, const char *text, const char *end)
     while (f->in.r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
         int64_t node = input_whole(f->in.r, "node", word, length, 1, MSH_LARGEST_TAG);
         (void)input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
+        f->is_empty = false;
     }
+}
+
+/* A part, surface or set ends: one without anything in it is a group, too. */
+static void end_content(struct feb *f, const char *text, const char *end)
+{
+    static const int dim[] = {[SURFACE] = 2, [EDGE] = 1, [NODE_SET] = 0};
+    if (f->content == NODE_SET) {
+        add_list(f, text, end);
+    }
+    if (f->is_empty && f->content != NODES) {
+        (void)input_group(&f->in, f->content == ELEMENTS ? msh_type(f->type).dim : dim[f->content], f->name);
+    }
+    f->content = OTHERS;
 }
 
 static void end(void *context, const char *name, const char *text, int64_t size, int depth)
@@ -175,13 +196,11 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (!f->in_mesh || f->content == OTHERS || depth > 3) {
         return;
     }
-    if (depth == 2 && f->content == NODE_SET) {
-        add_list(f, text, text + size);
-    }
-    f->content = depth == 2 ? OTHERS : f->content;
-    if (depth != 3) {
+    if (depth < 3) {
+        end_content(f, text, text + size);
         return;
     }
+    f->is_empty = false;
     if (f->content == NODES) {
         add_node(f, text, text + size);
     } else if (f->content == NODE_SET) {

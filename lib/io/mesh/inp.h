@@ -3,14 +3,12 @@
 
 #include "io/mesh/mesh_input.h"
 
-#define INP_LONGEST_NAME 127
-
 /* A set of nodes or elements, or a surface. Names are compared without regard to case; those of an assembly
  * are apart from those of its part. */
 struct inp_set {
     char kind; /* 'N', 'E' or 'S' */
     bool of_assembly;
-    char name[INP_LONGEST_NAME + 1];
+    char name[INPUT_NAME + 1];
     bool is_defined;    /* not only named by others */
     bool of_surface;    /* elements: a surface uses it */
     int64_t head, tail; /* the members: of inp->members, -1: none */
@@ -39,7 +37,7 @@ struct inp {
     int parts, instances;
     bool in_assembly; /* and not in an instance */
     bool is_apart;    /* the numbers of a set are those of the assembly itself, which are left out */
-    char instance[INP_LONGEST_NAME + 1];
+    char instance[INPUT_NAME + 1];
 
     bool *is_shell; /* of each element */
     int64_t shell_room;

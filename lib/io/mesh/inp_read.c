@@ -129,11 +129,11 @@ bool inp_parameter(struct inp *p, const char *name, char value[], size_t size)
 static void read_nodes(struct inp *p)
 {
     struct msh_reader *r = p->in.r;
-    char value[INP_LONGEST_NAME + 1];
+    char value[INPUT_NAME + 1];
     const char *word;
     int64_t length, first = p->in.node_count;
     bool is_set = inp_parameter(p, "NSET", value, sizeof value);
-    char system[INP_LONGEST_NAME + 1];
+    char system[INPUT_NAME + 1];
     if (inp_parameter(p, "SYSTEM", system, sizeof system) && strcasecmp(system, "R") != 0) {
         msh_fail(r, "the nodes are not in Cartesian coordinates: write them with SYSTEM=R");
     }
@@ -218,7 +218,7 @@ static void read_element(struct inp *p, int type, bool is_shell)
 static void read_elements(struct inp *p)
 {
     struct msh_reader *r = p->in.r;
-    char name[32] = "", set[INP_LONGEST_NAME + 1];
+    char name[32] = "", set[INPUT_NAME + 1];
     bool is_shell;
     bool is_set = inp_parameter(p, "ELSET", set, sizeof set);
     int64_t first = p->in.element_count;

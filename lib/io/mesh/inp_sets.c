@@ -26,8 +26,8 @@ static struct inp_set *find_set(struct inp *p, char kind, const char *text, size
         text += prefix + 1;
         length -= prefix + 1;
     }
-    if (length == 0 || length > INP_LONGEST_NAME) {
-        msh_fail(r, "the name of a set is missing, or longer than %d bytes", INP_LONGEST_NAME);
+    if (length == 0 || length > INPUT_NAME) {
+        msh_fail(r, "the name of a set is missing, or longer than %d bytes", INPUT_NAME);
     }
     MSH_GROW(r, &p->sets, p->set_count + 1, &p->set_room);
     if (r->status != STATUS_OK) {
@@ -122,7 +122,7 @@ static void read_ranges(struct inp *p, struct inp_item *item)
 
 void inp_read_set(struct inp *p, char kind)
 {
-    char name[INP_LONGEST_NAME + 1] = "", value[INP_LONGEST_NAME + 1];
+    char name[INPUT_NAME + 1] = "", value[INPUT_NAME + 1];
     const char *word;
     int64_t length;
     (void)inp_parameter(p, kind == 'N' ? "NSET" : "ELSET", name, sizeof name);
@@ -152,7 +152,7 @@ void inp_read_set(struct inp *p, char kind)
 
 void inp_read_surface(struct inp *p)
 {
-    char name[INP_LONGEST_NAME + 1] = "", value[INP_LONGEST_NAME + 1] = "ELEMENT";
+    char name[INPUT_NAME + 1] = "", value[INPUT_NAME + 1] = "ELEMENT";
     const char *word, *label;
     int64_t length, count;
     (void)inp_parameter(p, "NAME", name, sizeof name);
@@ -184,7 +184,7 @@ void inp_read_surface(struct inp *p)
 
 void inp_read_section(struct inp *p)
 {
-    char name[INP_LONGEST_NAME + 1];
+    char name[INPUT_NAME + 1];
     if (inp_parameter(p, "ELSET", name, sizeof name)) {
         struct inp_item item = {.how = INP_SET, .members = find_set(p, 'E', name, strlen(name))};
         add_item(p, &item);

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LONGEST_NAME 127
-
 int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
                     int64_t most)
 {
@@ -104,8 +102,8 @@ int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const in
 int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length)
 {
     struct msh_reader *r = in->r;
-    if (length < 1 || length > LONGEST_NAME || memchr(text, '\0', (size_t)length) != NULL) {
-        msh_fail(r, "a name is empty or longer than %d bytes", LONGEST_NAME);
+    if (length < 1 || length > INPUT_NAME || memchr(text, '\0', (size_t)length) != NULL) {
+        msh_fail(r, "a name is empty or longer than %d bytes", INPUT_NAME);
     }
     MSH_GROW(r, &r->names, r->name_count + 1, &in->name_room);
     if (r->status != STATUS_OK) {
@@ -121,7 +119,7 @@ int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_
 struct named_group {
     int64_t key;
     int dim;
-    char name[LONGEST_NAME + 1];
+    char name[INPUT_NAME + 1];
 };
 
 static int compare_groups(const void *left, const void *right)
@@ -134,7 +132,7 @@ int64_t input_group(struct mesh_input *in, int dim, const char *text)
 {
     struct msh_reader *r = in->r;
     struct named_group wanted = {.dim = dim};
-    strncpy(wanted.name, text, LONGEST_NAME);
+    strncpy(wanted.name, text, INPUT_NAME);
     struct named_group *const *found = tfind(&wanted, &in->groups, compare_groups);
     if (found != NULL) {
         return (*found)->key;
@@ -209,10 +207,11 @@ static void find_corners(struct mesh_input *in)
             e++;
         }
         if (place < 0) {
-            bool of_set = in->elements[e].tag == INPUT_NO_TAG;
-            msh_fail(r, "%s%.0lld names the node %lld, which is not in the file",
-                     of_set ? "a set or surface" : "element ", of_set ? 0LL : (long long)in->elements[e].tag,
-                     (long long)in->corners[k]);
+            char name[40] = "a set or surface";
+            if (in->elements[e].tag != INPUT_NO_TAG) {
+                snprintf(name, sizeof name, "element %lld", (long long)in->elements[e].tag);
+            }
+            msh_fail(r, "%s names the node %lld, which is not in the file", name, (long long)in->corners[k]);
         }
     }
 }

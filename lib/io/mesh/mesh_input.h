@@ -29,6 +29,9 @@ struct mesh_input {
 
 #define INPUT_NO_TAG (-1)
 
+/* Most bytes of the name of a group. */
+#define INPUT_NAME 127
+
 /* gmsh's number of a point. */
 #define INPUT_POINT 15
 

@@ -133,10 +133,15 @@ static void add_sets(struct vtk_input *v)
 {
     for (int64_t i = 0; v->in.r->status == STATUS_OK && i < v->count; i++) {
         const struct vtk_array *array = &v->arrays[i];
-        if (array->kind != VTK_OF_POINTS || array->count != v->point_count) {
+        if (array->kind != VTK_OF_POINTS) {
             continue;
         }
-        int64_t key = input_group(&v->in, 0, strchr(array->name, '.') + 1);
+        const char *name = strchr(array->name, '.') + 1;
+        int64_t key = input_add_group(&v->in, 0, name, (int64_t)strlen(name));
+        if (array->count != v->point_count) {
+            msh_fail(v->in.r, "%s: %lld numbers, not one for each of %lld points", array->name,
+                     (long long)array->count, (long long)v->point_count);
+        }
         for (int64_t n = 0; v->in.r->status == STATUS_OK && n < v->point_count; n++) {
             if (array->whole[n] != 0) {
                 (void)input_add_element(&v->in, INPUT_NO_TAG, INPUT_POINT, &n, key);

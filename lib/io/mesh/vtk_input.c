@@ -39,7 +39,8 @@ static bool begins(const char *name, const char *begin)
 bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const struct vtk_type *type)
 {
     bool whole = type->is_whole && array->components == 1 && !begins(array->name, "vtk");
-    bool set = begins(array->name, "set.") || begins(array->name, "facets.");
+    const char *dot = strchr(array->name, '.'); /* of a name that is not empty */
+    bool set = (begins(array->name, "set.") || begins(array->name, "facets.")) && dot[1] != '\0';
     bool of_grid = array->kind >= VTK_POINTS && array->kind <= VTK_TYPES;
     bool wanted =
         of_grid || (whole && (array->kind == VTK_OF_CELLS || (array->kind == VTK_OF_POINTS && set) ||

@@ -29,7 +29,7 @@ enum vtk_kind {
 
 struct vtk_array {
     enum vtk_kind kind;
-    char name[128];
+    char name[INPUT_NAME + 1];
     int64_t components, count; /* count: of all its numbers */
     double *real;              /* count; of points */
     int64_t *whole;            /* count; of all else */

@@ -28,12 +28,15 @@ static bool next_line(struct msh_reader *r, const char **at, const char **end)
 }
 
 /* The next word of a line, copied; empty if there is none. */
-static void copy_word(const char **at, const char *end, char text[], size_t size)
+static void copy_word(struct msh_reader *r, const char **at, const char *end, char text[], size_t size)
 {
     int64_t length;
     const char *word = input_word(at, end, &length);
-    snprintf(text, size, "%.*s", word != NULL && length < (int64_t)size ? (int)length : 0,
-             word != NULL ? word : "");
+    if (length >= (int64_t)size) {
+        msh_fail(r, "a word of more than %zu bytes", size - 1);
+        length = 0;
+    }
+    snprintf(text, size, "%.*s", (int)length, word != NULL ? word : "");
 }
 
 /* The first word of the next line that has one; empty at the end. The rest of the line is then behind it. */
@@ -41,7 +44,7 @@ static void first_word(struct msh_reader *r, const char **at, const char **end, 
 {
     text[0] = '\0';
     while (text[0] == '\0' && next_line(r, at, end)) {
-        copy_word(at, *end, text, size);
+        copy_word(r, at, *end, text, size);
     }
 }
 
@@ -55,7 +58,7 @@ static int64_t next_count(struct msh_reader *r, const char **at, const char *end
 static const struct vtk_type *next_type(struct msh_reader *r, const char **at, const char *end)
 {
     char name[32];
-    copy_word(at, end, name, sizeof name);
+    copy_word(r, at, end, name, sizeof name);
     const struct vtk_type *type = vtk_find_type(name);
     if (type == NULL) {
         msh_fail(r, "numbers of type '%s' are not read", name);
@@ -152,6 +155,10 @@ static void split_cells(struct legacy *l)
         to += count;
         end->whole[c] = to;
     }
+    if (from < l->v.arrays[place].count) {
+        msh_fail(r, "%lld numbers, where %lld cells take %lld", (long long)l->v.arrays[place].count,
+                 (long long)l->v.cell_count, (long long)from);
+    }
     l->v.arrays[place].count = to;
 }
 
@@ -184,7 +191,10 @@ static void read_cells(struct legacy *l, const char *at, const char *end)
         return;
     }
     l->v.cell_count = count;
-    if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL && count <= size) {
+    if (count > size) {
+        msh_fail(r, "%lld cells cannot have %lld numbers", (long long)count, (long long)size);
+    }
+    if (read_numbers(l, &array, vtk_find_type("int"), size) != NULL) {
         split_cells(l);
     }
 }
@@ -210,11 +220,11 @@ static void read_field(struct legacy *l, const char *at, const char *end)
 {
     struct msh_reader *r = l->v.in.r;
     char name[128];
-    copy_word(&at, end, name, sizeof name);
+    copy_word(r, &at, end, name, sizeof name);
     int64_t count = next_count(r, &at, end, 0);
     int64_t i = 0;
     while (i < count && next_line(r, &at, &end)) {
-        copy_word(&at, end, name, sizeof name);
+        copy_word(r, &at, end, name, sizeof name);
         if (strcasecmp(name, "METADATA") == 0) {
             while (next_line(r, &at, &end) && end > at) {
             }
@@ -245,7 +255,7 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
             continue;
         }
         int64_t components = attributes[i].components;
-        copy_word(&at, end, name, sizeof name);
+        copy_word(r, &at, end, name, sizeof name);
         components = components < 0 ? next_count(r, &at, end, 1) : components;
         const struct vtk_type *type = attributes[i].components == -2
                                           ? vtk_find_type(l->binary ? "unsigned_char" : "float")
@@ -256,7 +266,7 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
         components = components > 0 ? components : at < end ? next_count(r, &at, end, 1) : 1;
         const char *table = r->at; /* the line LOOKUP_TABLE, which may be left out */
         if (attributes[i].components == 0 && next_line(r, &at, &end)) {
-            copy_word(&at, end, l->keyword, sizeof l->keyword);
+            copy_word(r, &at, end, l->keyword, sizeof l->keyword);
             r->at = strcasecmp(l->keyword, "LOOKUP_TABLE") == 0 ? r->at : table;
         }
         read_array(l, name, components, l->tuples, type);
@@ -291,7 +301,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
         }
     } else if (strcasecmp(key, "LOOKUP_TABLE") == 0) {
         char name[64];
-        copy_word(&at, end, name, sizeof name);
+        copy_word(r, &at, end, name, sizeof name);
         enum vtk_kind data = l->data;
         l->data = VTK_OTHER;
         read_array(l, name, 4, next_count(r, &at, end, 0),
@@ -321,7 +331,7 @@ static void read_head(struct legacy *l)
         first_word(r, &at, &end, word, sizeof word);
     }
     if (strcasecmp(word, "DATASET") == 0) {
-        copy_word(&at, end, word, sizeof word);
+        copy_word(r, &at, end, word, sizeof word);
     }
     if (strcasecmp(word, "UNSTRUCTURED_GRID") != 0) {
         msh_fail(r, "'%s' is no UNSTRUCTURED_GRID: ParaView's filter Append Datasets makes one of it", word);

@@ -131,10 +131,10 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
 }
 
 /* Append what a block is unpacked to, `wanted` bytes: memory grows with what comes out. */
-static void unpack(struct msh_reader *r, const char *packed, int64_t count, int64_t wanted, char **bytes,
+static void unpack(struct msh_reader *r, char *packed, int64_t count, int64_t wanted, char **bytes,
                    int64_t *size, int64_t *room)
 {
-    z_stream stream = {.next_in = (const Bytef *)packed, .avail_in = (uInt)count};
+    z_stream stream = {.next_in = (Bytef *)packed, .avail_in = (uInt)count};
     int result = inflateInit(&stream);
     while (r->status == STATUS_OK && result == Z_OK) {
         MSH_GROW(r, bytes, *size + 1, room);

@@ -95,7 +95,9 @@ static void begin_array(struct vtu *u, const char **attributes)
     struct msh_reader *r = u->v.in.r;
     const char *name = xml_attribute(attributes, "Name"), *type = xml_attribute(attributes, "type"),
                *format = xml_attribute(attributes, "format");
-    snprintf(u->array.name, sizeof u->array.name, "%s", name != NULL ? name : u->section);
+    if (snprintf(u->array.name, sizeof u->array.name, "%s", name != NULL ? name : u->section) > INPUT_NAME) {
+        msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
+    }
     snprintf(u->format, sizeof u->format, "%s", format != NULL ? format : "ascii");
     u->array.components = number_of(u, attributes, "NumberOfComponents", 1);
     u->array.components += u->array.components == 0;
