@@ -35,6 +35,7 @@ faulty() {
     [ "$(names --midside use "$corpus/inp/second")" = "a s n" ]
     [ "$(mts print facets body.mts | wc -l)" -eq 8 ]
     names - < "$corpus/inp/solid" | grep -q Low
+    sed 's/NSET=base/NSET="the base"/; s/^base/"the base"/' "$corpus/inp/solid" | names - | grep -q Nall,the_base,some,upper,points
 }
 
 @test "decks of Abaqus: nodes of the assembly, reference points, are left out, and not taken for those of the part" {
@@ -72,6 +73,8 @@ solid|s/type=C3D4/type=SPRINGA/|TYPE=SPRINGA: no element that is read
 solid|s/type=C3D4/type=F3D4/|TYPE=F3D4: no element that is read
 solid|s/type=C3D4/type=C3D27/|TYPE=C3D27: no element that is read (C3D4, C3D20, CPE3, S3, ...; no beams, fluids, C3D27): take it out
 solid|s/^base, 9/base, 8/|sets: line 28: there is no node 8
+solid|s/^base, 9/upper, 9/|sets: line 28: there is no set 'upper' as yet
+solid|s/^.NODE, /*NODE, INPUT=x, /|*NODE: line 4: other files are not read: put the lines of that file in its place
 solid|s/^base, 9/bass, 9/|sets: line 28: there is no set 'bass'
 solid|s/^Low, S3/Low, S6/|sets: line 31: a prism has no face 'S6'
 solid|s/^Low, S3/Low/|*SURFACE: line 31: no face is named
@@ -200,6 +203,8 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
     refused 2 "several arrays of whole numbers: --regions-of tells which has the regions: one, other" nodes -u m unknown.vtu
     refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
     [ "$(names numbered.vtu)" = body ]
+    sed 's/$/\r/' "$corpus/vtk/text.vtk" > windows.vtk
+    [ "$(names windows.vtk)" = "a,b n" ]
     # facets of tovtk are not nodes of a set of that name
     sed 's/^<PointData>/&<DataArray type="Int8" Name="facets.n">0 1 0 0 1<\/DataArray><DataArray type="Int8" Name="set.">1 1 1 1 1<\/DataArray>/' \
         "$corpus/vtk/text.vtu" > both.vtu

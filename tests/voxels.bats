@@ -455,4 +455,6 @@ x body\n=table:1: label: 'x'
 # nothing\n=table: names no label
 1 body=table:1:
 END
+    seq 30001 | sed 's/$/ body/' > table
+    refused 2 "table:30001: more than 30000 labels" voxels -h 6mm -l table sphere.nii.gz
 }

@@ -117,6 +117,7 @@ TEST(headers_that_lie)
         {MHA "ElementDataFile = LIST\na\nb\n", "several files"},
         {MHA "ElementType = MET_STRING\n" MHA_END, "ElementType= MET_STRING: integers"},
         {MHA "CompressedData = True\nHeaderSize = -1\n" MHA_END, "a skip of -1 goes with raw data only"},
+        {MHA "DistanceUnits = cm\n" MHA_END, "only mm is read"},
         {MHA "CompressedData = perhaps\n" MHA_END, "True or False"},
         {MHA "ElementNumberOfChannels = 0\n" MHA_END, "from 1 to"},
         {"ObjectType = Mesh\n", "not an image"},

@@ -10,7 +10,7 @@
 
 static const size_t size_limit = (size_t)1 << 24;
 static const int64_t label_limit = INT32_MAX;
-enum { NAMES_LIMIT = 1000 };
+enum { NAMES_LIMIT = 1000, RANGES_LIMIT = 30000 };
 
 enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
                              struct error *error)
@@ -45,6 +45,9 @@ enum status label_table_add(struct label_table *table, const struct label_range 
                 error, STATUS_INPUT, "label %lld stands in another row already",
                 (long long)(range->first > table->range[r].first ? range->first : table->range[r].first));
         }
+    }
+    if (table->range_count == RANGES_LIMIT) {
+        return fail(error, STATUS_INPUT, "more than %d labels or ranges of labels", RANGES_LIMIT);
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&table->range, table->range_count + 1, error));
     table->range[table->range_count++] = *range;

@@ -97,6 +97,12 @@ static enum status set_skip(void *context, const struct text_header *header, str
                           error);
 }
 
+static enum status set_unit(void *context, const struct text_header *header, struct error *error)
+{
+    (void)context;
+    return header_is("mm|?", header->value) ? STATUS_OK : header_fail(header, "only mm is read", error);
+}
+
 static enum status set_comment(void *context, const struct text_header *header, struct error *error)
 {
     (void)error;
@@ -118,6 +124,7 @@ static const struct header_field fields[] = {
     {"BinaryDataByteOrderMSB|ElementByteOrderMSB", set_big_endian},
     {"CompressedData|BinaryData", set_encoding},
     {"HeaderSize", set_skip},
+    {"DistanceUnits", set_unit},
 };
 
 bool metaimage_begins(const unsigned char bytes[4])

@@ -91,7 +91,7 @@ static void begin_item(struct feb *f, const char *element, const char **attribut
                      element);
         }
     } else if ((f->content == NODES || f->content == NODE_SET) &&
-               (strcmp(element, "node") != 0 || id == NULL)) {
+               ((strcmp(element, "node") != 0 && strcmp(element, "n") != 0) || id == NULL)) {
         msh_fail(f->in.r, "'%s' is no <node id=...>", element);
     }
 }

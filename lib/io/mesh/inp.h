@@ -9,7 +9,7 @@ struct inp_set {
     char kind; /* 'N', 'E' or 'S' */
     bool of_assembly;
     char name[INPUT_NAME + 1];
-    bool is_defined;    /* not only named by others */
+    int64_t line;       /* where it is first defined; 0: it is only named by others */
     bool of_surface;    /* elements: a surface uses it */
     int64_t head, tail; /* the members: of inp->members, -1: none */
     int64_t key[4];     /* of its group of each dimension, 0: none yet */
@@ -48,7 +48,7 @@ struct inp {
     struct inp_member {
         int64_t place, next;
     } * members;
-    int64_t tried; /* members of ranges */
+    int64_t tried; /* members of ranges and sets */
     struct msh_index elements;
     struct inp_set **region;     /* of each element, or NULL */
     int64_t overlaid, sectioned; /* elements in several sets; in those of sections */

@@ -50,10 +50,12 @@ static void each_in_range(struct inp *p, const struct inp_item *item, const stru
 static void each_in_set(struct inp *p, const struct inp_item *item, member_function *add)
 {
     int64_t last = item->members->tail;
-    if (!item->members->is_defined) {
-        msh_fail(p->in.r, "there is no set '%s'", item->members->name);
+    bool is_behind = item->set != NULL && item->set->kind != 'S' && item->members->line > item->line;
+    if (item->members->line == 0 || is_behind) {
+        msh_fail(p->in.r, "there is no set '%s'%s", item->members->name, is_behind ? " as yet" : "");
     }
     for (int64_t m = item->members->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
+        check_size(p, p->tried++);
         add(p, item, p->members[m].place);
         if (m == last) {
             return;

@@ -26,6 +26,15 @@ static void trim(const char **text, int64_t *length)
     }
 }
 
+/* Take quotes off. */
+static void unquote(const char **text, int64_t *length)
+{
+    if (*length > 1 && (*text)[0] == '"' && (*text)[*length - 1] == '"') {
+        ++*text;
+        *length -= 2;
+    }
+}
+
 /* The next line that is no comment. */
 static void next_line(struct inp *p)
 {
@@ -65,6 +74,7 @@ bool inp_next_field(struct inp *p, const char **text, int64_t *length)
     *length = (comma != NULL ? comma : p->field_end) - p->field;
     p->field = comma != NULL ? comma + 1 : NULL;
     trim(text, length);
+    unquote(text, length);
     return p->field != NULL || *length > 0; /* a comma at the end begins no field */
 }
 
@@ -109,10 +119,7 @@ bool inp_parameter(struct inp *p, const char *name, char value[], size_t size)
         text += *text == '=';
         int64_t count = (int64_t)strcspn(text, ",");
         trim(&text, &count);
-        if (count > 1 && text[0] == '"' && text[count - 1] == '"') {
-            text++;
-            count -= 2;
-        }
+        unquote(&text, &count);
         if ((size_t)count >= size) {
             msh_fail(p->in.r, "%s is longer than %zu bytes", name, size - 1);
             count = 0;
@@ -294,9 +301,13 @@ static void read_keyword(struct inp *p)
 {
     static const char *const made[] = {"*NGEN",   "*NFILL",  "*NCOPY",  "*NMAP", "*ELGEN",
                                        "*ELCOPY", "*SYSTEM", "*IMPORT", NULL};
+    static const char *const read[] = {"*NODE", "*ELEMENT", "*NSET", "*ELSET", "*INCLUDE", NULL};
     const char *key = p->keyword;
+    char value[INPUT_NAME + 1];
     bool of_parts = is_of_parts(p);
-    if (strcmp(key, "*NODE") == 0) {
+    if (is_one_of(key, read) && inp_parameter(p, "INPUT", value, sizeof value)) {
+        msh_fail(p->in.r, "other files are not read: put the lines of that file in its place");
+    } else if (strcmp(key, "*NODE") == 0) {
         read_nodes(p);
     } else if (strcmp(key, "*ELEMENT") == 0 && !p->in_assembly) {
         read_elements(p);
@@ -306,8 +317,6 @@ static void read_keyword(struct inp *p)
         inp_read_surface(p);
     } else if (strcmp(key, "*INSTANCE") == 0) {
         read_instance(p);
-    } else if (strcmp(key, "*INCLUDE") == 0) {
-        msh_fail(p->in.r, "other files are not read: put the lines of that file in its place");
     } else if (is_one_of(key, made)) {
         msh_fail(p->in.r, "nodes and elements made of others are not read: write all of them out");
     } else {

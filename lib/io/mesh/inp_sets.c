@@ -60,12 +60,17 @@ static void add_item(struct inp *p, const struct inp_item *item)
     }
 }
 
+static void define(const struct inp *p, struct inp_set *set)
+{
+    set->line = set->line == 0 ? p->number : set->line;
+}
+
 void inp_add_places(struct inp *p, char kind, const char *name, int64_t first, int64_t end)
 {
     struct inp_item item = {
         .set = find_set(p, kind, name, strlen(name)), .how = INP_PLACES, .first = first, .last = end - 1};
     if (item.set != NULL) {
-        item.set->is_defined = true;
+        define(p, item.set);
         add_item(p, &item);
     }
 }
@@ -131,7 +136,7 @@ void inp_read_set(struct inp *p, char kind)
         return;
     }
     p->is_apart = p->in_assembly && !inp_parameter(p, "INSTANCE", value, sizeof value);
-    item.set->is_defined = true;
+    define(p, item.set);
     if (kind == 'N' && inp_parameter(p, "ELSET", value, sizeof value)) { /* the nodes of its elements */
         item.how = INP_SET;
         item.members = find_set(p, 'E', value, strlen(value));
@@ -165,7 +170,7 @@ void inp_read_surface(struct inp *p)
     }
     struct inp_item item = {.set = find_set(p, of_nodes ? 'N' : 'S', name, strlen(name))};
     while (item.set != NULL && inp_next_data(p)) {
-        item.set->is_defined = true;
+        define(p, item.set);
         if (!inp_next_field(p, &word, &length)) {
             continue;
         }

@@ -66,6 +66,15 @@ static const struct vtk_type *next_type(struct msh_reader *r, const char **at, c
     return type;
 }
 
+/* Pass over METADATA: up to a blank line. */
+static void skip_metadata(struct msh_reader *r)
+{
+    const char *at, *end;
+    int64_t length;
+    while (next_line(r, &at, &end) && input_word(&at, end, &length) != NULL) {
+    }
+}
+
 /* "%20" and the like stand for characters of names. */
 static void decode_name(char name[])
 {
@@ -226,8 +235,7 @@ static void read_field(struct legacy *l, const char *at, const char *end)
     while (i < count && next_line(r, &at, &end)) {
         copy_word(r, &at, end, name, sizeof name);
         if (strcasecmp(name, "METADATA") == 0) {
-            while (next_line(r, &at, &end) && end > at) {
-            }
+            skip_metadata(r);
         } else if (name[0] != '\0') {
             int64_t components = next_count(r, &at, end, 0), tuples = next_count(r, &at, end, 0);
             read_array(l, name, components, tuples, next_type(r, &at, end));
@@ -297,8 +305,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
     } else if (strcasecmp(key, "FIELD") == 0) {
         read_field(l, at, end);
     } else if (strcasecmp(key, "METADATA") == 0) {
-        while (next_line(r, &at, &end) && end > at) {
-        }
+        skip_metadata(r);
     } else if (strcasecmp(key, "LOOKUP_TABLE") == 0) {
         char name[64];
         copy_word(r, &at, end, name, sizeof name);
