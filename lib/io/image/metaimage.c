@@ -8,10 +8,9 @@
 /* The fields of a header as they stand, in mm along left, back, up. */
 struct metaimage {
     struct image *image;
-    struct image_layout *layout;
-    int dimension;
-    double size[3], spacing[3], origin[3], axes[9];
-    int64_t channels;
+    struct image_layout layout;
+    int64_t dimension, channels;
+    double size[3], spacing[3], element[3], origin[3], axes[9];
 };
 
 /* Fields of which it counts whether they are there. */
@@ -31,70 +30,20 @@ static enum status set_object(void *context, const struct text_header *header, s
     return strcasecmp(header->value, "Image") == 0 ? STATUS_OK : header_fail(header, "not an image", error);
 }
 
-static enum status set_dimension(void *context, const struct text_header *header, struct error *error)
-{
-    int64_t number;
-    RETURN_IF_ERROR(header_integer(header, 2, 3, &number, error));
-    ((struct metaimage *)context)->dimension = (int)number;
-    return STATUS_OK;
-}
-
-static enum status set_size(void *context, const struct text_header *header, struct error *error)
-{
-    struct metaimage *meta = context;
-    return header_vector(header, meta->dimension, meta->size, error);
-}
-
-/* The size of an element is its spacing where none is given. */
-static enum status set_spacing(void *context, const struct text_header *header, struct error *error)
-{
-    struct metaimage *meta = context;
-    bool given = header_has(header, SPACING) && header_is("ElementSize", header->key);
-    return given ? STATUS_OK : header_vector(header, meta->dimension, meta->spacing, error);
-}
-
-static enum status set_origin(void *context, const struct text_header *header, struct error *error)
-{
-    struct metaimage *meta = context;
-    return header_vector(header, meta->dimension, meta->origin, error);
-}
-
-static enum status set_axes(void *context, const struct text_header *header, struct error *error)
-{
-    struct metaimage *meta = context;
-    return header_vector(header, meta->dimension * meta->dimension, meta->axes, error);
-}
-
-static enum status set_channels(void *context, const struct text_header *header, struct error *error)
-{
-    return header_integer(header, 1, INT32_MAX, &((struct metaimage *)context)->channels, error);
-}
-
-static enum status set_type(void *context, const struct text_header *header, struct error *error)
-{
-    return header_type(header, metaimage_types, ((struct metaimage *)context)->layout, error);
-}
-
 static enum status set_big_endian(void *context, const struct text_header *header, struct error *error)
 {
-    return take_flag(header, &((struct metaimage *)context)->layout->swapped, error);
+    return take_flag(header, &((struct metaimage *)context)->layout.swapped, error);
 }
 
 static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
 {
-    struct image_layout *layout = ((struct metaimage *)context)->layout;
+    struct image_layout *layout = &((struct metaimage *)context)->layout;
     bool is_compressed = header_is("CompressedData", header->key), flag;
     RETURN_IF_ERROR(take_flag(header, &flag, error));
     if (flag == is_compressed) {
         layout->encoding = flag ? IMAGE_PACKED : IMAGE_ASCII;
     }
     return STATUS_OK;
-}
-
-static enum status set_skip(void *context, const struct text_header *header, struct error *error)
-{
-    return header_integer(header, -1, (int64_t)1 << 50, &((struct metaimage *)context)->layout->skip_bytes,
-                          error);
 }
 
 static enum status set_unit(void *context, const struct text_header *header, struct error *error)
@@ -110,21 +59,23 @@ static enum status set_comment(void *context, const struct text_header *header, 
     return STATUS_OK;
 }
 
+#define AT(member) offsetof(struct metaimage, member)
+
 static const struct header_field fields[] = {
-    [SIZE] = {"DimSize", set_size},
-    [SPACING] = {"ElementSpacing", set_spacing},
-    [ELEMENT] = {"ElementSize", set_spacing},
-    [MATRIX] = {"TransformMatrix|Rotation|Orientation", set_axes},
-    {"ObjectType", set_object},
-    {"Comment", set_comment},
-    {"NDims", set_dimension},
-    {"Offset|Position|Origin", set_origin},
-    {"ElementNumberOfChannels", set_channels},
-    {"ElementType", set_type},
-    {"BinaryDataByteOrderMSB|ElementByteOrderMSB", set_big_endian},
-    {"CompressedData|BinaryData", set_encoding},
-    {"HeaderSize", set_skip},
-    {"DistanceUnits", set_unit},
+    [SIZE] = {"DimSize", HEADER_VECTOR, AT(size)},
+    [SPACING] = {"ElementSpacing", HEADER_VECTOR, AT(spacing)},
+    [ELEMENT] = {"ElementSize", HEADER_VECTOR, AT(element)},
+    [MATRIX] = {"TransformMatrix|Rotation|Orientation", HEADER_MATRIX, AT(axes)},
+    {"ObjectType", .set = set_object},
+    {"Comment", .set = set_comment},
+    {"NDims", HEADER_INTEGER, AT(dimension), 2, 3},
+    {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
+    {"ElementNumberOfChannels", HEADER_INTEGER, AT(channels), 1, INT32_MAX},
+    {"ElementType", HEADER_TYPE, AT(layout)},
+    {"BinaryDataByteOrderMSB|ElementByteOrderMSB", .set = set_big_endian},
+    {"CompressedData|BinaryData", .set = set_encoding},
+    {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
+    {"DistanceUnits", .set = set_unit},
 };
 
 bool metaimage_begins(const unsigned char bytes[4])
@@ -140,7 +91,9 @@ bool metaimage_begins(const unsigned char bytes[4])
 
 static enum status place(const struct metaimage *meta, const struct text_header *header, struct error *error)
 {
-    int n = meta->dimension;
+    int n = (int)meta->dimension;
+    const double *spacing =
+        header_has(header, ELEMENT) && !header_has(header, SPACING) ? meta->element : meta->spacing;
     double size[3] = {1, 1, 1}, matrix[3][4] = {{0}};
     static const double sign[3] = {-1e-3, -1e-3, 1e-3}; /* left, back, up in mm, to right, front, up in m */
     struct image *image = meta->image;
@@ -148,7 +101,7 @@ static enum status place(const struct metaimage *meta, const struct text_header 
         size[r] = meta->size[r];
         for (int a = 0; a < n; a++) {
             matrix[r][a] =
-                sign[r] * meta->spacing[a] * (header_has(header, MATRIX) ? meta->axes[n * a + r] : r == a);
+                sign[r] * spacing[a] * (header_has(header, MATRIX) ? meta->axes[n * a + r] : r == a);
         }
         matrix[r][3] = sign[r] * meta->origin[r];
     }
@@ -158,7 +111,7 @@ static enum status place(const struct metaimage *meta, const struct text_header 
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
     image->unit = 1e-3;
     image->space = IMAGE_SPACE_SCANNER;
-    RETURN_IF_ERROR(header_sizes(size, (double)meta->channels, true, meta->layout, image, error));
+    RETURN_IF_ERROR(header_sizes(size, (double)meta->channels, true, &meta->layout, image, error));
     return image_place(image, matrix, "TransformMatrix and ElementSpacing", error);
 }
 
@@ -166,8 +119,10 @@ enum status metaimage_header(struct image_source *source, const unsigned char be
                              struct image_layout *layout, struct error *error)
 {
     struct text_header header = {.source = source, .separator = '=', .begun = 4};
-    struct metaimage meta = {.image = image, .layout = layout, .spacing = {1, 1, 1}, .channels = 1};
-    layout->together = true;
+    struct metaimage meta = {
+        .image = image, .layout = {.together = true}, .spacing = {1, 1, 1}, .channels = 1};
+    header.dimension = &meta.dimension;
+    header.types = metaimage_types;
     memcpy(header.line, begin, 4);
     for (;;) {
         RETURN_IF_ERROR(header_next(&header, error));
@@ -180,10 +135,11 @@ enum status metaimage_header(struct image_source *source, const unsigned char be
         RETURN_IF_ERROR(header_set(&header, fields, sizeof fields / sizeof *fields, &meta, error));
     }
     if (strcasecmp(header.value, "LOCAL") != 0) {
-        RETURN_IF_ERROR(header_data_file(&header, layout, error));
+        RETURN_IF_ERROR(header_data_file(&header, &meta.layout, error));
     } else if (header.cut) {
         return fail(error, STATUS_INPUT, "cut short: no data behind the header");
     }
+    *layout = meta.layout;
     if (layout->type == NULL || !header_has(&header, SIZE)) {
         return fail(error, STATUS_INPUT, "header: no %s", layout->type == NULL ? "ElementType" : "DimSize");
     }

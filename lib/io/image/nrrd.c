@@ -14,8 +14,8 @@ enum kind { DOMAIN, LIST, VECTOR, COLOUR };
 /* The fields of a header as they stand. */
 struct nrrd {
     struct image *image;
-    struct image_layout *layout;
-    int dimension, space_dimension;
+    struct image_layout layout;
+    int64_t dimension, space_dimension;
     double size[AXES], direction[AXES][3], spacing[AXES], first[AXES], origin[3];
     bool has_direction[AXES], has_directions, is_cell_centred;
     enum kind kind[AXES];
@@ -23,27 +23,6 @@ struct nrrd {
     double unit[3];      /* of the space's axes, m */
     double length[AXES]; /* unit of an axis, m */
 };
-
-static enum status set_type(void *context, const struct text_header *header, struct error *error)
-{
-    return header_type(header, nrrd_types, ((struct nrrd *)context)->layout, error);
-}
-
-static enum status set_dimension(void *context, const struct text_header *header, struct error *error)
-{
-    int64_t number;
-    RETURN_IF_ERROR(header_integer(header, 2, AXES, &number, error));
-    ((struct nrrd *)context)->dimension = (int)number;
-    return STATUS_OK;
-}
-
-static enum status set_space_dimension(void *context, const struct text_header *header, struct error *error)
-{
-    int64_t number;
-    RETURN_IF_ERROR(header_integer(header, 2, 3, &number, error));
-    ((struct nrrd *)context)->space_dimension = (int)number;
-    return STATUS_OK;
-}
 
 static enum status set_space(void *context, const struct text_header *header, struct error *error)
 {
@@ -71,24 +50,6 @@ static enum status set_space(void *context, const struct text_header *header, st
                        error);
 }
 
-static enum status set_sizes(void *context, const struct text_header *header, struct error *error)
-{
-    struct nrrd *nrrd = context;
-    return header_vector(header, nrrd->dimension, nrrd->size, error);
-}
-
-static enum status set_spacings(void *context, const struct text_header *header, struct error *error)
-{
-    struct nrrd *nrrd = context;
-    return header_vector(header, nrrd->dimension, nrrd->spacing, error);
-}
-
-static enum status set_first(void *context, const struct text_header *header, struct error *error)
-{
-    struct nrrd *nrrd = context;
-    return header_vector(header, nrrd->dimension, nrrd->first, error);
-}
-
 static enum status set_centers(void *context, const struct text_header *header, struct error *error)
 {
     (void)error;
@@ -101,7 +62,7 @@ static bool take_vector(const struct nrrd *nrrd, const char **at, double vector[
 {
     *at += strspn(*at, " \t");
     bool whole = nrrd->space_dimension > 0 && *(*at)++ == '(' &&
-                 header_numbers(at, nrrd->space_dimension, vector) && **at == ')';
+                 header_numbers(at, (int)nrrd->space_dimension, vector) && **at == ')';
     *at += whole;
     return whole;
 }
@@ -137,7 +98,8 @@ static enum status set_origin(void *context, const struct text_header *header, s
 }
 
 /* Take words in quotes, each a unit of length; "" is mm. */
-static enum status take_units(const struct text_header *header, int count, double *unit, struct error *error)
+static enum status take_units(const struct text_header *header, int64_t count, double *unit,
+                              struct error *error)
 {
     const char *at = header->value;
     for (int i = 0; i < count; i++) {
@@ -204,7 +166,7 @@ static enum status set_encoding(void *context, const struct text_header *header,
         [IMAGE_RAW] = "raw", [IMAGE_PACKED] = "gzip|gz", [IMAGE_ASCII] = "ascii|text|txt"};
     for (int e = IMAGE_RAW; e <= IMAGE_ASCII; e++) {
         if (header_is(names[e], header->value)) {
-            ((struct nrrd *)context)->layout->encoding = (enum image_encoding)e;
+            ((struct nrrd *)context)->layout.encoding = (enum image_encoding)e;
             return STATUS_OK;
         }
     }
@@ -213,24 +175,9 @@ static enum status set_encoding(void *context, const struct text_header *header,
 
 static enum status set_endian(void *context, const struct text_header *header, struct error *error)
 {
-    ((struct nrrd *)context)->layout->swapped = header_is("big", header->value);
+    ((struct nrrd *)context)->layout.swapped = header_is("big", header->value);
     return header_is("little|big", header->value) ? STATUS_OK
                                                   : header_fail(header, "little and big are read", error);
-}
-
-static enum status set_line_skip(void *context, const struct text_header *header, struct error *error)
-{
-    return header_integer(header, 0, INT32_MAX, &((struct nrrd *)context)->layout->skip_lines, error);
-}
-
-static enum status set_byte_skip(void *context, const struct text_header *header, struct error *error)
-{
-    return header_integer(header, -1, (int64_t)1 << 50, &((struct nrrd *)context)->layout->skip_bytes, error);
-}
-
-static enum status set_data_file(void *context, const struct text_header *header, struct error *error)
-{
-    return header_data_file(header, ((struct nrrd *)context)->layout, error);
 }
 
 static enum status set_content(void *context, const struct text_header *header, struct error *error)
@@ -243,27 +190,29 @@ static enum status set_content(void *context, const struct text_header *header, 
 /* Fields of which it counts whether they are there. */
 enum { SIZES, SPACINGS, MINS, MAXS, ENDIAN };
 
+#define AT(member) offsetof(struct nrrd, member)
+
 static const struct header_field fields[] = {
-    [SIZES] = {"sizes", set_sizes},
-    [SPACINGS] = {"spacings", set_spacings},
-    [MINS] = {"axis mins|axismins", set_first},
-    [MAXS] = {"axis maxs|axismaxs", NULL},
-    [ENDIAN] = {"endian", set_endian},
-    {"type", set_type},
-    {"dimension", set_dimension},
-    {"space dimension", set_space_dimension},
-    {"space", set_space},
-    {"centers|centerings", set_centers},
-    {"space directions", set_directions},
-    {"space origin", set_origin},
-    {"space units", set_space_units},
-    {"units", set_units},
-    {"kinds", set_kinds},
-    {"encoding", set_encoding},
-    {"line skip|lineskip", set_line_skip},
-    {"byte skip|byteskip", set_byte_skip},
-    {"data file|datafile", set_data_file},
-    {"content", set_content},
+    [SIZES] = {"sizes", HEADER_VECTOR, AT(size)},
+    [SPACINGS] = {"spacings", HEADER_VECTOR, AT(spacing)},
+    [MINS] = {"axis mins|axismins", HEADER_VECTOR, AT(first)},
+    [MAXS] = {"axis maxs|axismaxs", .set = NULL},
+    [ENDIAN] = {"endian", .set = set_endian},
+    {"type", HEADER_TYPE, AT(layout)},
+    {"dimension", HEADER_INTEGER, AT(dimension), 2, AXES},
+    {"space dimension", HEADER_INTEGER, AT(space_dimension), 2, 3},
+    {"space", .set = set_space},
+    {"centers|centerings", .set = set_centers},
+    {"space directions", .set = set_directions},
+    {"space origin", .set = set_origin},
+    {"space units", .set = set_space_units},
+    {"units", .set = set_units},
+    {"kinds", .set = set_kinds},
+    {"encoding", .set = set_encoding},
+    {"line skip|lineskip", HEADER_INTEGER, AT(layout.skip_lines), 0, INT32_MAX},
+    {"byte skip|byteskip", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
+    {"data file|datafile", HEADER_FILE, AT(layout)},
+    {"content", .set = set_content},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -296,13 +245,13 @@ static enum status find_component(const struct nrrd *nrrd, int *component, struc
 static void set_values(struct nrrd *nrrd, int component)
 {
     struct image *image = nrrd->image;
-    nrrd->layout->together = component == 0;
+    nrrd->layout.together = component == 0;
     if (component < 0 || nrrd->kind[component] != VECTOR) {
         return;
     }
     image->intent = IMAGE_INTENT_VECTOR;
     for (int r = 0; r < 2; r++) {
-        nrrd->layout->mirrored[r] = image->space != IMAGE_SPACE_UNKNOWN && nrrd->sign[r] > 0;
+        nrrd->layout.mirrored[r] = image->space != IMAGE_SPACE_UNKNOWN && nrrd->sign[r] > 0;
     }
 }
 
@@ -339,14 +288,14 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
                               : "tells neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
-                                 component >= 0 && nrrd->kind[component] == COLOUR, nrrd->layout, image,
+                                 component >= 0 && nrrd->kind[component] == COLOUR, &nrrd->layout, image,
                                  error));
     return image_place(image, matrix, nrrd->has_directions ? "space directions" : "spacings", error);
 }
 
 static enum status check(const struct nrrd *nrrd, const struct text_header *header, struct error *error)
 {
-    const struct image_layout *layout = nrrd->layout;
+    const struct image_layout *layout = &nrrd->layout;
     bool ends_alone = header_has(header, MAXS) && !header_has(header, SPACINGS);
     bool cells = header_has(header, MINS) && nrrd->is_cell_centred;
     if (layout->type == NULL || !header_has(header, SIZES)) {
@@ -376,11 +325,12 @@ enum status nrrd_header(struct image_source *source, struct image *image, struct
 {
     struct text_header header = {.source = source, .separator = ':', .line = "NRRD", .begun = 4};
     struct nrrd nrrd = {.image = image,
-                        .layout = layout,
                         .sign = {1, 1, 1},
                         .spacing = {1, 1, 1, 1},
                         .unit = {1e-3, 1e-3, 1e-3},
                         .length = {1e-3, 1e-3, 1e-3, 1e-3}};
+    header.dimension = &nrrd.dimension;
+    header.types = nrrd_types;
     RETURN_IF_ERROR(header_line(&header, error));
     if (strlen(header.line) != 8 || strncmp(header.line, "NRRD000", 7) != 0 ||
         strchr("123456", header.line[7]) == NULL) {
@@ -395,5 +345,7 @@ enum status nrrd_header(struct image_source *source, struct image *image, struct
                                        : header_set(&header, fields, FIELDS, &nrrd, error));
     }
     RETURN_IF_ERROR(check(&nrrd, &header, error));
-    return place(&nrrd, &header, error);
+    RETURN_IF_ERROR(place(&nrrd, &header, error));
+    *layout = nrrd.layout;
+    return STATUS_OK;
 }

@@ -68,18 +68,6 @@ bool header_is(const char *names, const char *word)
     return false;
 }
 
-enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
-                       void *context, struct error *error)
-{
-    for (size_t f = 0; f < count; f++) {
-        if (header_is(fields[f].keys, header->key)) {
-            header->given |= (uint64_t)1 << f;
-            return fields[f].set != NULL ? fields[f].set(context, header, error) : STATUS_OK;
-        }
-    }
-    return STATUS_OK;
-}
-
 enum status header_fail(const struct text_header *header, const char *why, struct error *error)
 {
     return fail(error, STATUS_INPUT, "header: %.40s%c %.80s: %s", header->key, header->separator,
@@ -101,13 +89,15 @@ bool header_numbers(const char **at, int count, double *numbers)
     return true;
 }
 
-enum status header_vector(const struct text_header *header, int count, double *numbers, struct error *error)
+/* The value of the field is `count` numbers; 0: the dimension, which stands behind it. */
+static enum status take_vector(const struct text_header *header, int64_t count, double *numbers,
+                               struct error *error)
 {
     const char *at = header->value;
     if (count == 0) {
         return header_fail(header, "stands in front of the number of dimensions", error);
     }
-    return header_numbers(&at, count, numbers) && *at == '\0'
+    return header_numbers(&at, (int)count, numbers) && *at == '\0'
                ? STATUS_OK
                : header_fail(header, "a finite number for each dimension is expected", error);
 }
@@ -153,9 +143,10 @@ const struct header_type metaimage_types[IMAGE_TYPES] = {
     {IMAGE_FLOAT64, "MET_DOUBLE|MET_DOUBLE_ARRAY"},
 };
 
-enum status header_type(const struct text_header *header, const struct header_type *types,
-                        struct image_layout *layout, struct error *error)
+static enum status take_type(const struct text_header *header, struct image_layout *layout,
+                             struct error *error)
 {
+    const struct header_type *types = header->types;
     for (int t = 0; t < IMAGE_TYPES; t++) {
         if (header_is(types[t].names, header->value)) {
             layout->type = nifti_type(types[t].code);
@@ -188,6 +179,40 @@ enum status header_data_file(const struct text_header *header, struct image_layo
         return header_fail(header, "not a file in the folder of the header", error);
     }
     snprintf(layout->data_file, sizeof layout->data_file, "%s", file);
+    return STATUS_OK;
+}
+
+static enum status take(const struct header_field *field, void *context, const struct text_header *header,
+                        struct error *error)
+{
+    int64_t n = *header->dimension;
+    void *at = (char *)context + field->at;
+    switch (field->kind) {
+    case HEADER_INTEGER:
+        return header_integer(header, field->least, field->most, at, error);
+    case HEADER_VECTOR:
+        return take_vector(header, n, at, error);
+    case HEADER_MATRIX:
+        return take_vector(header, n * n, at, error);
+    case HEADER_TYPE:
+        return take_type(header, at, error);
+    case HEADER_FILE:
+        return header_data_file(header, at, error);
+    case HEADER_SET:
+        break;
+    }
+    return field->set != NULL ? field->set(context, header, error) : STATUS_OK;
+}
+
+enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
+                       void *context, struct error *error)
+{
+    for (size_t f = 0; f < count; f++) {
+        if (header_is(fields[f].keys, header->key)) {
+            header->given |= (uint64_t)1 << f;
+            return take(&fields[f], context, header, error);
+        }
+    }
     return STATUS_OK;
 }
 

@@ -8,13 +8,17 @@
 
 enum { HEADER_LINE = 1 << 16, HEADER_BYTES = 1 << 22 };
 
+struct header_type;
+
 /* A header that is read line by line. */
 struct text_header {
     struct image_source *source;
     char separator; /* ':' or '=' */
     char line[HEADER_LINE];
-    size_t begun; /* bytes of the next line that line[] holds already */
-    char *key;    /* of the field read last, in line[]; NULL: the header has ended */
+    size_t begun;             /* bytes of the next line that line[] holds already */
+    const int64_t *dimension; /* of the image, as the header told it; 0: not yet */
+    const struct header_type *types;
+    char *key; /* of the field read last, in line[]; NULL: the header has ended */
     char *value;
     bool is_pair;   /* it is KEY:=VALUE */
     bool cut;       /* the file has ended without an empty line */
@@ -31,14 +35,22 @@ MUST_CHECK enum status header_next(struct text_header *header, struct error *err
 /* Whether a word is one of the names A|B|..., in any case. */
 bool header_is(const char *names, const char *word);
 
-/* The keys of a field, A|B, and the function that takes its value; NULL: only whether it is there counts. */
+/* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
+ * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
+ * each dimension or pair of these; of an image_layout, for the type of the values or their file. */
 struct header_field {
     const char *keys;
+    enum { HEADER_SET, HEADER_INTEGER, HEADER_VECTOR, HEADER_MATRIX, HEADER_TYPE, HEADER_FILE } kind;
+    size_t at; /* offset in the context */
+    int64_t least, most;
     enum status (*set)(void *context, const struct text_header *header, struct error *error);
 };
 
-/* Note that the field read last is there, and give it to its function; keys that are not in the table, of at
- * most 64 fields, are left. */
+/* Most bytes that may be skipped. */
+#define HEADER_SKIP ((int64_t)1 << 50)
+
+/* Note that the field read last is there, and take its value; keys that are not in the table, of at most 64
+ * fields, are left. */
 MUST_CHECK enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
                                   void *context, struct error *error);
 
@@ -54,10 +66,6 @@ enum status header_fail(const struct text_header *header, const char *why, struc
 /* Take `count` numbers, NAN among them, separated by blanks or commas, from *at on. */
 bool header_numbers(const char **at, int count, double *numbers);
 
-/* The value of the field is `count` numbers; 0: the dimension, which stands behind it. */
-MUST_CHECK enum status header_vector(const struct text_header *header, int count, double *numbers,
-                                     struct error *error);
-
 /* The value is a whole number from least to most. */
 MUST_CHECK enum status header_integer(const struct text_header *header, int64_t least, int64_t most,
                                       int64_t *number, struct error *error);
@@ -69,10 +77,6 @@ struct header_type {
     const char *names;
 };
 extern const struct header_type nrrd_types[IMAGE_TYPES], metaimage_types[IMAGE_TYPES];
-
-/* Set layout->type from the value. */
-MUST_CHECK enum status header_type(const struct text_header *header, const struct header_type *types,
-                                   struct image_layout *layout, struct error *error);
 
 /* The value is the name of a file in the folder of the header or below. */
 MUST_CHECK enum status header_data_file(const struct text_header *header, struct image_layout *layout,
