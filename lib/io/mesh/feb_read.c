@@ -160,8 +160,7 @@ static void add_element(struct feb *f, const char *text, const char *end)
         memcpy(&node[20], centre, sizeof centre);
     }
     input_reorder(f->type, node);
-    (void)input_add_element(&f->in, f->id, f->type, node,
-                            input_group(&f->in, msh_type(f->type).dim, f->name));
+    input_add_element(&f->in, f->id, f->type, node, input_group(&f->in, msh_type(f->type).dim, f->name));
 }
 
 /* A list of the nodes of a set: of versions 3 and 4. */
@@ -171,7 +170,7 @@ static void add_list(struct feb *f, const char *text, const char *end)
     const char *word;
     while (f->in.r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
         int64_t node = input_whole(f->in.r, "node", word, length, 1, MSH_LARGEST_TAG);
-        (void)input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
+        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
         f->is_empty = false;
     }
 }
@@ -204,7 +203,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (f->content == NODES) {
         add_node(f, text, text + size);
     } else if (f->content == NODE_SET) {
-        (void)input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &f->id, input_group(&f->in, 0, f->name));
+        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &f->id, input_group(&f->in, 0, f->name));
     } else {
         add_element(f, text, text + size);
     }

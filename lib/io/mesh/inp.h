@@ -43,8 +43,7 @@ struct inp {
     int64_t shell_room;
     int64_t item_count, item_room, set_count, set_room, member_count, member_room;
     struct inp_item *items;
-    struct inp_set **sets; /* in the order of the deck */
-    void *tree;            /* the same by kind and name; it owns them */
+    struct inp_set **sets; /* in the order of the deck; of r->texts */
     struct inp_member {
         int64_t place, next;
     } * members;

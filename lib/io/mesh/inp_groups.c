@@ -4,7 +4,6 @@
 #include "io/mesh/inp.h"
 
 #include <ctype.h>
-#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -108,9 +107,9 @@ static void add_member(struct inp *p, const struct inp_item *item, int64_t place
 /* Add the nodes of an element. */
 static void add_corners(struct inp *p, const struct inp_item *item, int64_t place)
 {
-    const struct input_element *element = &p->in.elements[place];
-    for (int k = 0; k < msh_type(element->type).node_count; k++) {
-        int64_t node = msh_index_find(&p->in.r->nodes, p->in.corners[element->first + k]);
+    const int64_t *ptr = &p->in.r->msh->node_ptr[place];
+    for (int64_t k = ptr[0]; k < ptr[1]; k++) {
+        int64_t node = msh_index_find(&p->in.r->nodes, p->in.corners[k]);
         if (node >= 0) { /* else found in the end */
             add_member(p, item, node);
         }
@@ -136,8 +135,8 @@ static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
 static void add_to_group(struct inp *p, struct inp_set *set, int type, const int64_t node[])
 {
     int64_t key = group_of(p, set, msh_type(type).dim);
-    (void)input_add_element(&p->in, INPUT_NO_TAG, type, node, key);
-    check_size(p, p->in.element_count);
+    input_add_element(&p->in, INPUT_NO_TAG, type, node, key);
+    check_size(p, p->in.r->msh->element_count);
 }
 
 /* Corners of the faces S1, S2, ... of elements of first order, by gmsh's number; -1 fills up. */
@@ -179,7 +178,7 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
 {
     struct msh_reader *r = p->in.r;
     int64_t node[20];
-    int type = p->in.elements[place].type;
+    int8_t type = r->msh->element_type[place];
     const char *label = item->label;
     int linear = msh_type(type).linear,
         face = label[0] != '\0' && isdigit((unsigned char)label[1]) && label[2] == '\0' ? label[1] - '0' : 0;
@@ -187,8 +186,7 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
     bool side = p->is_shell[place] && (strcasecmp(label, "SPOS") == 0 || strcasecmp(label, "SNEG") == 0 ||
                                        (kind != 'E' && (face == 1 || face == 2)));
     face -= p->is_shell[place] && kind != 'E' ? 2 : 0;
-    memcpy(node, &p->in.corners[p->in.elements[place].first],
-           (size_t)msh_type(type).node_count * sizeof *node);
+    memcpy(node, &p->in.corners[r->msh->node_ptr[place]], (size_t)msh_type(type).node_count * sizeof *node);
     if (side) {
         add_to_group(p, item->set, type, node);
     } else if (strchr("SPE", kind) == NULL || face < 1 || face > 6 || linear < 2 || linear > 7 ||
@@ -204,24 +202,20 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
 static void index_elements(struct inp *p)
 {
     struct msh_reader *r = p->in.r;
-    SCRATCH int64_t *tags = NULL;
-    MSH_NEW(r, &tags, p->in.element_count);
-    MSH_NEW(r, &p->region, p->in.element_count);
+    MSH_NEW(r, &p->region, r->msh->element_count);
     if (r->status == STATUS_OK) {
-        for (int64_t e = 0; e < p->in.element_count; e++) {
-            tags[e] = p->in.elements[e].tag;
-        }
         r->section = "elements";
         r->kind = "element";
-        msh_index_make(r, &p->elements, p->in.element_count, tags);
+        msh_index_make(r, &p->elements, r->msh->element_count, r->msh->element_tag);
     }
 }
 
 static void join_regions(struct inp *p)
 {
-    for (int64_t e = 0, end = p->in.element_count; p->in.r->status == STATUS_OK && e < end; e++) {
+    struct msh_reader *r = p->in.r;
+    for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         if (p->region[e] != NULL) {
-            p->in.elements[e].key = group_of(p, p->region[e], msh_type(p->in.elements[e].type).dim);
+            r->element_key[e] = group_of(p, p->region[e], msh_type(r->msh->element_type[e]).dim);
         }
     }
 }
@@ -252,7 +246,7 @@ static void join_nodes(struct inp *p)
         }
         (void)group_of(p, p->sets[s], 0);
         for (int64_t m = p->sets[s]->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
-            add_to_group(p, p->sets[s], INPUT_POINT, &p->in.nodes[p->members[m].place].tag);
+            add_to_group(p, p->sets[s], INPUT_POINT, &p->in.r->msh->node_tag[p->members[m].place]);
         }
     }
 }
@@ -286,7 +280,6 @@ void inp_join_sets(struct inp *p)
 
 void inp_free_sets(struct inp *p)
 {
-    tdestroy(p->tree, free);
     msh_index_free(&p->elements);
     FREE_ALL(p->is_shell, p->items, p->sets, p->members, p->region);
 }

@@ -138,7 +138,7 @@ static void read_nodes(struct inp *p)
     struct msh_reader *r = p->in.r;
     char value[INPUT_NAME + 1];
     const char *word;
-    int64_t length, first = p->in.node_count;
+    int64_t length, first = p->in.r->msh->node_count;
     bool is_set = inp_parameter(p, "NSET", value, sizeof value);
     char system[INPUT_NAME + 1];
     if (inp_parameter(p, "SYSTEM", system, sizeof system) && strcasecmp(system, "R") != 0) {
@@ -161,7 +161,7 @@ static void read_nodes(struct inp *p)
         input_leave_out(&p->in, "*NODE of the assembly");
     }
     if (is_set) {
-        inp_add_places(p, 'N', value, first, p->in.node_count);
+        inp_add_places(p, 'N', value, first, p->in.r->msh->node_count);
     }
 }
 
@@ -215,10 +215,10 @@ static void read_element(struct inp *p, int type, bool is_shell)
         msh_fail(r, "element %lld has more than %d nodes", (long long)tag, count);
     }
     input_reorder(type, node);
-    MSH_GROW(r, &p->is_shell, p->in.element_count + 1, &p->shell_room);
+    MSH_GROW(r, &p->is_shell, p->in.r->msh->element_count + 1, &p->shell_room);
     if (r->status == STATUS_OK) {
-        p->is_shell[p->in.element_count] = is_shell;
-        (void)input_add_element(&p->in, tag, type, node, 0);
+        p->is_shell[p->in.r->msh->element_count] = is_shell;
+        input_add_element(&p->in, tag, type, node, 0);
     }
 }
 
@@ -228,7 +228,7 @@ static void read_elements(struct inp *p)
     char name[32] = "", set[INPUT_NAME + 1];
     bool is_shell;
     bool is_set = inp_parameter(p, "ELSET", set, sizeof set);
-    int64_t first = p->in.element_count;
+    int64_t first = p->in.r->msh->element_count;
     bool has_type = inp_parameter(p, "TYPE", name, sizeof name);
     int type = find_type(name, &is_shell);
     if (type == 0) {
@@ -241,7 +241,7 @@ static void read_elements(struct inp *p)
         read_element(p, type, is_shell);
     }
     if (is_set) {
-        inp_add_places(p, 'E', set, first, p->in.element_count);
+        inp_add_places(p, 'E', set, first, p->in.r->msh->element_count);
     }
 }
 

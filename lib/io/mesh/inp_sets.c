@@ -2,17 +2,9 @@
 #include "io/mesh/inp.h"
 
 #include <ctype.h>
-#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-static int compare_sets(const void *left, const void *right)
-{
-    const struct inp_set *a = left, *b = right;
-    int order = (a->kind - b->kind) * 2 + (a->of_assembly - b->of_assembly);
-    return order != 0 ? order : strcasecmp(a->name, b->name);
-}
 
 /* The set of that name, which may be new, and as "INSTANCE.NAME" is that of the part; NULL after a failure.
  */
@@ -26,28 +18,23 @@ static struct inp_set *find_set(struct inp *p, char kind, const char *text, size
         text += prefix + 1;
         length -= prefix + 1;
     }
-    if (length == 0 || length > INPUT_NAME) {
-        msh_fail(r, "the name of a set is missing, or longer than %d bytes", INPUT_NAME);
+    for (size_t i = 0; i < length && i < INPUT_NAME; i++) {
+        wanted.name[i] = (char)toupper((unsigned char)text[i]);
     }
+    int64_t *number = input_name(&p->in, kind * 2 + wanted.of_assembly, wanted.name, length);
     MSH_GROW(r, &p->sets, p->set_count + 1, &p->set_room);
-    if (r->status != STATUS_OK) {
-        return NULL;
+    if (r->status == STATUS_OK && *number == 0) {
+        struct inp_set *set = NULL;
+        MSH_NEW(r, &set, 1);
+        r->status = r->status == STATUS_OK ? owned_add(&r->texts, set, "sets", r->error) : r->status;
+        if (r->status == STATUS_OK) {
+            *set = wanted;
+            memcpy(set->name, text, length);
+            p->sets[p->set_count++] = set;
+            *number = p->set_count;
+        }
     }
-    memcpy(wanted.name, text, length);
-    struct inp_set *const *found = tfind(&wanted, &p->tree, compare_sets);
-    if (found != NULL) {
-        return *found;
-    }
-    SCRATCH struct inp_set *set = malloc(sizeof *set);
-    if (set != NULL) {
-        *set = wanted;
-    }
-    if (set == NULL || tsearch(set, &p->tree, compare_sets) == NULL) {
-        r->status = fail_memory(r->error, "sets");
-        return NULL;
-    }
-    p->sets[p->set_count++] = set;
-    return array_take(&set);
+    return r->status == STATUS_OK ? p->sets[*number - 1] : NULL;
 }
 
 static void add_item(struct inp *p, const struct inp_item *item)

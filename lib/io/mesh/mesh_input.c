@@ -79,24 +79,34 @@ const char *input_word(const char **at, const char *end, int64_t *length)
 
 void input_add_node(struct mesh_input *in, int64_t tag, const double x[3])
 {
-    MSH_GROW(in->r, &in->nodes, in->node_count + 1, &in->node_room);
+    struct msh *msh = in->r->msh;
+    MSH_GROW(in->r, &msh->x, 3 * (msh->node_count + 1), &in->x_room);
+    MSH_GROW(in->r, &msh->node_tag, msh->node_count + 1, &in->node_room);
     if (in->r->status == STATUS_OK) {
-        in->nodes[in->node_count++] = (struct input_node){tag, {x[0], x[1], x[2]}};
+        memcpy(&msh->x[3 * msh->node_count], x, 3 * sizeof *x);
+        msh->node_tag[msh->node_count++] = tag;
     }
 }
 
-int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key)
+void input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key)
 {
-    int count = msh_type(type).node_count;
-    MSH_GROW(in->r, &in->elements, in->element_count + 1, &in->element_room);
-    MSH_GROW(in->r, &in->corners, in->corner_count + count, &in->corner_room);
-    if (in->r->status != STATUS_OK) {
-        return 0;
+    struct msh_reader *r = in->r;
+    struct msh *msh = r->msh;
+    int64_t e = msh->element_count, first = e > 0 ? msh->node_ptr[e] : 0, count = msh_type(type).node_count;
+    MSH_GROW(r, &msh->element_tag, e + 1, &in->tag_room);
+    MSH_GROW(r, &msh->element_type, e + 1, &in->type_room);
+    MSH_GROW(r, &r->element_key, e + 1, &in->key_room);
+    MSH_GROW(r, &msh->node_ptr, e + 2, &in->ptr_room);
+    MSH_GROW(r, &in->corners, first + count, &in->corner_room);
+    if (r->status == STATUS_OK) {
+        msh->element_tag[e] = tag;
+        msh->element_type[e] = (int8_t)type;
+        r->element_key[e] = key;
+        msh->node_ptr[e] = first;
+        msh->node_ptr[e + 1] = first + count;
+        memcpy(&in->corners[first], node, (size_t)count * sizeof *node);
+        msh->element_count++;
     }
-    in->elements[in->element_count] = (struct input_element){tag, key, in->corner_count, type};
-    memcpy(&in->corners[in->corner_count], node, (size_t)count * sizeof *node);
-    in->corner_count += count;
-    return in->element_count++;
 }
 
 int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length)
@@ -116,39 +126,48 @@ int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_
     return key;
 }
 
-struct named_group {
-    int64_t key;
-    int dim;
-    char name[INPUT_NAME + 1];
+struct name {
+    int64_t number;
+    int kind;
+    char text[INPUT_NAME + 1];
 };
 
-static int compare_groups(const void *left, const void *right)
+static int compare_names(const void *left, const void *right)
 {
-    const struct named_group *a = left, *b = right;
-    return a->dim != b->dim ? a->dim - b->dim : strcmp(a->name, b->name);
+    const struct name *a = left, *b = right;
+    return a->kind != b->kind ? a->kind - b->kind : strcmp(a->text, b->text);
+}
+
+int64_t *input_name(struct mesh_input *in, int kind, const char *text, size_t length)
+{
+    struct msh_reader *r = in->r;
+    struct name wanted = {.kind = kind};
+    if (length < 1 || length > INPUT_NAME) {
+        msh_fail(r, "a name is empty or longer than %d bytes", INPUT_NAME);
+    }
+    if (r->status != STATUS_OK) {
+        return NULL;
+    }
+    memcpy(wanted.text, text, length);
+    struct name *const *found = tfind(&wanted, &in->names, compare_names);
+    if (found != NULL) {
+        return &(*found)->number;
+    }
+    SCRATCH struct name *name = malloc(sizeof *name);
+    if (name == NULL || (*name = wanted, tsearch(name, &in->names, compare_names)) == NULL) {
+        r->status = fail_memory(r->error, "names");
+        return NULL;
+    }
+    return &((struct name *)array_take(&name))->number;
 }
 
 int64_t input_group(struct mesh_input *in, int dim, const char *text)
 {
-    struct msh_reader *r = in->r;
-    struct named_group wanted = {.dim = dim};
-    strncpy(wanted.name, text, INPUT_NAME);
-    struct named_group *const *found = tfind(&wanted, &in->groups, compare_groups);
-    if (found != NULL) {
-        return (*found)->key;
+    int64_t *key = input_name(in, dim, text, strlen(text));
+    if (key != NULL && *key == 0) {
+        *key = input_add_group(in, dim, text, (int64_t)strlen(text));
     }
-    wanted.key = input_add_group(in, dim, text, (int64_t)strlen(text));
-    struct named_group *group = malloc(sizeof *group);
-    if (group != NULL) {
-        *group = wanted;
-    }
-    if (r->status == STATUS_OK && (group == NULL || tsearch(group, &in->groups, compare_groups) == NULL)) {
-        r->status = fail_memory(r->error, "names");
-    }
-    if (r->status != STATUS_OK) {
-        free(group);
-    }
-    return wanted.key;
+    return key != NULL ? *key : 0;
 }
 
 void input_leave_out(struct mesh_input *in, const char *what)
@@ -178,40 +197,36 @@ void input_note(struct mesh_input *in, const char *format, ...)
 void input_index(struct mesh_input *in)
 {
     struct msh_reader *r = in->r;
-    struct msh *msh = r->msh;
-    msh->node_count = r->status == STATUS_OK ? in->node_count : 0;
-    MSH_NEW(r, &msh->x, 3 * in->node_count);
-    MSH_NEW(r, &msh->node_tag, in->node_count);
-    for (int64_t n = 0; r->status == STATUS_OK && n < in->node_count; n++) {
-        memcpy(&msh->x[3 * n], in->nodes[n].x, sizeof in->nodes[n].x);
-        msh->node_tag[n] = in->nodes[n].tag;
-    }
     if (r->status == STATUS_OK) {
         r->section = "nodes";
         r->kind = "node";
-        msh_index_make(r, &r->nodes, in->node_count, msh->node_tag);
+        msh_index_make(r, &r->nodes, r->msh->node_count, r->msh->node_tag);
     }
 }
 
 static void find_corners(struct mesh_input *in)
 {
     struct msh_reader *r = in->r;
-    int64_t e = 0;
+    struct msh *msh = r->msh;
     r->section = "elements";
     r->record = 0;
-    MSH_NEW(r, &r->msh->node_idx, in->corner_count);
-    for (int64_t k = 0; r->status == STATUS_OK && k < in->corner_count; k++) {
-        int64_t place = msh_index_find(&r->nodes, in->corners[k]);
-        r->msh->node_idx[k] = (int32_t)place;
-        while (e + 1 < in->element_count && in->elements[e + 1].first <= k) {
-            e++;
-        }
-        if (place < 0) {
+    MSH_GROW(r, &msh->node_ptr, 1, &in->ptr_room);
+    if (r->status == STATUS_OK && msh->element_count == 0) {
+        msh->node_ptr[0] = 0;
+    }
+    MSH_NEW(r, &msh->node_idx, r->status == STATUS_OK ? msh->node_ptr[msh->element_count] : 0);
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        for (int64_t k = msh->node_ptr[e]; r->status == STATUS_OK && k < msh->node_ptr[e + 1]; k++) {
+            int64_t place = msh_index_find(&r->nodes, in->corners[k]);
             char name[40] = "a set or surface";
-            if (in->elements[e].tag != INPUT_NO_TAG) {
-                snprintf(name, sizeof name, "element %lld", (long long)in->elements[e].tag);
+            msh->node_idx[k] = (int32_t)place;
+            if (place < 0 && msh->element_tag[e] != INPUT_NO_TAG) {
+                snprintf(name, sizeof name, "element %lld", (long long)msh->element_tag[e]);
             }
-            msh_fail(r, "%s names the node %lld, which is not in the file", name, (long long)in->corners[k]);
+            if (place < 0) {
+                msh_fail(r, "%s names the node %lld, which is not in the file", name,
+                         (long long)in->corners[k]);
+            }
         }
     }
 }
@@ -222,24 +237,12 @@ void input_finish(struct mesh_input *in)
     struct msh *msh = r->msh;
     int64_t tag = 0;
     find_corners(in);
-    MSH_NEW(r, &msh->element_tag, in->element_count);
-    MSH_NEW(r, &msh->element_type, in->element_count);
-    MSH_NEW(r, &msh->node_ptr, in->element_count + 1);
-    MSH_NEW(r, &r->element_key, in->element_count);
-    MSH_NEW(r, &r->entity_key, in->element_count);
-    if (r->status != STATUS_OK) {
-        return;
+    MSH_NEW(r, &r->entity_key, msh->element_count);
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        tag = msh->element_tag[e] > tag ? msh->element_tag[e] : tag;
     }
-    msh->element_count = in->element_count;
-    for (int64_t e = 0; e < in->element_count; e++) {
-        tag = in->elements[e].tag > tag ? in->elements[e].tag : tag;
-    }
-    for (int64_t e = 0; e < in->element_count; e++) {
-        const struct input_element *element = &in->elements[e];
-        msh->element_tag[e] = element->tag != INPUT_NO_TAG ? element->tag : ++tag;
-        msh->element_type[e] = (int8_t)element->type;
-        msh->node_ptr[e + 1] = element->first + msh_type(element->type).node_count;
-        r->element_key[e] = element->key;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        msh->element_tag[e] = msh->element_tag[e] != INPUT_NO_TAG ? msh->element_tag[e] : ++tag;
     }
     if (in->left_out[0] != '\0') {
         input_note(in, "what else is in the file is left out: %s", in->left_out + 2);
@@ -248,6 +251,6 @@ void input_finish(struct mesh_input *in)
 
 void input_free(struct mesh_input *in)
 {
-    tdestroy(in->groups, free);
-    FREE_ALL(in->nodes, in->elements, in->corners);
+    tdestroy(in->names, free);
+    free(in->corners);
 }

@@ -1,5 +1,5 @@
 /* Readers of meshes that are not gmsh's; private to lib/io. They add nodes, elements and groups in any order
- * to a struct mesh_input, which becomes the lists of a struct msh:
+ * through a struct mesh_input to the lists of a struct msh:
  *
  *   bytes --> inp_read.c, ... --> mesh_input.c --> msh_groups.c --> struct msh
  *
@@ -11,19 +11,9 @@
 
 struct mesh_input {
     struct msh_reader *r;
-    int64_t node_count, node_room, element_count, element_room, corner_count, corner_room, name_room;
-    struct input_node {
-        int64_t tag;
-        double x[3];
-    } * nodes;
-    struct input_element {
-        int64_t tag; /* INPUT_NO_TAG: it is numbered behind the others */
-        int64_t key; /* of its group, 0: none */
-        int64_t first;
-        int type;
-    } * elements;
-    int64_t *corners;   /* tags of the nodes of each element, in gmsh's order, from `first` on */
-    void *groups;       /* a tree of them by dimension and name */
+    int64_t x_room, node_room, tag_room, type_room, key_room, ptr_room, corner_room, name_room;
+    int64_t *corners;   /* tags of the nodes of each element, in gmsh's order, from its node_ptr on */
+    void *names;        /* a tree of them by kind and text */
     char left_out[320]; /* what is not read, ", " before each */
 };
 
@@ -61,9 +51,14 @@ void input_reorder(int type, int64_t node[]);
  * end. */
 const char *input_word(const char **at, const char *end, int64_t *length);
 
-/* Add a node; an element with these tags of nodes and a group (0: none), returning its place. */
+/* Add a node; an element with these tags of nodes and a group (0: none), which is numbered behind the others
+ * if its tag is INPUT_NO_TAG. */
 void input_add_node(struct mesh_input *in, int64_t tag, const double x[3]);
-int64_t input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key);
+void input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key);
+
+/* The number of a name of 1 to INPUT_NAME bytes among those of a kind, for the caller: 0 at first. NULL after
+ * a failure. */
+int64_t *input_name(struct mesh_input *in, int kind, const char *text, size_t length);
 
 /* The key of a new group; of the group of that dimension and name, which may be new. */
 int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length);

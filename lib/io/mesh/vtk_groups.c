@@ -90,7 +90,7 @@ static void name_regions(struct vtk_input *v, const struct vtk_array *array, int
     bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
     int most = 0;
     for (int64_t c = 0; c < v->cell_count; c++) {
-        int dim = msh_type(v->in.elements[c].type).dim;
+        int dim = msh_type(v->in.r->msh->element_type[c]).dim;
         most = dim > most ? dim : most;
         key[4 * first_from(value, 0, count, array->whole[c]) + dim] = -1;
     }
@@ -123,7 +123,7 @@ static void add_regions(struct vtk_input *v, const struct vtk_array *array)
     name_regions(v, array, count, value, key);
     for (int64_t c = 0; c < v->cell_count; c++) {
         int64_t place = first_from(value, 0, count, array->whole[c]);
-        v->in.elements[c].key = key[4 * place + msh_type(v->in.elements[c].type).dim];
+        v->in.r->element_key[c] = key[4 * place + msh_type(v->in.r->msh->element_type[c]).dim];
     }
     input_note(&v->in, "the regions are those of the cells' array '%s'", array->name);
 }
@@ -144,7 +144,7 @@ static void add_sets(struct vtk_input *v)
         }
         for (int64_t n = 0; v->in.r->status == STATUS_OK && n < v->point_count; n++) {
             if (array->whole[n] != 0) {
-                (void)input_add_element(&v->in, INPUT_NO_TAG, INPUT_POINT, &n, key);
+                input_add_element(&v->in, INPUT_NO_TAG, INPUT_POINT, &n, key);
             }
         }
     }

@@ -200,7 +200,7 @@ static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t cou
         swap_nodes(&node[6], &node[7]);
     }
     input_reorder(type, node);
-    (void)input_add_element(&v->in, c, type, node, 0);
+    input_add_element(&v->in, c, type, node, 0);
 }
 
 static void add_cells(struct vtk_input *v)
