@@ -21,7 +21,7 @@ const struct vtk_type *vtk_find_type(const char *name)
         {"", "vtktypeint16", 2, true, true},  {"", "vtktypeuint16", 2, true, false},
         {"", "vtktypeint32", 4, true, true},  {"", "vtktypeuint32", 4, true, false},
         {"", "vtktypeint64", 8, true, true},  {"", "vtktypeuint64", 8, true, false},
-        {"", "vtkIdType", 4, true, true},
+        {"", "vtkIdType", 4, true, true},     {"String", "string", 0, false, false},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         if ((name[0] != '\0' && strcmp(name, types[i].xml) == 0) || strcasecmp(name, types[i].legacy) == 0) {
@@ -45,7 +45,7 @@ bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const str
     bool wanted =
         of_grid || (whole && (array->kind == VTK_OF_CELLS || (array->kind == VTK_OF_POINTS && set) ||
                               (array->kind == VTK_OF_FIELD && begins(array->name, "region."))));
-    if (of_grid && type->is_whole == (array->kind == VTK_POINTS)) {
+    if (of_grid && (type->size == 0 || type->is_whole == (array->kind == VTK_POINTS))) {
         msh_fail(v->in.r, "numbers of a type that has no place here");
     } else if (!wanted) {
         input_leave_out(&v->in, array->name);

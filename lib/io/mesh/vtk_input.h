@@ -8,7 +8,7 @@
 /* A type of numbers, by its names in VTU and in legacy files. */
 struct vtk_type {
     const char *xml, *legacy;
-    int size; /* bytes */
+    int size; /* bytes; 0: texts, which are stepped over */
     bool is_whole, is_signed;
 };
 

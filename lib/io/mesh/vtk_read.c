@@ -94,13 +94,34 @@ static void decode_name(char name[])
 
 /* ---- numbers ---- */
 
+/* Step over texts: lines, or in binary files bytes behind their number, in 1 to 8 bytes, whose first two bits
+ * say in how many. */
+static void skip_texts(struct legacy *l, int64_t count)
+{
+    struct msh_reader *r = l->v.in.r;
+    const char *at, *end;
+    for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
+        int width = l->binary && r->at < r->end ? 8 >> ((unsigned char)*r->at >> 6) : 0;
+        uint64_t size = width > 0 ? *r->at & 0x3f : 0;
+        for (int k = 1; k < width && k < r->end - r->at; k++) {
+            size = size << 8 | (unsigned char)r->at[k];
+        }
+        if (l->binary ? width == 0 || r->end - r->at < width || size > (uint64_t)(r->end - r->at - width)
+                      : !next_line(r, &at, &end)) {
+            msh_fail(r, "only %lld of %lld texts", (long long)i, (long long)count);
+        } else if (l->binary) {
+            r->at += width + (int64_t)size;
+        }
+    }
+}
+
 /* Read `count` numbers into an array of the grid, or step over them. */
 static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *array,
                                       const struct vtk_type *type, int64_t count)
 {
     struct msh_reader *r = l->v.in.r;
     struct vtk_array *added = NULL;
-    int64_t left = r->end - r->at, size = l->binary ? type->size : 2, length;
+    int64_t left = r->end - r->at, size = type->size == 0 ? 1 : l->binary ? type->size : 2, length;
     if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
         msh_fail(r, "%lld numbers cannot be in the %lld bytes that are left", (long long)count,
                  (long long)left);
@@ -109,7 +130,9 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
     if (vtk_is_wanted(&l->v, array, type)) {
         added = vtk_add(&l->v, array, count);
     }
-    if (l->binary) {
+    if (type->size == 0) {
+        skip_texts(l, count);
+    } else if (l->binary) {
         if (added != NULL) {
             vtk_fill_binary(added, type, true, r->at);
         }

@@ -119,7 +119,7 @@ static void begin(void *context, const char *name, const char **attributes, int 
     struct msh_reader *r = u->v.in.r;
     if (depth == 0) {
         begin_file(u, attributes);
-    } else if (strcmp(name, "DataArray") == 0) {
+    } else if (strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0) {
         begin_array(u, attributes);
     } else if (strcmp(name, "Piece") == 0) {
         if (u->pieces++ > 0) {
