@@ -11,6 +11,7 @@ static void accepted(const char *text)
 
 #define NRRD "NRRD0005\n# a comment\ntype: short\nencoding: ascii\n"
 #define NRRD3 NRRD "dimension: 3\nsizes: 2 1 2\nkinds: domain domain domain\n"
+#define LONG "a name of 32 bytes, four times it"
 #define MHA "ObjectType = Image\nNDims = 3\nDimSize = 2 1 2\nElementType = MET_SHORT\nBinaryData = False\n"
 #define MHA_END "ElementDataFile = LOCAL\n1 -2 3 4"
 #define V "\n1 -2\n3 4\n"
@@ -112,6 +113,7 @@ TEST(headers_that_lie)
         {NRRD3 "kinds: domain list domain\n\n", "dimension 2 holds the values"},
         {NRRD3 "kinds: vector list domain\n\n", "dimension 2: two or three"},
         {NRRD3 "data file: data.raw\n\n", "give its name, which ends in .nhdr or .mhd"},
+        {NRRD3 "Segment0_Name:=" LONG LONG LONG LONG "\n\n", "a name of more than 127 bytes"},
         {NRRD3 "nonsense\n\n", "'nonsense': no ':' behind a key"},
         {MHA, "ends without ElementDataFile"},
         {MHA "ElementDataFile = LIST\na\nb\n", "several files"},

@@ -45,7 +45,9 @@ enum status image_segment_field(struct image *image, const struct text_header *h
     const char *key = header->key + length;
     RETURN_IF_ERROR(find_segment(image, number, &segment, error));
     if (strcmp(key, "Name") == 0 && header->value[0] != '\0') {
-        snprintf(segment->name, sizeof segment->name, "%s", header->value);
+        if (snprintf(segment->name, sizeof segment->name, "%s", header->value) >= (int)sizeof segment->name) {
+            return header_fail(header, "a name of more than 127 bytes: shorten it", error);
+        }
         for (char *at = segment->name; *at != '\0'; at++) {
             if ((unsigned char)*at < ' ' || *at == 0x7f) {
                 *at = '?';
