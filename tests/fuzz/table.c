@@ -28,7 +28,7 @@ static void try_labels(const char *path)
         REQUIRE(label_table_find(&table, table.range[r].last, &name) && name == table.range[r].name);
     }
     for (int32_t n = 0; n < table.name_count; n++) {
-        REQUIRE(table.name[n].text[0] != '\0' && strpbrk(table.name[n].text, ",\"':\n\t ") == NULL);
+        REQUIRE(table.name[n].text[0] != '\0' && strpbrk(table.name[n].text, ",\"=:|\n\t ") == NULL);
         for (int32_t k = 0; k < n; k++) {
             REQUIRE(strcmp(table.name[n].text, table.name[k].text) != 0);
         }
