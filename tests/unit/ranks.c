@@ -173,7 +173,7 @@ static int64_t evaluate(struct body *body, const double *u, double *results)
     body_limit_bulk(body, 2.0);
     (void)body_force(body, u, at);
     if (body_is_limited(body)) {
-        (void)body_augment(body, false, 0.0);
+        (void)body_augment(body, false, 0.0, 0.0);
         (void)body_force(body, u, at);
     }
     return at + nodes * body->dim - results;

@@ -148,10 +148,10 @@ bool body_is_limited(const struct body *body);
 /* Augmentation: the nodal pressures of the last evaluation become the held ones. Where the body can change
  * its volume, few augmentations suffice; where it is confined, each one supplies only the share limited /
  * bulk of what the pressures lack. `steady`: the load was the same at the last two augmentations; where their
- * changes form a geometric sequence, its limit is held (Aitken's extrapolation). Returns an estimate of what
+ * changes form a geometric sequence, and they lack more than `most`, its limit is held (Aitken's extrapolation). Returns an estimate of what
  * the pressures still lack, relative to the pressures or to the shear stress at `strain`, whichever is
  * larger; INFINITY: not known yet. */
-double body_augment(struct body *body, bool steady, double strain);
+double body_augment(struct body *body, bool steady, double most, double strain);
 
 /* The largest relative lack of the pressures in an accepted state. */
 #define NODAL_PRESSURE_LACK 1e-3

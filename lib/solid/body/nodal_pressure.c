@@ -166,7 +166,7 @@ bool body_is_limited(const struct body *body)
     return body->averaged && body->volumes.pressures.limited;
 }
 
-double body_augment(struct body *body, bool steady, double strain)
+double body_augment(struct body *body, bool steady, double most, double strain)
 {
     struct nodal_pressures *pressures = &body->volumes.pressures;
     const double *value = body->volumes.pressure, *weight = pressures->weight;
@@ -182,7 +182,7 @@ double body_augment(struct body *body, bool steady, double strain)
     }
     double rate = fmin(before2 > 0.0 ? sqrt(now2 / before2) : INFINITY, pressures->slowest);
     double ahead = rate / (1.0 - rate), lack = now2 > 0.0 ? ahead * sqrt(now2 / value2) : 0.0;
-    bool jumps = steady && lack > NODAL_PRESSURE_LACK && both > aligned * sqrt(now2 * before2);
+    bool jumps = steady && lack > most && both > aligned * sqrt(now2 * before2);
     for (int64_t a = 0; a < count; a++) {
         double change = value[a] - pressures->held[a];
         pressures->held[a] = value[a] + (jumps ? ahead * change : 0.0);

@@ -26,13 +26,15 @@ static const double least_radius = 1e-3; /* by the spacing: shorter steps are no
 /* With contacts, an error that stays below this is accepted: points that alternate between two facets keep it
  * from falling. */
 static const double most_hovering = 1e-3;
+/* The pressures are augmented after steps shorter than this, by the largest displacement. */
+static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
 /* By the body's size: a body that moves farther has no equilibrium. */
 static const double most_sizes = 10.0;
 /* Limits of the penetration at an equilibrium: of its depth, by the largest displacement; and of the work of
  * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. */
 static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
-static const int64_t usual_most_steps = 1000;
+static const int64_t usual_most_steps = 100000;
 
 /* ---- the preconditioner ---- */
 
@@ -40,6 +42,7 @@ static const int64_t usual_most_steps = 1000;
 static enum status take_stiffness(struct newton *n, struct error *error)
 {
     struct preconditioner *p = &n->preconditioner;
+    n->lowest = 0.0;
     system_relaxation_mass(n->system, false, n->scaled);
     RETURN_IF_ERROR(preconditioner_set_mass(p, n->system, n->scaled, error));
     RETURN_IF_ERROR(preconditioner_measure(p, n->system, n->u, &n->report->force_evaluations, error));
@@ -121,7 +124,7 @@ static bool increase_load(struct newton *n)
             n->load_change = fmin(n->most_change, 2.0 * n->load_change);
             return true;
         }
-        n->load_change = change * (far ? fmax(0.1, most / length) : 0.5);
+        n->load_change = change * (far ? most / length : 0.5);
         radius = radius > most ? most : 0.5 * radius;
         set_load(n, from, from);
     }
@@ -153,21 +156,23 @@ static bool contacts_lack(struct newton *n)
             system_missing_work(n->system) > missing_share * body_energy(&n->system->body, n->u));
 }
 
-static bool pressures_lack(const struct newton *n)
+/* What the nodal pressures may lack. */
+static double most_lack(const struct newton *n)
 {
-    return body_is_limited(&n->system->body) &&
-           !(n->pressures_lack <= fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance));
+    return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
 }
 
 /* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and evaluate it
  * with the new ones. */
 static void augment(struct newton *n)
 {
-    bool pressures = body_is_limited(&n->system->body) && (n->corrections == 0 || n->length < INFINITY);
-    bool contacts = n->system->contact_count > 0 && (n->corrections <= 1 || contacts_lack(n));
+    bool near = n->corrections > 0 && n->length < most_length * n->report->move;
+    bool pressures = near && body_is_limited(&n->system->body);
+    bool contacts = n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
+                    (n->corrections <= 1 || contacts_lack(n));
     if (pressures) {
         n->pressures_lack =
-            body_augment(&n->system->body, n->corrections > 1, n->report->move / n->body_size);
+            body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
     }
     if (contacts) {
         system_augment_contacts(n->system, false);
@@ -221,8 +226,21 @@ static void estimate(struct newton *n)
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double left_of = n->square > 0.0 ? sqrt(fmax(square, 0.0) / n->square) : 0.0;
     double error = left_of < 1.0 ? n->length * left_of / (1.0 - left_of) : INFINITY;
+    if (n->lowest > 0.0) {
+        error = newton_longest(n, n->scaled, &report->worst_node) / n->lowest;
+    }
     bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
     report->error = at_rest ? 0.0 : n->corrections > 0 ? error / report->move : INFINITY;
+}
+
+/* Whether a contact has pressed. */
+static bool touches(const struct solid_system *system)
+{
+    bool any = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        any = any || system->contacts[c].deepest > 0.0;
+    }
+    return any;
 }
 
 /* The error estimate that round-off alone causes, some units in the last place of positions. */
@@ -244,12 +262,18 @@ static bool ends(struct newton *n, enum relaxation_outcome *outcome)
         *outcome = RELAXATION_AWAY;
         return true;
     }
+    if (report->error <= n->options->tolerance && n->lowest == 0.0) {
+        newton_judge_stability(n);
+        estimate(n);
+    }
     bool vain = report->steps - n->best_step > most_vain;
     double most = n->options->tolerance;
     if (vain) {
-        most = fmax(most, n->system->contact_count > 0 ? most_hovering : round_off(n));
+        most = fmax(most, touches(n->system) ? most_hovering : round_off(n));
     }
-    bool found = report->error <= most && !contacts_lack(n) && !pressures_lack(n);
+    bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+    bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
+    bool found = report->error <= most && pressures && contacts;
     *outcome = found ? RELAXATION_CONVERGED : RELAXATION_STALLED;
     return found || report->steps - n->best_step > 4 * most_vain;
 }
@@ -257,7 +281,6 @@ static bool ends(struct newton *n, enum relaxation_outcome *outcome)
 /* An equilibrium at this load: false where the run ends, with the outcome or n->failure. */
 static bool goes_on(struct newton *n, struct error *error)
 {
-    newton_judge_stability(n);
     n->failure = newton_give_frame(n, error);
     return n->failure == STATUS_OK && n->load < 1.0;
 }

@@ -15,7 +15,7 @@
 #include "solid/relaxation/relaxation.h"
 
 /* As relaxation_run. Of the options, time_step_margin, ramp_steps and folded have no effect; most_steps
- * counts steps of Newton's method, 0: 1000; an interruption is seen at the end of a step. In the report,
+ * counts steps of Newton's method, 0: 1e5; an interruption is seen at the end of a step. In the report,
  * loading_steps are the increments of the load, and force_evaluations has the products of the stiffness. */
 MUST_CHECK enum status newton_run(struct solid_system *system, const struct relaxation_options *options,
                                   double *u, double *row_force, struct relaxation_report *report,

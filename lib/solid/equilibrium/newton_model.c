@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const double strain = 1e-6; /* about that much is a cell strained by the move of a product */
+enum { MOST_INNER = 4 };           /* augmentations of contacts in a step */
 enum { MOST_TURNS = 20 };          /* of the search along a direction */
 /* What is left of the gradient's norm when the multipliers of contacts advance. */
 static const double inner_left = 0.3;
@@ -192,12 +193,14 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
 {
     int64_t unused = 0;
     double before = 0.0, length = newton_longest(n, n->step, &unused), mark = 0.0;
+    int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
     begin_model(n);
     for (int k = 0; k < NEWTON_MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         *square = k == 0 ? now : *square;
         mark = k == 0 ? now : mark;
-        if (n->system->contact_count > 0 && now < inner_left * inner_left * mark) {
+        if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
+            augmentations--;
             system_augment_contacts(n->system, false);
             touch(n, 0.0);
             now = mark = scale_gradient(n);

@@ -31,6 +31,7 @@ struct newton {
     double most_change;                         /* and its most */
     double radius;                              /* bound of a step at each node, m */
     double square;                              /* r . M^-1 r at the start of the last correction */
+    double lowest;         /* least eigenvalue of M^-1 K, from above; 0: not known with this M */
     double length;         /* of that step at the node that moved most, m; INFINITY: it was cut short */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
     double largest_move;   /* so far, of a node, m */
@@ -42,6 +43,9 @@ struct newton {
 };
 
 enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
+/* Corrections at a load in which the multipliers of contacts advance; what contacts then still give way by is
+ * judged. */
+enum { NEWTON_MOST_AUGMENTATIONS = 24 };
 
 /* ---- newton_model.c ---- */
 
@@ -64,10 +68,10 @@ double newton_longest(const struct newton *n, const double *x, int64_t *node);
 
 /* ---- newton_stability.c ---- */
 
-/* Whether the equilibrium u is stable, into system->stability: conjugate gradients on a pseudo-random
- * residual meet a direction of negative stiffness, if there is one. Until they have, they reduce the residual
- * along it by nothing: their polynomial is 1 at 0, its roots are positive. So there is none once the
- * residual's square, r . M^-1 r, is less than the share of one mode. */
+/* The least eigenvalue of M^-1 K at u, into n->lowest, and whether u is stable, into system->stability:
+ * conjugate gradients on a pseudo-random residual meet a direction of negative stiffness, if there is one.
+ * Until they have, they reduce the residual along it by nothing: their polynomial is 1 at 0, its roots are
+ * positive. So there is none once the residual's square, r . M^-1 r, is less than the share of one mode. */
 void newton_judge_stability(struct newton *n);
 
 /* ---- newton_state.c: memory, checkpoints, progress and frames ---- */

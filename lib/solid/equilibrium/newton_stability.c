@@ -1,6 +1,7 @@
 /* Whether an equilibrium is stable. */
 #include "base/vector.h"
 #include "solid/equilibrium/newton_private.h"
+#include "solid/preconditioner/frequency.h"
 
 #include <math.h>
 #include <string.h>
@@ -51,7 +52,9 @@ void newton_judge_stability(struct newton *n)
 {
     struct stability *stability = &n->system->stability;
     struct relaxation_report *report = n->report;
-    double *rest = n->model.smooth, square = 0.0, first = 0.0, norm2 = 0.0, largest = 0.0, least = INFINITY;
+    double *rest = n->model.smooth, square = 0.0, first = 0.0, norm2 = 0.0, largest = 0.0, way = 0.0;
+    double diagonal[NEWTON_MOST_ITERATIONS], off_diagonal[NEWTON_MOST_ITERATIONS]; /* of Lanczos's matrix */
+    int count = 0;
     int64_t node = 0;
     stability->least = 0.0;
     start(rest, n->size);
@@ -70,7 +73,6 @@ void newton_judge_stability(struct newton *n)
         square = now;
         double curvature = multiply(n, n->search, 1.0, n->product), quotient = curvature / norm2;
         largest = fmax(largest, quotient);
-        least = fmin(least, quotient);
         if (!(quotient > least_told * largest)) {
             if (is_negative(n, curvature, norm2, largest) && quotient < -report->error * largest) {
                 (void)newton_longest(n, n->search, &node);
@@ -79,11 +81,16 @@ void newton_judge_stability(struct newton *n)
             }
             break;
         }
+        diagonal[k] = curvature / now + (k > 0 ? part / way : 0.0);
+        off_diagonal[k > 0 ? k - 1 : 0] = k > 0 ? sqrt(part) / way : 0.0;
+        way = now / curvature;
+        count = k + 1;
         for (int64_t i = 0; i < n->size; i++) {
-            rest[i] -= square / curvature * n->product[i];
+            rest[i] -= way * n->product[i];
         }
     }
+    n->lowest = count > 0 ? tridiagonal_least(count, diagonal, off_diagonal) : 1.0;
     report->largest_frequency = sqrt(largest);
-    report->lowest_frequency = sqrt(fmax(least, 0.0));
+    report->lowest_frequency = sqrt(fmax(n->lowest, 0.0));
     (void)newton_evaluate(n, n->u, &n->at_u); /* the last evaluation again */
 }

@@ -40,6 +40,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"load_change", STATE_NUMBERS, &n->load_change, 1},
         {"radius", STATE_NUMBERS, &n->radius, 1},
         {"square", STATE_NUMBERS, &n->square, 1},
+        {"lowest", STATE_NUMBERS, &n->lowest, 1},
         {"length", STATE_NUMBERS, &n->length, 1},
         {"largest_move", STATE_NUMBERS, &n->largest_move, 1},
         {"best_error", STATE_NUMBERS, &n->best_error, 1},

@@ -104,9 +104,8 @@ static int eigenvalues_below(int n, const double *diagonal, const double *off_di
     return below;
 }
 
-/* Its least eigenvalue, to a part in 1e4 (or of its rounding errors), by bisection between Gershgorin's
- * bounds. */
-static double least_eigenvalue(int n, const double *diagonal, const double *off_diagonal)
+/* By bisection between Gershgorin's bounds. */
+double tridiagonal_least(int n, const double *diagonal, const double *off_diagonal)
 {
     double low = INFINITY, high = INFINITY, most = 0.0;
     for (int i = 0; i < n; i++) {
@@ -132,7 +131,7 @@ static double largest_eigenvalue(int n, double *diagonal, const double *off_diag
     for (int i = 0; i < n; i++) {
         diagonal[i] = -diagonal[i];
     }
-    double largest = -least_eigenvalue(n, diagonal, off_diagonal);
+    double largest = -tridiagonal_least(n, diagonal, off_diagonal);
     for (int i = 0; i < n; i++) {
         diagonal[i] = -diagonal[i];
     }
@@ -285,7 +284,7 @@ enum status system_spectrum(struct solid_system *system, struct preconditioner *
         largest = fmax(largest, diagonal[k]);
         spectrum->iterations = k + 1;
         if (k + 1 == next_check || k + 1 == most_iterations || !(l.norm > 1e-12 * largest)) {
-            double value = least_eigenvalue(k + 1, diagonal, off_diagonal);
+            double value = tridiagonal_least(k + 1, diagonal, off_diagonal);
             bool is_settled = enough(k + 1, largest, value) && last - value < settled_change * value;
             spectrum->lowest = value;
             spectrum->largest = largest_eigenvalue(k + 1, diagonal, off_diagonal);

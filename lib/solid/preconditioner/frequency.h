@@ -41,3 +41,7 @@ MUST_CHECK enum status system_unstable_mode(struct solid_system *system,
                                             const double *residual, const struct spectrum *spectrum,
                                             const double *start, double *scratch, struct stability *stability,
                                             struct error *error);
+
+/* The least eigenvalue of the symmetric tridiagonal matrix (diagonal[n], off_diagonal[n - 1]), to a part in 1e4 (or of
+ * its rounding errors). */
+double tridiagonal_least(int n, const double *diagonal, const double *off_diagonal);

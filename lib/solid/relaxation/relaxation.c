@@ -53,7 +53,8 @@ static void augment(struct relaxation *r)
     if (pressures) {
         r->steady_augmentations = r->held_steps > pause ? r->steady_augmentations + 1 : 0;
         r->pressures_lack =
-            body_augment(&r->system->body, r->steady_augmentations > 1, r->move / r->body_size);
+            body_augment(&r->system->body, r->steady_augmentations > 1, NODAL_PRESSURE_LACK,
+                         r->move / r->body_size);
     }
     if (contacts) {
         system_augment_contacts(r->system, r->held_steps > pause);
