@@ -156,7 +156,7 @@ static bool line_place(const struct shaping *shaping, int64_t node, double x[])
     int count = star->labels[node];
     memcpy(label, star->label[node], sizeof star->label[node]);
     if ((shaping->rim[node][0] != 0 && rim_project(shaping, shaping->rim[node], x)) ||
-        line_project(labels, shaping->keep, 0, count, label, x)) {
+        line_project(labels, 0, count, label, x)) {
         return true;
     }
     const double *here = shaping->mesh->x + node * labels->dim;

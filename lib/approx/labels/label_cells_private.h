@@ -204,10 +204,9 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
  * labels of the node meet. False if there is none near. */
 bool node_project(const struct shaping *shaping, int64_t node, double x[]);
 
-/* Move x to the place where all the labels meet, no farther from each than `reach`, m, or six voxels. False
- * if there is no such place. */
-bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
-                  const uint16_t label[], double x[]);
+/* Move x to the place where all the labels meet, which is searched for within `reach`, m, where Newton's
+ * method from x does not find it. False if there is no such place. */
+bool line_project(const struct labels *labels, double reach, int count, const uint16_t label[], double x[]);
 
 /* Move x onto a rim: that of a ball, or the line where the three labels meet. False if there is none near. */
 bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[]);

@@ -3,23 +3,31 @@
 #include "base/dense.h"
 #include "base/vector.h"
 
-#include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Where a share is below this, the interface is searched for: the share is too flat for Newton's method. */
 static const double least_share = 0.1;
 
+/* How near to an interface a place on it is, voxels. */
+static const double least_step = 1e-3;
+
 /* The shortest step for which the linearised differences of the shares vanish; false if these do not
- * change. */
+ * change, or are not less than *residual, which becomes their norm. */
 static bool newton_step(const struct labels *labels, int count, const uint16_t label[], const double x[],
-                        double step[3])
+                        double *residual, double step[3])
 {
     int rows = count - 1, dim = labels->dim;
     double J[3][3] = {{0}}, A[9], g[3], voxel = labels_voxel(labels);
     rows = rows < dim ? rows : dim;
     for (int r = 0; r < rows; r++) {
         g[r] = labels_difference(labels, x, label[0], label[r + 1], J[r]);
+    }
+    double last = *residual;
+    *residual = vector_length(rows, g);
+    if (!(*residual < last)) {
+        return false;
     }
     for (int r = 0; r < rows; r++) {
         for (int c = 0; c < rows; c++) {
@@ -51,12 +59,12 @@ static bool newton_step(const struct labels *labels, int count, const uint16_t l
 
 bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[])
 {
-    double y[3] = {0}, length = INFINITY, voxel = labels_voxel(labels);
+    double y[3] = {0}, length = INFINITY, residual = INFINITY, voxel = labels_voxel(labels);
     struct label_mix mix;
     memcpy(y, x, (size_t)labels->dim * sizeof *x);
-    for (int i = 0; i < 20 && length > 1e-3 * voxel; i++) {
+    for (int i = 0; i < 20 && length > least_step * voxel; i++) {
         double step[3];
-        if (!newton_step(labels, count, label, y, step)) {
+        if (!newton_step(labels, count, label, y, &residual, step)) {
             return false;
         }
         length = 0;
@@ -73,7 +81,7 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
         }
     }
     memcpy(x, y, (size_t)labels->dim * sizeof *x);
-    return length <= 1e-3 * voxel;
+    return length <= least_step * voxel;
 }
 
 static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
@@ -84,88 +92,116 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
 /* Largest distance of a search for an interface, voxels. */
 static const double most_voxels = 6.0;
 
-/* By how much the largest share at x exceeds those of the labels beyond: 0 or less if x lies in one. */
-static double margin(const struct labels *labels, const double x[], const struct interface_beyond *beyond)
-{
-    struct label_mix mix;
-    int best = 0;
-    double largest = 0;
-    labels_mix(labels, x, &mix);
-    for (int i = 0; i < mix.count; i++) {
-        bool more = mix.share[i] > mix.share[best];
-        best = more || (mix.share[i] == mix.share[best] && mix.label[i] < mix.label[best]) ? i : best;
-        largest = is_beyond(beyond, mix.label[i]) ? fmax(largest, mix.share[i]) : largest;
-    }
-    return is_beyond(beyond, mix.label[best]) ? -1 : mix.share[best] - largest;
-}
+/* Whether a search from x looks for place[], nearer than `least`, m; or for a place on the way there, to
+ * which place[] is moved. */
+typedef bool place_test(const struct labels *labels, const void *wanted, const double x[], double least,
+                        double place[3]);
 
-/* A direction of a search, m; the most by which the margin falls in a step along it; and the next step at
- * which there may be a label beyond. */
-struct ray {
-    double step[3], fall;
-    int next;
-};
-
-/* The rays from x in steps of a length, m. Along an axis of the voxels a share falls, and another one grows,
- * by at most .75 a voxel, the sum of the positive slopes of the splines. */
-static void make_rays(const struct labels *labels, double length, double here, struct ray *ray)
-{
-    for (int r = 0; r < label_cells_directions(labels->dim); r++) {
-        double norm = label_cells_direction(labels->dim, r, ray[r].step), world[3] = {0};
-        for (int d = 0; d < labels->dim; d++) {
-            ray[r].step[d] *= norm > 0 ? length / norm : 0;
-            world[labels->dim == 3 ? d : labels->axis[d]] = ray[r].step[d];
-        }
-        ray[r].fall = 0;
-        for (int e = 0; e < 3; e++) {
-            ray[r].fall += 1.5 * fabs(vector_dot(3, labels->to_voxel[e], world));
-        }
-        ray[r].next = norm > 0 ? (int)fmax(1, here / ray[r].fall) : here > 0 ? INT_MAX : 1;
-    }
-}
-
-/* The least distance, in steps of a tenth of a voxel, at which there is a label beyond in some direction, and
- * place[]; infinity if there is none within `reach`. */
-static double search_beyond(const struct labels *labels, const double x[],
-                            const struct interface_beyond *beyond, double reach, double place[3])
+/* place[]: the nearest one to x that passes a test, of those on a grid about it with the spacing of the
+ * voxels, within `reach` and a spacing, m. False if there is none. */
+static bool find_nearest(const struct labels *labels, const double x[], double reach, place_test *test,
+                         const void *wanted, double place[3])
 {
     int dim = labels->dim;
-    double length = 0.1 * labels_voxel(labels);
-    int steps = (int)ceil(reach / length - 1e-6);
-    struct ray ray[27];
-    make_rays(labels, length, margin(labels, x, beyond), ray);
-    for (int step = 1; step <= steps; step++) {
-        for (int r = 0; r < label_cells_directions(dim); r++) {
-            if (ray[r].next > step) {
-                continue;
+    double spacing = labels_voxel(labels), least = reach + spacing;
+    bool found = false;
+    for (int shell = 1; (shell - 1) * spacing <= fmin(reach, least); shell++) {
+        int side = 2 * shell + 1, rows = dim == 3 ? side * side : side;
+        for (int row = 0; row < rows; row++) {
+            int j = row % side - shell, k = dim == 3 ? row / side - shell : 0;
+            int step = abs(j) == shell || abs(k) == shell ? 1 : 2 * shell;
+            for (int i = -shell; i <= shell; i += step) {
+                double y[3] = {x[0] + spacing * i, x[1] + spacing * j, dim == 3 ? x[2] + spacing * k : 0};
+                if (test(labels, wanted, x, least, y)) {
+                    found = true;
+                    least = vector_distance(dim, x, y);
+                    memcpy(place, y, sizeof y);
+                }
             }
-            for (int d = 0; d < dim; d++) {
-                place[d] = x[d] + step * ray[r].step[d];
-            }
-            double there = margin(labels, place, beyond);
-            if (there < 0) {
-                return step * length;
-            }
-            ray[r].next = step + (int)fmax(1, there / ray[r].fall);
         }
     }
-    return INFINITY;
+    return found;
 }
 
-/* Move x to the nearest place, among those of search_beyond, where the label beyond begins. */
-static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double reach,
-                          double x[])
+/* The label of the largest share at x among those that are beyond, or are not; -1: none. */
+static int32_t largest(const struct label_mix *mix, const struct interface_beyond *beyond, bool is)
 {
-    double place[3] = {0}, low = 0, high = 1;
-    if (!(search_beyond(labels, x, beyond, reach, place) < INFINITY)) {
-        return false;
+    int best = -1;
+    for (int i = 0; i < mix->count; i++) {
+        if (is_beyond(beyond, mix->label[i]) == is && (best < 0 || mix->share[i] > mix->share[best])) {
+            best = i;
+        }
     }
-    for (int step = 0; step < 12; step++) {
+    return best >= 0 ? mix->label[best] : -1;
+}
+
+/* Move place[], beyond, to where that begins on the way from x. */
+static void step_back(const struct labels *labels, const struct interface_beyond *beyond, const double x[],
+                      double place[3])
+{
+    double low = 0, high = 1, distance = vector_distance(labels->dim, x, place);
+    while ((high - low) * distance > least_step * labels_voxel(labels)) {
         double t = (low + high) / 2, y[3] = {0};
         vector_between(labels->dim, x, place, t, y);
         *(is_beyond(beyond, labels_at(labels, y)) ? &high : &low) = t;
     }
-    vector_between(labels->dim, x, place, high, x);
+    vector_between(labels->dim, x, place, high, place);
+}
+
+/* Turn the way from x to a place on the interface into the direction in which the label beyond gains. False
+ * if it does not lie there. */
+static bool turn(const struct labels *labels, const struct interface_beyond *beyond, const double x[],
+                 double place[3])
+{
+    struct label_mix mix;
+    double gradient[3], end[3] = {0}, distance = vector_distance(labels->dim, x, place);
+    labels_mix(labels, place, &mix);
+    int32_t there = largest(&mix, beyond, true), here = largest(&mix, beyond, false);
+    if (there < 0 || here < 0) {
+        return false;
+    }
+    (void)labels_difference(labels, place, there, here, gradient);
+    double length = vector_length(labels->dim, gradient);
+    for (int d = 0; d < labels->dim; d++) {
+        end[d] = x[d] + distance / length * gradient[d];
+    }
+    bool lies = length > 0 && is_beyond(beyond, labels_at(labels, end));
+    memcpy(place, lies ? end : place, sizeof end);
+    return lies;
+}
+
+/* Whether the voxel at place[] lies beyond, and the way from x to there reaches beyond before `least`:
+ * place[] is moved to where that begins. */
+static bool begins_beyond(const struct labels *labels, const void *wanted, const double x[], double least,
+                          double place[3])
+{
+    const struct interface_beyond *beyond = wanted;
+    if (!is_beyond(beyond, labels_nearest(labels, place))) {
+        return false;
+    }
+    vector_between(labels->dim, x, place, fmin(1, least / vector_distance(labels->dim, x, place)), place);
+    if (!is_beyond(beyond, labels_at(labels, place))) {
+        return false;
+    }
+    step_back(labels, beyond, x, place);
+    return true;
+}
+
+/* Move x to the nearest place where the label beyond begins. False if there is none within `reach`, m. */
+static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double reach,
+                          double x[])
+{
+    double place[3] = {0};
+    if (!find_nearest(labels, x, reach, begins_beyond, beyond, place)) {
+        return false;
+    }
+    for (int turns = 0; turns < 4 && turn(labels, beyond, x, place); turns++) {
+        step_back(labels, beyond, x, place);
+    }
+    if (!(vector_distance(labels->dim, x, place) <= reach)) {
+        return false;
+    }
+    memcpy(x, place, (size_t)labels->dim * sizeof *x);
     return true;
 }
 
@@ -258,7 +294,7 @@ static bool ball_project(const struct shaping *shaping, const struct label_ball 
         int32_t outside = label_largest(&mix, shaping->keep, false);
         vector_subtract(dim, y, ball->centre, from);
         off = vector_length(dim, from) - ball->radius;
-        if (fabs(off) <= 1e-3 * voxel || within < 0 || outside < 0) {
+        if (fabs(off) <= least_step * voxel || within < 0 || outside < 0) {
             break;
         }
         (void)labels_difference(labels, y, within, outside, normal);
@@ -274,7 +310,7 @@ static bool ball_project(const struct shaping *shaping, const struct label_ball 
             return false;
         }
     }
-    if (fabs(off) > 1e-3 * voxel) {
+    if (fabs(off) > least_step * voxel) {
         return false;
     }
     memcpy(x, y, (size_t)dim * sizeof *x);
@@ -288,42 +324,34 @@ bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[
     if (parts->ball != NULL && parts->ball[later].radius > 0) {
         return ball_project(shaping, &parts->ball[later], x);
     }
-    return line_project(parts, shaping->keep, shaping->reach, 3, rim, x);
+    return line_project(parts, shaping->reach, 3, rim, x);
 }
 
-bool line_project(const struct labels *labels, const bool *keep, double reach, int count,
-                  const uint16_t label[], double x[])
+/* The labels of a line. */
+struct meeting {
+    int count;
+    const uint16_t *label;
+};
+
+static bool all_meet(const struct labels *labels, const void *wanted, const double x[], double least,
+                     double place[3])
 {
-    double y[3] = {0};
-    reach = fmax(reach, most_voxels * labels_voxel(labels));
-    memcpy(y, x, (size_t)labels->dim * sizeof *x);
+    const struct meeting *meeting = wanted;
+    return vector_distance(labels->dim, x, place) < least &&
+           labels_meet(labels, meeting->count, meeting->label, place);
+}
+
+bool line_project(const struct labels *labels, double reach, int count, const uint16_t label[], double x[])
+{
+    const struct meeting meeting = {count, label};
+    double place[3] = {0};
     if (interface_project(labels, count, label, x)) {
         return true;
     }
-    /* Far away: move to each of the labels in turn, and back onto the surface. */
-    bool boundary = false;
-    for (int i = 0; i < count; i++) {
-        boundary = boundary || !keep[label[i]];
-    }
-    double moved = INFINITY;
-    for (int round = 0; round < 4 && moved > 1e-3 * labels_voxel(labels); round++) {
-        double before[3] = {0};
-        memcpy(before, y, sizeof before);
-        for (int i = 0; i < count; i++) {
-            const struct interface_beyond region = {label[i], keep, true};
-            if (keep[label[i]] && labels_at(labels, y) != label[i] &&
-                !search_change(labels, &region, reach, y)) {
-                return false;
-            }
-        }
-        if (boundary && !project_to_surface(labels, keep, reach, y)) {
-            return false;
-        }
-        moved = vector_distance(labels->dim, before, y);
-    }
-    if (!interface_project(labels, count, label, y)) {
+    if (!find_nearest(labels, x, reach, all_meet, &meeting, place) ||
+        !interface_project(labels, count, label, place)) {
         return false;
     }
-    memcpy(x, y, (size_t)labels->dim * sizeof *x);
+    memcpy(x, place, (size_t)labels->dim * sizeof *x);
     return true;
 }

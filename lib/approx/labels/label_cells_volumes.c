@@ -9,7 +9,7 @@
 
 /* Largest move of an interface to correct the volumes of labels, voxels. */
 static const double most_offset = 0.55;
-enum { SWEEPS = 12 };
+enum { SWEEPS = 6 };
 
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3])
 {
@@ -30,6 +30,7 @@ struct volumes {
     double *pressure; /* labels->count */
     double *matrix;   /* labels->count squared */
     bool *movable;    /* nodes: of interfaces that are near them */
+    bool *free;       /* nodes: movable, and not held by their cells or the bound in the last sweep */
     double *place;    /* nodes: on their interface */
 };
 
@@ -93,7 +94,7 @@ static bool find_pressures(struct volumes *volumes)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double G[LABEL_CELLS_MOST_LABELS][3];
         const uint16_t *label = star->label[n];
-        if (!volumes->movable[n]) {
+        if (!volumes->free[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
@@ -124,25 +125,27 @@ static void correct_volumes(struct volumes *volumes)
     int dim = mesh->dim;
     double most = most_offset * labels_voxel(&volumes->shaping->labels);
     for (int64_t n = 0; n < mesh->node_count; n++) {
-        double G[LABEL_CELLS_MOST_LABELS][3], target[3] = {0}, length = 0;
-        const double *place = volumes->place + n * dim;
+        double G[LABEL_CELLS_MOST_LABELS][3], target[3] = {0}, before[3] = {0}, length = 0, wanted;
+        const double *place = volumes->place + n * dim, *x = mesh->x + n * dim;
         if (!volumes->movable[n]) {
             continue;
         }
         node_gradients(volumes, n, G);
         double weight = node_weight(dim, G);
         for (int d = 0; d < dim; d++) {
-            target[d] = mesh->x[n * dim + d];
+            before[d] = target[d] = x[d];
             for (int i = 0; i < star->labels[n]; i++) {
                 target[d] += weight * volumes->pressure[volumes->whole[star->label[n][i]]] * G[i][d];
             }
             length += (target[d] - place[d]) * (target[d] - place[d]);
         }
+        wanted = vector_distance(dim, target, before);
         length = sqrt(length);
         for (int d = 0; d < dim && length > most; d++) {
             target[d] = place[d] + (target[d] - place[d]) * most / length;
         }
         star_move(volumes->shaping, n, target);
+        volumes->free[n] = vector_distance(dim, x, before) >= wanted / 2;
     }
 }
 
@@ -172,15 +175,16 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
     TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
     TRY(NEW_ARRAY(&volumes.matrix, (int64_t)labels->count * labels->count, error));
     TRY(NEW_ARRAY(&volumes.movable, mesh->node_count, error));
+    TRY(NEW_ARRAY(&volumes.free, mesh->node_count, error));
     TRY(NEW_ARRAY(&volumes.place, mesh->node_count * mesh->dim, error));
     memcpy(volumes.place, mesh->x, (size_t)(mesh->node_count * mesh->dim) * sizeof(double));
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         const double *x = mesh->x + n * mesh->dim;
         double *place = volumes.place + n * mesh->dim;
-        volumes.movable[n] = shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] &&
-                             node_project(shaping, n, place) &&
-                             vector_distance(mesh->dim, place, x) <= most_offset * labels_voxel(labels);
+        volumes.free[n] = volumes.movable[n] =
+            shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] && node_project(shaping, n, place) &&
+            vector_distance(mesh->dim, place, x) <= most_offset * labels_voxel(labels);
     }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
@@ -192,6 +196,7 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
         correct_volumes(&volumes);
     }
 done:
-    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.place);
+    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.free,
+             volumes.place);
     return status;
 }

@@ -37,6 +37,12 @@ struct label_mix {
 /* Voxel index of a point: voxel centres are whole numbers. */
 void labels_to_voxel(const struct labels *labels, const double x[], double voxel[3]);
 
+/* The label of the voxel nearest to a point. */
+int32_t labels_nearest(const struct labels *labels, const double x[]);
+
+/* Whether each of at most 16 labels is that of one of the voxels around a point, two along each axis. */
+bool labels_meet(const struct labels *labels, int count, const uint16_t label[], const double x[]);
+
 /* The shares at a point. */
 void labels_mix(const struct labels *labels, const double x[], struct label_mix *mix);
 
