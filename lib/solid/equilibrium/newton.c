@@ -22,6 +22,9 @@ static const double prescribed_spacings = 1.0, most_spacings = 2.0;
 /* The estimated error at which the load grows on, or the corrections after which it does all the same. */
 static const double error_between = 0.25;
 static const int64_t most_between = 8;
+/* Between facets of the body, a step by the width of a point, of which half is searched (contact_between.c).
+ */
+static const double step_by_width = 0.25;
 static const double least_radius = 1e-3; /* by the spacing: shorter steps are none */
 /* With contacts, an error that stays below this is accepted: points that alternate between two facets keep it
  * from falling. */
@@ -35,6 +38,21 @@ static const double most_sizes = 10.0;
  * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. */
 static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
 static const int64_t usual_most_steps = 100000;
+
+/* How far a node may move in a step: between facets of the body so far that what is opposite a point is still
+ * found. */
+static double longest_step(const struct newton *n)
+{
+    const struct solid_system *system = n->system;
+    double most = n->body_size;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        for (int64_t p = 0; contact->between != NULL && p < contact->count; p++) {
+            most = fmin(most, step_by_width * contact_width(contact, p));
+        }
+    }
+    return most;
+}
 
 /* ---- the preconditioner ---- */
 
@@ -106,7 +124,7 @@ static bool increase_load(struct newton *n)
 {
     double from = n->load, target = newton_load_to_hold(n), square = 0.0, radius = n->body_size;
     double share = n->last_change != 0.0 ? left : left_at_first, least = 0.5 * n->report->least_jacobian;
-    const double most = most_spacings * n->spacing;
+    const double most = fmin(most_spacings * n->spacing, n->longest_step);
     int64_t unused = 0;
     n->report->loading_steps++;
     while (radius > least_radius * n->spacing) {
@@ -209,7 +227,7 @@ static bool correct(struct newton *n)
     }
     take_step(n);
     n->length = share < 1.0 || !solved ? INFINITY : length;
-    n->radius = share < 1.0 ? share * length : fmin(2.0 * n->radius, n->body_size);
+    n->radius = share < 1.0 ? share * length : fmin(2.0 * n->radius, n->longest_step);
     n->radius = fmax(n->radius, least_radius * n->spacing);
     return true;
 }
@@ -344,7 +362,7 @@ static enum status begin(struct newton *n, struct error *error)
     system_relaxation_mass(system, false, n->scaled);
     RETURN_IF_ERROR(preconditioner_set_mass(&n->preconditioner, system, n->scaled, error));
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
-    n->radius = n->spacing;
+    n->radius = fmin(n->spacing, n->longest_step);
     n->load_change = n->most_change;
     n->corrections = most_between + 1;
     return take_stiffness(n, error);
@@ -376,6 +394,7 @@ enum status newton_run(struct solid_system *system, const struct relaxation_opti
     n.spacing = system_node_spacing(system);
     n.body_size = box_diagonal(&box);
     n.most_change = 1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.spacing)));
+    n.longest_step = longest_step(&n);
     RETURN_IF_ERROR(options->restored != NULL ? resume(&n, error) : begin(&n, error));
     report->outcome = iterate(&n, error);
     RETURN_IF_ERROR(n.failure);

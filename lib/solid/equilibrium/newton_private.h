@@ -29,6 +29,7 @@ struct newton {
     double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
     double load, load_change;                   /* share of the load at u; the next increment, */
     double most_change;                         /* and its most */
+    double longest_step;                        /* of a node, m */
     double radius;                              /* bound of a step at each node, m */
     double square;                              /* r . M^-1 r at the start of the last correction */
     double lowest;         /* least eigenvalue of M^-1 K, from above; 0: not known with this M */
