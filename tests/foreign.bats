@@ -31,9 +31,17 @@ faulty() {
     [ "$(mts print facets body.mts)" = "1 2" ]
     [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 3" ]
     [ "$(names "$corpus/inp/second")" = "a s n" ]
+    grep -q "group 'n': midside nodes, left out: 1" said
     run ! grep "no cell" said # but a midside node
     [ "$(names --midside use "$corpus/inp/second")" = "a s n" ]
     [ "$(mts print facets body.mts | wc -l)" -eq 8 ]
+    # lines of second order: end, middle, end
+    printf '%s\n' '*NODE' 1,0,0 2,1,0 3,1,1 4,0,1 5,.5,0 6,1,.5 7,.5,1 8,0,.5 '*ELEMENT,TYPE=CPE8,ELSET=b' 1,1,2,3,4,5,6,7,8 \
+        '*ELEMENT,TYPE=T2D3,ELSET=low' 2,1,5,2 > line
+    [ "$(names line)" = "b low" ]
+    [ "$(mts print facets body.mts)" = "0 1" ]
+    [ "$(names --midside use line)" = "b low" ]
+    [ "$(mts print facets body.mts | wc -l)" -eq 2 ]
     names - < "$corpus/inp/solid" | grep -q Low
     sed 's/NSET=base/NSET="the base"/; s/^base/"the base"/' "$corpus/inp/solid" | names - | grep -q Nall,the_base,some,upper,points
 }

@@ -193,6 +193,9 @@ static int find_type(const char *name, bool *is_shell)
     return 0;
 }
 
+/* gmsh's number of a line of second order. */
+enum { LINE3 = 8 };
+
 /* An element: its number and its nodes, on as many lines as these take. */
 static void read_element(struct inp *p, int type, bool is_shell)
 {
@@ -215,6 +218,11 @@ static void read_element(struct inp *p, int type, bool is_shell)
         msh_fail(r, "element %lld has more than %d nodes", (long long)tag, count);
     }
     input_reorder(type, node);
+    if (type == LINE3) { /* end, middle, end */
+        int64_t end = node[2];
+        node[2] = node[1];
+        node[1] = end;
+    }
     MSH_GROW(r, &p->is_shell, p->in.r->msh->element_count + 1, &p->shell_room);
     if (r->status == STATUS_OK) {
         p->is_shell[p->in.r->msh->element_count] = is_shell;

@@ -161,14 +161,16 @@ static enum status gather_facets(struct gathering *g, int32_t group)
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;
-    int64_t lost = 0;
+    int64_t lost = 0, midside = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
         int64_t e = g->group_idx[i];
         int used = mesh_used_nodes(g->draft, e);
         for (int k = 0; k < used; k++) {
             int32_t of_file = msh->node_idx[msh->node_ptr[e] + k];
             int32_t node = g->draft->node_of[of_file];
-            lost += node < 0 && g->draft->role[of_file] != MESH_MIDSIDE;
+            bool is_midside = g->draft->role[of_file] == MESH_MIDSIDE;
+            lost += node < 0 && !is_midside;
+            midside += node < 0 && is_midside;
             RETURN_IF_ERROR(add_set_node(g, group, node));
         }
     }
@@ -176,6 +178,10 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
     if (lost > 0) {
         RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
                                       msh->groups[group].name));
+    }
+    if (midside > 0) {
+        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': midside nodes, left out: %lld",
+                                      msh->groups[group].name, (long long)midside));
     }
     return STATUS_OK;
 }
