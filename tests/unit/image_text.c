@@ -9,8 +9,10 @@ static void accepted(const char *text)
     }
 }
 
-#define NRRD "NRRD0005\n# a comment\ntype: short\nencoding: ascii\n"
-#define NRRD3 NRRD "dimension: 3\nsizes: 2 1 2\nkinds: domain domain domain\n"
+#define SHORTS "NRRD0005\n# a comment\ntype: short\n"
+#define NRRD SHORTS "encoding: ascii\n"
+#define SIZES "dimension: 3\nsizes: 2 1 2\n"
+#define NRRD3 NRRD SIZES "kinds: domain domain domain\n"
 #define LONG "a name of 32 bytes, four times it"
 #define MHA "ObjectType = Image\nNDims = 3\nDimSize = 2 1 2\nElementType = MET_SHORT\nBinaryData = False\n"
 #define MHA_END "ElementDataFile = LOCAL\n1 -2 3 4"
@@ -57,6 +59,26 @@ TEST(places)
     }
 }
 
+/* What the header leaves open, or spells otherwise, is noted. */
+TEST(notes)
+{
+    static const char *const cases[][2] = {
+        {NRRD3
+         "space: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1\n" V,
+         "tells no space origin: the first voxel lies at 0; fields that are not known, left out: space "
+         "orign"},
+        {MHA "ElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1\n" MHA_END,
+         "tells no Offset: the first voxel lies at 0; fields that are not known, left out: Ofset, "
+         "ElementSizes"},
+        {MHA "ElementSpacing = 1 1 1 9\nOffset = 1 2 3\n" MHA_END, ""},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        accepted(cases[c][0]);
+        assert_string_equal(image.note, cases[c][1]);
+        image_free(&image);
+    }
+}
+
 /* Vectors of a space turn with it, lists do not; components may be the first dimension or the last. */
 TEST(vectors)
 {
@@ -96,22 +118,23 @@ TEST(headers_that_lie)
         {NRRD3 "\n1 2 3 4e9", "value 3, '4e9': not of the type int16"},
         {NRRD3, "ends without an empty line"},
         {"NRRD0009\n\n", "NRRD0001 to NRRD0006"},
-        {NRRD3 "encoding: bzip2\n\n1", "encoding: bzip2: raw, gzip and ascii are read"},
-        {NRRD3 "encoding: raw\n\n1", "no endian"},
-        {NRRD3 "encoding: gzip\nendian: little\nbyte skip: -1\n\n", "a skip of -1 goes with raw data only"},
+        {SHORTS "encoding: bzip2\n\n1", "encoding: bzip2: raw, gzip and ascii are read"},
+        {SHORTS SIZES "encoding: raw\n\n1", "no endian"},
+        {SHORTS SIZES "encoding: gzip\nendian: little\nbyte skip: -1\n\n",
+         "a skip of -1 goes with raw data only"},
         {NRRD3 "byte skip: 99\n\n1 2 3 4", "cut short"},
-        {NRRD3 "sizes: 2 0 2\n\n", "size 0"},
-        {NRRD3 "sizes: 2 1e8 1e8\n\n", "cut short"},
-        {NRRD3 "sizes: 2e9 2e9 2e9\n\n", "more than any memory"},
+        {NRRD "dimension: 3\nsizes: 2 0 2\n\n", "size 0"},
+        {NRRD "dimension: 3\nsizes: 2 1e8 1e8\n\n", "cut short"},
+        {NRRD "dimension: 3\nsizes: 2e9 2e9 2e9\n\n", "more than any memory"},
         {"NRRD0005\nsizes: 2 1 2\n\n", "stands in front of the number of dimensions"},
         {NRRD3 "space: left-posterior-superior-time\n\n", "choose one volume"},
         {NRRD3 TURNED "\n", "space directions"},
         {NRRD3 "space: LPS\nspace directions: (1,0,0) (1,0,0) (0,0,1)\n\n1 2 3 4",
          "space directions gives the voxels no place"},
         {NRRD3 "space: LPS\nspace units: \"mm\" \"mm\" \"ell\"\n\n", "are read"},
-        {NRRD3 "dimension: 4\nsizes: 2 1 2 2\nkinds: domain domain domain domain\n\n1", "dimension 4: "},
-        {NRRD3 "kinds: domain list domain\n\n", "dimension 2 holds the values"},
-        {NRRD3 "kinds: vector list domain\n\n", "dimension 2: two or three"},
+        {NRRD "dimension: 4\nsizes: 2 1 2 2\nkinds: domain domain domain domain\n\n1", "dimension 4: "},
+        {NRRD SIZES "kinds: domain list domain\n\n", "dimension 2 holds the values"},
+        {NRRD SIZES "kinds: vector list domain\n\n", "dimension 2: two or three"},
         {NRRD3 "data file: data.raw\n\n", "give its name, which ends in .nhdr or .mhd"},
         {NRRD3 "Segment0_Name:=" LONG LONG LONG LONG "\n\n", "a name of more than 127 bytes"},
         {NRRD3 "nonsense\n\n", "'nonsense': no ':' behind a key"},
@@ -119,6 +142,9 @@ TEST(headers_that_lie)
         {MHA "ElementDataFile = LIST\na\nb\n", "several files"},
         {MHA "ElementType = MET_STRING\n" MHA_END, "ElementType= MET_STRING: integers"},
         {MHA "CompressedData = True\nHeaderSize = -1\n" MHA_END, "a skip of -1 goes with raw data only"},
+        {NRRD3 "sizes: 2 2 1\n" V, "sizes: 2 2 1: stands twice"},
+        {MHA "DimSize = 2 2 1\n" MHA_END, "DimSize= 2 2 1: stands twice"},
+        {MHA "BinaryDataByteOrderMSB = True\nElementByteOrderMSB = False\n" MHA_END, "contradict"},
         {MHA "DistanceUnits = cm\n" MHA_END, "only mm is read"},
         {MHA "CompressedData = perhaps\n" MHA_END, "True or False"},
         {MHA "ElementNumberOfChannels = 0\n" MHA_END, "from 1 to"},

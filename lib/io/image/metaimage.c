@@ -10,11 +10,12 @@ struct metaimage {
     struct image *image;
     struct image_layout layout;
     int64_t dimension, channels;
+    bool element_msb; /* the older key of the byte order */
     double size[3], spacing[3], element[3], origin[3], axes[9];
 };
 
 /* Fields of which it counts whether they are there. */
-enum { SIZE, SPACING, ELEMENT, MATRIX };
+enum { SIZE, SPACING, ELEMENT, MATRIX, ORIGIN, BINARY_MSB, ELEMENT_MSB };
 
 static enum status take_flag(const struct text_header *header, bool *flag, struct error *error)
 {
@@ -33,6 +34,11 @@ static enum status set_object(void *context, const struct text_header *header, s
 static enum status set_big_endian(void *context, const struct text_header *header, struct error *error)
 {
     return take_flag(header, &((struct metaimage *)context)->layout.swapped, error);
+}
+
+static enum status set_element_msb(void *context, const struct text_header *header, struct error *error)
+{
+    return take_flag(header, &((struct metaimage *)context)->element_msb, error);
 }
 
 static enum status set_encoding(void *context, const struct text_header *header, struct error *error)
@@ -66,16 +72,21 @@ static const struct header_field fields[] = {
     [SPACING] = {"ElementSpacing", HEADER_VECTOR, AT(spacing)},
     [ELEMENT] = {"ElementSize", HEADER_VECTOR, AT(element)},
     [MATRIX] = {"TransformMatrix|Rotation|Orientation", HEADER_MATRIX, AT(axes)},
+    [ORIGIN] = {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
+    [BINARY_MSB] = {"BinaryDataByteOrderMSB", .set = set_big_endian},
+    [ELEMENT_MSB] = {"ElementByteOrderMSB", .set = set_element_msb},
     {"ObjectType", .set = set_object},
     {"Comment", .set = set_comment},
     {"NDims", HEADER_INTEGER, AT(dimension), 2, 3},
-    {"Offset|Position|Origin", HEADER_VECTOR, AT(origin)},
     {"ElementNumberOfChannels", HEADER_INTEGER, AT(channels), 1, INT32_MAX},
     {"ElementType", HEADER_TYPE, AT(layout)},
-    {"BinaryDataByteOrderMSB|ElementByteOrderMSB", .set = set_big_endian},
-    {"CompressedData|BinaryData", .set = set_encoding},
+    {"CompressedData", .set = set_encoding},
+    {"BinaryData", .set = set_encoding},
     {"HeaderSize", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"DistanceUnits", .set = set_unit},
+    {"ObjectSubType|TransformType|Name|ID|ParentID|Color|AcquisitionDate|CenterOfRotation|"
+     "AnatomicalOrientation|CompressedDataSize|Modality|SequenceID|ElementMin|ElementMax|ElementNBits",
+     HEADER_LEFT},
 };
 
 bool metaimage_begins(const unsigned char bytes[4])
@@ -108,6 +119,10 @@ static enum status place(const struct metaimage *meta, const struct text_header 
     if (!header_has(header, SPACING) && !header_has(header, ELEMENT)) {
         image_note(image, "tells no spacing: 1 mm taken");
     }
+    if (!header_has(header, ORIGIN)) {
+        image_note(image, "tells no Offset: the first voxel lies at 0");
+    }
+    header_note_unknown(header, image);
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;
     image->unit = 1e-3;
     image->space = IMAGE_SPACE_SCANNER;
@@ -138,6 +153,13 @@ enum status metaimage_header(struct image_source *source, const unsigned char be
         RETURN_IF_ERROR(header_data_file(&header, &meta.layout, error));
     } else if (header.cut) {
         return fail(error, STATUS_INPUT, "cut short: no data behind the header");
+    }
+    if (header_has(&header, ELEMENT_MSB)) {
+        if (header_has(&header, BINARY_MSB) && meta.layout.swapped != meta.element_msb) {
+            return fail(error, STATUS_INPUT,
+                        "header: BinaryDataByteOrderMSB and ElementByteOrderMSB contradict each other");
+        }
+        meta.layout.swapped = meta.element_msb;
     }
     *layout = meta.layout;
     if (layout->type == NULL || !header_has(&header, SIZE)) {

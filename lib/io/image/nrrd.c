@@ -188,7 +188,7 @@ static enum status set_content(void *context, const struct text_header *header, 
 }
 
 /* Fields of which it counts whether they are there. */
-enum { SIZES, SPACINGS, MINS, MAXS, ENDIAN };
+enum { SIZES, SPACINGS, MINS, MAXS, ENDIAN, ORIGIN };
 
 #define AT(member) offsetof(struct nrrd, member)
 
@@ -198,13 +198,13 @@ static const struct header_field fields[] = {
     [MINS] = {"axis mins|axismins", HEADER_VECTOR, AT(first)},
     [MAXS] = {"axis maxs|axismaxs", .set = NULL},
     [ENDIAN] = {"endian", .set = set_endian},
+    [ORIGIN] = {"space origin", .set = set_origin},
     {"type", HEADER_TYPE, AT(layout)},
     {"dimension", HEADER_INTEGER, AT(dimension), 2, AXES},
     {"space dimension", HEADER_INTEGER, AT(space_dimension), 2, 3},
     {"space", .set = set_space},
     {"centers|centerings", .set = set_centers},
     {"space directions", .set = set_directions},
-    {"space origin", .set = set_origin},
     {"space units", .set = set_space_units},
     {"units", .set = set_units},
     {"kinds", .set = set_kinds},
@@ -213,6 +213,9 @@ static const struct header_field fields[] = {
     {"byte skip|byteskip", HEADER_INTEGER, AT(layout.skip_bytes), -1, HEADER_SKIP},
     {"data file|datafile", HEADER_FILE, AT(layout)},
     {"content", .set = set_content},
+    {"number|block size|blocksize|min|max|old min|oldmin|old max|oldmax|labels|thicknesses|sample units|"
+     "sampleunits|measurement frame",
+     HEADER_LEFT},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -287,6 +290,10 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
                               ? "tells no anatomical space: axes taken to be RAS"
                               : "tells neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
+    if (nrrd->has_directions && !header_has(header, ORIGIN)) {
+        image_note(image, "tells no space origin: the first voxel lies at 0");
+    }
+    header_note_unknown(header, image);
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],
                                  component >= 0 && nrrd->kind[component] == COLOUR, &nrrd->layout, image,
                                  error));

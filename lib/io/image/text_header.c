@@ -94,10 +94,15 @@ static enum status take_vector(const struct text_header *header, int64_t count, 
                                struct error *error)
 {
     const char *at = header->value;
+    double further;
+    bool is_metaimage = header->separator == '=';
     if (count == 0) {
         return header_fail(header, "stands in front of the number of dimensions", error);
     }
-    return header_numbers(&at, (int)count, numbers) && *at == '\0'
+    bool taken = header_numbers(&at, (int)count, numbers);
+    while (taken && is_metaimage && *at != '\0' && header_numbers(&at, 1, &further)) {
+    } /* images of two dimensions often have three spacings */
+    return taken && *at == '\0'
                ? STATUS_OK
                : header_fail(header, "a finite number for each dimension is expected", error);
 }
@@ -198,6 +203,8 @@ static enum status take(const struct header_field *field, void *context, const s
         return take_type(header, at, error);
     case HEADER_FILE:
         return header_data_file(header, at, error);
+    case HEADER_LEFT:
+        return STATUS_OK;
     case HEADER_SET:
         break;
     }
@@ -209,11 +216,23 @@ enum status header_set(struct text_header *header, const struct header_field *fi
 {
     for (size_t f = 0; f < count; f++) {
         if (header_is(fields[f].keys, header->key)) {
-            header->given |= (uint64_t)1 << f;
-            return take(&fields[f], context, header, error);
+            uint64_t bit = (uint64_t)1 << f, given = fields[f].kind != HEADER_LEFT ? header->given : 0;
+            RETURN_IF_ERROR(take(&fields[f], context, header, error));
+            header->given |= bit;
+            return (given & bit) == 0 ? STATUS_OK : header_fail(header, "stands twice: take one out", error);
         }
     }
+    text_append(header->unknown, sizeof header->unknown, ", %.40s", header->key);
     return STATUS_OK;
+}
+
+void header_note_unknown(const struct text_header *header, struct image *image)
+{
+    char note[sizeof header->unknown + 40];
+    if (header->unknown[0] != '\0') {
+        snprintf(note, sizeof note, "fields that are not known, left out: %s", header->unknown + 2);
+        image_note(image, note);
+    }
 }
 
 enum status header_sizes(const double size[3], double components, bool colour,

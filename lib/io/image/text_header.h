@@ -20,9 +20,10 @@ struct text_header {
     const struct header_type *types;
     char *key; /* of the field read last, in line[]; NULL: the header has ended */
     char *value;
-    bool is_pair;   /* it is KEY:=VALUE */
-    bool cut;       /* the file has ended without an empty line */
-    uint64_t given; /* bit f: field f of the table of header_set was there */
+    bool is_pair;      /* it is KEY:=VALUE */
+    bool cut;          /* the file has ended without an empty line */
+    uint64_t given;    /* bit f: field f of the table of header_set was there */
+    char unknown[200]; /* keys that are not in it, ", " before each */
 };
 
 /* Read a line into header->line, without its end and trailing blanks. STATUS_INPUT for a NUL, a line of 64
@@ -37,10 +38,19 @@ bool header_is(const char *names, const char *word);
 
 /* The keys of a field, A|B, and what takes its value: a function, NULL where only whether it is there counts;
  * or a place in the context: of a whole number (int64_t) from least to most, of numbers (double), one for
- * each dimension or pair of these; of an image_layout, for the type of the values or their file. */
+ * each dimension or pair of these; of an image_layout, for the type of the values or their file. HEADER_LEFT:
+ * it is known, and means nothing here. */
 struct header_field {
     const char *keys;
-    enum { HEADER_SET, HEADER_INTEGER, HEADER_VECTOR, HEADER_MATRIX, HEADER_TYPE, HEADER_FILE } kind;
+    enum {
+        HEADER_SET,
+        HEADER_INTEGER,
+        HEADER_VECTOR,
+        HEADER_MATRIX,
+        HEADER_TYPE,
+        HEADER_FILE,
+        HEADER_LEFT
+    } kind;
     size_t at; /* offset in the context */
     int64_t least, most;
     enum status (*set)(void *context, const struct text_header *header, struct error *error);
@@ -49,10 +59,13 @@ struct header_field {
 /* Most bytes that may be skipped. */
 #define HEADER_SKIP ((int64_t)1 << 50)
 
-/* Note that the field read last is there, and take its value; keys that are not in the table, of at most 64
- * fields, are left. */
+/* Take the value of the field read last, and note that it is there; the table has at most 64 fields.
+ * STATUS_INPUT for one that stands twice. */
 MUST_CHECK enum status header_set(struct text_header *header, const struct header_field *fields, size_t count,
                                   void *context, struct error *error);
+
+/* Note in the image which keys were not in the table. */
+void header_note_unknown(const struct text_header *header, struct image *image);
 
 /* Whether field f of the table was there. */
 static inline bool header_has(const struct text_header *header, int f)
