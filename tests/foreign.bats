@@ -294,18 +294,22 @@ END
 
 @test "memory is taken for what a compressed file holds, not for what it claims, and once for each of its bytes" {
     /usr/bin/python3 - << 'END'
-import base64, struct
+import base64, struct, zlib
 def vtu(name, points, array, tail=b""):
     open(name, "wb").write(b'<VTKFile type="UnstructuredGrid" header_type="UInt32"%s><UnstructuredGrid><Piece NumberOfPoints="%d" '
         b'NumberOfCells="0">%s</Piece></UnstructuredGrid>%s</VTKFile>' % (b' compressor="vtkZLibDataCompressor"' * (tail == b""), points, array, tail))
 packed = bytes(range(256)) * 8000
 head = base64.b64encode(struct.pack("<IIII", 1, 2**31 - 8, 0, len(packed)))
 vtu("claim.vtu", 89478485, b'<Points><DataArray type="Float64" NumberOfComponents="3" format="binary">' + head + base64.b64encode(packed) + b'</DataArray></Points>')
+packed = zlib.compress(bytes(1 << 29))
+head = base64.b64encode(struct.pack("<IIII", 1, 1 << 29, 0, len(packed)))
+vtu("bomb.vtu", 8, b'<Points><DataArray type="Float64" NumberOfComponents="3" format="binary">' + head + base64.b64encode(packed) + b'</DataArray></Points>')
 array = b'<DataArray type="UInt8" Name="set.%d" format="appended" offset="0"/>'
 vtu("shared.vtu", 9999, b"<PointData>" + b"".join(array % i for i in range(10)) + b"</PointData>",
     b'<AppendedData encoding="raw">_' + struct.pack("<I", 9999) + bytes(9999))
 END
     ([[ "$BUILD" == *san* ]] || ulimit -v 400000
-    refused 2 "Points: line 1: a block of the compressed data is damaged" nodes -u m claim.vtu)
+    refused 2 "Points: line 1: a block of the compressed data is damaged" nodes -u m claim.vtu
+    refused 2 "Points: line 1: 1 blocks of 536870912 bytes are more than the 192 that its numbers take" nodes -u m bomb.vtu)
     refused 2 "set.1: the arrays together are larger than the file" nodes -u m shared.vtu
 }

@@ -58,6 +58,7 @@ struct vtu_source {
     const char *at, *end;
     bool base64, swap, compressed;
     int word;      /* bytes of each number of the head: 4 or 8 */
+    int64_t most;  /* bytes that there may be, unpacked */
     int64_t taken; /* bytes, out of base64, that the array took */
 };
 

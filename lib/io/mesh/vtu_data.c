@@ -130,6 +130,18 @@ static void read_blocks(struct msh_reader *r, const struct vtu_source *source, s
     }
 }
 
+/* Refuse blocks that claim more than has a place, before any is unpacked: zeros are packed a thousandfold. */
+static void check_claim(struct msh_reader *r, const struct blocks *blocks, int64_t most)
+{
+    int64_t size = 0;
+    bool is_short = blocks->count > 0 && blocks->last > 0;
+    if (__builtin_mul_overflow(blocks->count - is_short, blocks->size, &size) ||
+        __builtin_add_overflow(size, is_short ? blocks->last : 0, &size) || size > most) {
+        msh_fail(r, "%lld blocks of %lld bytes are more than the %lld that its numbers take",
+                 (long long)blocks->count, (long long)blocks->size, (long long)most);
+    }
+}
+
 /* Append what a block is unpacked to, `wanted` bytes: memory grows with what comes out. */
 static void unpack(struct msh_reader *r, char *packed, int64_t count, int64_t wanted, char **bytes,
                    int64_t *size, int64_t *room)
@@ -162,6 +174,7 @@ static char *read_compressed(struct msh_reader *r, struct vtu_source *source, in
     *size = 0;
     read_blocks(r, source, &blocks);
     SCRATCH char *head = blocks.head;
+    check_claim(r, &blocks, source->most);
     if (r->status != STATUS_OK) {
         return NULL;
     }

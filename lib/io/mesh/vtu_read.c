@@ -134,11 +134,20 @@ static void begin(void *context, const char *name, const char **attributes, int 
 
 /* ---- data ---- */
 
+/* Most numbers of the array at hand: the nodes of a cell are at most 27. */
+static int64_t most_numbers(const struct vtu *u)
+{
+    return u->expected >= 0 ? u->expected : 27 * u->v.cell_count;
+}
+
 /* Read the array at hand from the bytes of its source. */
 static void read_binary(struct vtu *u, struct vtu_source *source)
 {
     struct msh_reader *r = u->v.in.r;
     int64_t size;
+    if (__builtin_mul_overflow(most_numbers(u), u->type->size, &source->most)) {
+        source->most = INT64_MAX;
+    }
     SCRATCH char *bytes = vtu_bytes(r, source, &size);
     if (bytes == NULL) {
         return;
@@ -182,7 +191,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     if (strcmp(u->format, "ascii") == 0) {
         read_text(u, text, text + size);
     } else if (strcmp(u->format, "binary") == 0) {
-        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word, 0});
+        read_binary(u, &(struct vtu_source){text, text + size, true, u->swap, u->compressed, u->word, 0, 0});
     } else if (strcmp(u->format, "appended") == 0) {
         MSH_GROW(r, &u->appended, u->appended_count + 1, &u->appended_room);
         if (r->status == STATUS_OK) {
@@ -219,7 +228,7 @@ static void read_appended(struct vtu *u)
             break;
         }
         struct vtu_source source = {
-            data + 1 + u->appended[i].offset, r->end, base64, u->swap, u->compressed, u->word, 0};
+            data + 1 + u->appended[i].offset, r->end, base64, u->swap, u->compressed, u->word, 0, 0};
         read_binary(u, &source);
         left -= source.taken;
         if (left < 0) {
