@@ -27,6 +27,9 @@ faulty() {
     grep -q "sets of elements that are not regions, left out: both" said
     [ "$(mts print sets.ptr body.mts | paste -sd' ')" = "0 7 10 14 18 21" ]
     [ "$(mts print facets.set body.mts | sort | uniq -c | awk '{ print $1 }' | paste -sd' ')" = "1 3 1" ]
+    printf '*NSET, NSET=gen, GENERATE\n1, 3\n2, 200, 2\n' | cat "$corpus/inp/solid" - > ranges
+    names ranges | grep -q ,gen
+    grep -q "set 'gen': of what its lines of GENERATE name, only [4-9] of 103 exist" said
     [ "$(names "$corpus/inp/part")" = "Set-1 edge Set-1" ]
     [ "$(mts print facets body.mts)" = "1 2" ]
     [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 3" ]
@@ -87,6 +90,7 @@ solid|s/^base, 9/bass, 9/|sets: line 28: there is no set 'bass'
 solid|s/^Low, S3/Low, S6/|sets: line 31: a prism has no face 'S6'
 solid|s/^Low, S3/Low/|*SURFACE: line 31: no face is named
 solid|s/^.NSET, NSET=some/*NSET, NSET=some, GENERATE/|*NSET: line 28: GENERATE
+solid|s/^.MATERIAL, NAME=m/*NSET, NSET=back, GENERATE\n8, 1, 1/|*NSET: line 40: GENERATE: 8 is behind 1
 solid|s/^.MATERIAL, NAME=m/*INCLUDE, INPUT=x/|*INCLUDE: line 39: other files are not read: put the lines of that file in its place
 solid|s/^.MATERIAL, NAME=m/*NGEN/|write all of them out
 solid|s/^.NODE,/*NODE, SYSTEM=C,/|write them with SYSTEM=R

@@ -9,10 +9,11 @@ struct inp_set {
     char kind; /* 'N', 'E' or 'S' */
     bool of_assembly;
     char name[INPUT_NAME + 1];
-    int64_t line;       /* where it is first defined; 0: it is only named by others */
-    bool of_surface;    /* elements: a surface uses it */
-    int64_t head, tail; /* the members: of inp->members, -1: none */
-    int64_t key[4];     /* of its group of each dimension, 0: none yet */
+    int64_t line;         /* where it is first defined; 0: it is only named by others */
+    bool of_surface;      /* elements: a surface uses it */
+    int64_t head, tail;   /* the members: of inp->members, -1: none */
+    int64_t asked, found; /* members of its ranges: those that exist are found */
+    int64_t key[4];       /* of its group of each dimension, 0: none yet */
 };
 
 /* What the deck adds to a set. */

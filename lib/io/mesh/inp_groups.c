@@ -24,11 +24,12 @@ static void check_size(struct inp *p, int64_t count)
     }
 }
 
-/* Those that there are of FIRST, FIRST + STEP, ..., LAST. */
+/* Those that there are of FIRST, FIRST + STEP, ..., LAST, as in CalculiX. */
 static void each_in_range(struct inp *p, const struct inp_item *item, const struct msh_index *index,
                           member_function *add)
 {
     int64_t low = 0;
+    item->set->asked += (item->last - item->first) / item->step + 1;
     for (int64_t high = index->count; low < high;) {
         int64_t middle = (low + high) / 2;
         *(index->sorted[middle].tag < item->first ? &low : &high) =
@@ -37,6 +38,7 @@ static void each_in_range(struct inp *p, const struct inp_item *item, const stru
     for (int64_t i = low; i < index->count && index->sorted[i].tag <= item->last; i++) {
         check_size(p, p->tried++);
         if ((index->sorted[i].tag - item->first) % item->step == 0) {
+            item->set->found++;
             add(p, item, index->sorted[i].place);
         }
         if (p->in.r->status != STATUS_OK) {
@@ -226,6 +228,10 @@ static void note_sets(struct inp *p)
     char left[300] = "";
     for (int64_t s = 0; s < p->set_count; s++) {
         const struct inp_set *set = p->sets[s];
+        if (set->found < set->asked) {
+            input_note(&p->in, "set '%s': of what its lines of GENERATE name, only %lld of %lld exist",
+                       set->name, (long long)set->found, (long long)set->asked);
+        }
         if (set->kind == 'E' && !set->of_surface && (set->key[1] | set->key[2] | set->key[3]) == 0) {
             text_append(left, sizeof left, "%s%s", left[0] != '\0' ? ", " : "", set->name);
         }

@@ -102,6 +102,10 @@ static void read_ranges(struct inp *p, struct inp_item *item)
         if (count == 1 || inp_next_field(p, &word, &length)) {
             msh_fail(p->in.r, "GENERATE: a line is not FIRST, LAST, STEP");
         }
+        if (count > 1 && number[1] < number[0]) {
+            msh_fail(p->in.r, "GENERATE: %lld is behind %lld: write the lesser one first",
+                     (long long)number[0], (long long)number[1]);
+        }
         item->how = INP_RANGE;
         item->first = number[0];
         item->last = number[1];
