@@ -290,6 +290,16 @@ END
     timeout 5 bash -c 'echo > data.raw' 3>&- & # whoever reads it waits no longer than this
     printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: data.raw\n' > piped.nhdr
     refused 2 "its data, data.raw: is a folder, pipe or device, not a file" voxels -h 2mm piped.nhdr
+    mkdir images images/in
+    head -c 64 /dev/zero | tee images/in/own.raw > other.raw
+    ln -s ../other.raw images/link.raw
+    ln -s ../.. images/in/up
+    ln -s in/own.raw images/own.raw
+    for file in link.raw in/up/other.raw own.raw; do
+        printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: %s\n' $file > images/of.nhdr
+        [ $file = own.raw ] || refused 2 "$file: is a link that leaves the folder of the header" voxels -h 2mm images/of.nhdr
+    done
+    (cd images && { voxels -h 2mm of.nhdr 2>&1 || :; } | grep -q "no label")
     refused 2 "more data than 2 values" sample <(printf 'NRRD0004\ntype: uint8\ndimension: 2\nsizes: 1 2\nencoding: ascii\n\n1 2 300\n') cube.mts
     # A pipe by its name is read once.
     tomesh -u m -o body.msh <(cat cube.mts)

@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -172,6 +173,31 @@ static enum status name_partner(const char *name, struct image_layout *layout, s
     return STATUS_OK;
 }
 
+/* Open a file of data in the folder of the header (its first `folder` bytes) or below: links that lead
+ * elsewhere are refused. */
+static enum status open_partner(const char *partner, size_t folder, int *descriptor, struct error *error)
+{
+    char of_header[PATH_MAX], of_data[PATH_MAX];
+    NEW_SCRATCH(char, begin, (int64_t)folder + 2, error);
+    struct stat facts;
+    memcpy(begin, folder > 0 ? partner : ".", folder > 0 ? folder : 1);
+    if (realpath(begin, of_header) == NULL || realpath(partner, of_data) == NULL) {
+        return fail(error, STATUS_INPUT, "its data, %s: %s", partner, strerror(errno));
+    }
+    size_t length = strlen(of_header);
+    length -= of_header[length - 1] == '/'; /* the root */
+    if (strncmp(of_header, of_data, length) != 0 || of_data[length] != '/') {
+        return fail(error, STATUS_INPUT,
+                    "its data, %s: is a link that leaves the folder of the header: put the file there",
+                    partner);
+    }
+    *descriptor = open(of_data, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK | O_NOFOLLOW);
+    return *descriptor >= 0 && fstat(*descriptor, &facts) == 0 && S_ISREG(facts.st_mode)
+               ? STATUS_OK
+               : fail(error, STATUS_INPUT, "its data, %s: %s", partner,
+                      *descriptor < 0 ? strerror(errno) : "is a folder, pipe or device, not a file");
+}
+
 /* Read data that are in a file of their own, beside the header `name`. */
 static enum status read_partner(const char *name, const struct image_layout *layout, struct image *image,
                                 struct error *error)
@@ -181,12 +207,8 @@ static enum status read_partner(const char *name, const struct image_layout *lay
     NEW_SCRATCH(char, partner, (int64_t)(folder + sizeof layout->data_file), error);
     memcpy(partner, name, folder);
     memcpy(partner + folder, layout->data_file, sizeof layout->data_file);
-    FREED_BY(descriptor_close) int descriptor = open(partner, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-    struct stat facts;
-    if (descriptor < 0 || fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
-        return fail(error, STATUS_INPUT, "its data, %s: %s", partner,
-                    descriptor < 0 ? strerror(errno) : "is a folder, pipe or device, not a file");
-    }
+    FREED_BY(descriptor_close) int descriptor = -1;
+    RETURN_IF_ERROR(open_partner(partner, folder, &descriptor, error));
     enum status status = image_source_open(&source, descriptor, error);
     if (status == STATUS_OK) {
         status = image_values_read(&source, layout, image, error);
