@@ -97,8 +97,11 @@ solid|s/^.NODE,/*NODE, SYSTEM=C,/|write them with SYSTEM=R
 part|s/^ 0., 0., 0./ 0., 0., 1./|*INSTANCE: line 20: the instance is moved: write the deck without parts
 part|s/^.Amplitude.*/*Part, name=b/|more than one part or instance: write the deck without parts
 END
-    printf '*NODE\n1, 0, 0\n2, 1, 0' > changed
-    refused 2 "line 3: no newline at the end: truncated?" nodes -u m changed
+    printf '*NODE\n1,0,0\n2,1,0\n3,0,1\n*NSET,NSET=2nd\n1\n*NSET,NSET=n\n2nd,2\n*ELEMENT,TYPE=CPE3\n1,1,2,3' > open
+    [ "$(names open)" = "body 2nd,n" ]
+    [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 0 1" ]
+    head -c -2 open > changed
+    refused 2 "*ELEMENT: line 10: element 1 ends after 2 of 3 nodes" nodes -u m changed
 }
 
 @test "models of FEBio: parts, surfaces, sets of nodes of versions 2.5, 3.0 and 4.0" {
@@ -133,6 +136,7 @@ v25|s/3, 4, 5, 6, 13/3, 4, 5, 13/|<Elements>: line 11: 7 nodes, where hexahedron
 v25|s/3, 4, 5, 6, 13/3, 4, 5, 7, 13/|element 1 names the node 7, which is not in the file
 v25|s/node id="4".>/node id="7"\/>/|a set or surface names the node 7
 v25|s/<node id="4".>/<node\/>/|<NodeSet>: line 14: 'node' is no <node id=...>
+v25|s/<node id="4".>/<NodeSet node_set="heldd"\/>/|<NodeSet>: line 14: there is no set of nodes 'heldd' as yet
 v25|s/<Geometry>/<Geometry from="x">/|other files are not read: put the content of that file in its place
 v25|s/<NodeSet name="held">/<Part name="held">/|parts with instances are not read
 v25|s/<.Geometry>//|XML: line 17: mismatched tag

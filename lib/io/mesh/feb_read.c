@@ -17,6 +17,8 @@ struct feb {
     int type;                  /* of the elements */
     char name[INPUT_NAME + 1]; /* of the part, surface or set */
     bool is_empty;             /* nothing in it yet */
+    int64_t first;             /* element at its begin */
+    int64_t copied, most;      /* members that sets took from others; as many as the file has bytes */
     int64_t id;                /* of the node or element, or INPUT_NO_TAG */
     char section[64];
 };
@@ -56,6 +58,7 @@ static void begin_content(struct feb *f, const char *element, const char **attri
         f->content = strcmp(element, contents[k]) == 0 ? (enum content)k : f->content;
     }
     f->is_empty = true;
+    f->first = f->in.r->msh->element_count;
     if (snprintf(f->name, sizeof f->name, "%s", name != NULL ? name : "") > INPUT_NAME) {
         msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
     }
@@ -77,10 +80,37 @@ static void begin_content(struct feb *f, const char *element, const char **attri
     }
 }
 
+/* The nodes of a set with nodes that a name stands for, as input_name counts them: its first element, from 1,
+ * and the end of these. */
+enum { FIRST_OF_SET = 4, END_OF_SET };
+
+/* Add the nodes of a set that has ended: <NodeSet node_set="a"/>. */
+static void add_set(struct feb *f, const char *name)
+{
+    struct msh_reader *r = f->in.r;
+    int64_t *first = input_name(&f->in, FIRST_OF_SET, name, strlen(name)),
+            *end = input_name(&f->in, END_OF_SET, name, strlen(name));
+    if (r->status == STATUS_OK && *first == 0) {
+        msh_fail(r, "there is no set of nodes '%s' as yet", name);
+    }
+    for (int64_t e = r->status == STATUS_OK ? *first - 1 : 0; r->status == STATUS_OK && e < *end; e++) {
+        int64_t node = f->in.corners[r->msh->node_ptr[e]];
+        if (f->copied++ == f->most) {
+            msh_fail(r, "the sets have too many members for the size of the file");
+        }
+        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
+    }
+    f->is_empty = false;
+}
+
 static void begin_item(struct feb *f, const char *element, const char **attributes)
 {
-    const char *id = xml_attribute(attributes, "id");
+    const char *id = xml_attribute(attributes, "id"), *set = xml_attribute(attributes, "node_set");
     f->id = INPUT_NO_TAG;
+    if (f->content == NODE_SET && id == NULL && set != NULL) {
+        add_set(f, set);
+        return;
+    }
     if (id != NULL && f->content != SURFACE && f->content != EDGE) {
         f->id = input_whole(f->in.r, "id", id, (int64_t)strlen(id), 1, MSH_LARGEST_TAG);
     }
@@ -182,6 +212,14 @@ static void end_content(struct feb *f, const char *text, const char *end)
     if (f->content == NODE_SET) {
         add_list(f, text, end);
     }
+    if (f->content == NODE_SET && f->name[0] != '\0') {
+        int64_t *first = input_name(&f->in, FIRST_OF_SET, f->name, strlen(f->name)),
+                *last = input_name(&f->in, END_OF_SET, f->name, strlen(f->name));
+        if (f->in.r->status == STATUS_OK) {
+            *first = f->first + 1;
+            *last = f->in.r->msh->element_count;
+        }
+    }
     if (f->is_empty && f->content != NODES) {
         (void)input_group(&f->in, f->content == ELEMENTS ? msh_type(f->type).dim : dim[f->content], f->name);
     }
@@ -202,6 +240,8 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     f->is_empty = false;
     if (f->content == NODES) {
         add_node(f, text, text + size);
+    } else if (f->content == NODE_SET && f->id == INPUT_NO_TAG) {
+        return; /* another set */
     } else if (f->content == NODE_SET) {
         input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &f->id, input_group(&f->in, 0, f->name));
     } else {
@@ -211,7 +251,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
 
 void feb_read(struct msh_reader *r)
 {
-    struct feb f = {.in = {.r = r}};
+    struct feb f = {.in = {.r = r}, .most = r->end - r->at};
     const struct xml_handler handler = {&f, begin, end};
     r->section = f.section;
     xml_parse(r, NULL, &handler);

@@ -50,9 +50,6 @@ static void next_line(struct inp *p)
         r->at = end != NULL ? end + 1 : r->end;
         r->record = ++p->number;
         trim(&p->line, &p->length);
-        if (end == NULL && p->length > 0 && (p->length < 4 || strncasecmp(p->line, "*END", 4) != 0)) {
-            msh_fail(r, "no newline at the end: truncated? end the last line with a newline");
-        }
     } while (p->length == 0 || (p->length > 1 && memcmp(p->line, "**", 2) == 0));
     p->field = p->line;
     p->field_end = p->line + p->length;

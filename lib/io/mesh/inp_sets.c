@@ -62,17 +62,27 @@ void inp_add_places(struct inp *p, char kind, const char *name, int64_t first, i
     }
 }
 
+static bool is_number(const char *word, int64_t length)
+{
+    int64_t digits = 0;
+    while (digits < length && isdigit((unsigned char)word[digits])) {
+        digits++;
+    }
+    return length > 0 && digits == length;
+}
+
 /* The members that a word names: a number, or a set. */
 static void add_word(struct inp *p, struct inp_item *item, char kind, const char *word, int64_t length)
 {
     size_t prefix = strlen(p->instance) + 1;
     bool numbered = prefix > 1 && (size_t)length > prefix && word[prefix - 1] == '.' &&
-                    isdigit((unsigned char)word[prefix]) && strncasecmp(word, p->instance, prefix - 1) == 0;
+                    is_number(word + prefix, length - (int64_t)prefix) &&
+                    strncasecmp(word, p->instance, prefix - 1) == 0;
     if (numbered) {
         word += prefix;
         length -= (int64_t)prefix;
     }
-    if (length > 0 && isdigit((unsigned char)word[0])) {
+    if (is_number(word, length)) {
         item->how = INP_TAG;
         item->first = input_whole(p->in.r, "member", word, length, 1, MSH_LARGEST_TAG);
         if (p->is_apart && !numbered) {

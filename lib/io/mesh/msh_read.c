@@ -177,12 +177,17 @@ static bool is_deck(const char *bytes, size_t size)
            (bytes[blanks + 1] == '*' || isalpha((unsigned char)bytes[blanks + 1]));
 }
 
-/* A file in XML with this element near its beginning. */
+/* A file in XML, also in UTF-16, with this element near its beginning. */
 static bool is_xml(const char *bytes, size_t size, const char *element)
 {
-    size = size < HEAD_SIZE ? size : HEAD_SIZE;
-    const char *first = memchr(bytes, '<', size);
-    return first != NULL && first - bytes < 4 && memmem(bytes, size, element, strlen(element)) != NULL;
+    char head[HEAD_SIZE];
+    size_t count = 0;
+    for (size_t i = 0; i < size && i < HEAD_SIZE; i++) {
+        head[count] = bytes[i];
+        count += bytes[i] != '\0';
+    }
+    const char *first = memchr(head, '<', count);
+    return first != NULL && first - head < 4 && memmem(head, count, element, strlen(element)) != NULL;
 }
 
 static bool is_febio(const char *bytes, size_t size)
