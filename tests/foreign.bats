@@ -27,6 +27,9 @@ faulty() {
     grep -q "sets of elements that are not regions, left out: both" said
     [ "$(mts print sets.ptr body.mts | paste -sd' ')" = "0 7 10 14 18 21" ]
     [ "$(mts print facets.set body.mts | sort | uniq -c | awk '{ print $1 }' | paste -sd' ')" = "1 3 1" ]
+    printf '%s\n' '*ELSET, ELSET=all' Low '*SOLID SECTION, ELSET=Low' '*SOLID SECTION, ELSET=all' | cat "$corpus/inp/solid" - > overlaid
+    names overlaid > list
+    grep -q "elements in several sets, taken for the last: [1-9]" said
     printf '*NSET, NSET=gen, GENERATE\n1, 3\n2, 200, 2\n' | cat "$corpus/inp/solid" - > ranges
     names ranges | grep -q ,gen
     grep -q "set 'gen': of what its lines of GENERATE name, only [4-9] of 103 exist" said

@@ -11,6 +11,7 @@ struct inp_set {
     char name[INPUT_NAME + 1];
     int64_t line;         /* where it is first defined; 0: it is only named by others */
     bool of_surface;      /* elements: a surface uses it */
+    bool of_section;      /* elements: a section uses it */
     int64_t head, tail;   /* the members: of inp->members, -1: none */
     int64_t asked, found; /* members of its ranges: those that exist are found */
     int64_t key[4];       /* of its group of each dimension, 0: none yet */
@@ -51,7 +52,7 @@ struct inp {
     int64_t tried; /* members of ranges and sets */
     struct msh_index elements;
     struct inp_set **region;     /* of each element, or NULL */
-    int64_t overlaid, sectioned; /* elements in several sets; in those of sections */
+    int64_t overlaid, sectioned; /* elements in several sets, or those of sections; in sets of sections */
 };
 
 /* ---- inp_read.c ---- */

@@ -120,8 +120,11 @@ static void add_corners(struct inp *p, const struct inp_item *item, int64_t plac
 
 static void add_to_region(struct inp *p, const struct inp_item *item, int64_t place)
 {
+    const struct inp_set *before = p->region[place];
+    p->overlaid = p->sectioned++ > 0 ? p->overlaid : 0; /* where there are sections, only these count */
+    p->overlaid += before != NULL && before->of_section && before != item->members;
     p->region[place] = item->members;
-    p->sectioned++;
+    item->members->of_section = true;
 }
 
 /* ---- groups ---- */
@@ -239,7 +242,7 @@ static void note_sets(struct inp *p)
     if (left[0] != '\0') {
         input_note(&p->in, "sets of elements that are not regions, left out: %s", left);
     }
-    if (p->overlaid > 0 && p->sectioned == 0) {
+    if (p->overlaid > 0) {
         input_note(&p->in, "elements in several sets, taken for the last: %lld", (long long)p->overlaid);
     }
 }
