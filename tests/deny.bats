@@ -143,6 +143,8 @@ denied() {
     warp -o slice.mha slice.nii u.mts
     denied warp slice.nrrd u.mts
     denied warp slice.mha u.mts
+    warp -o pair.mhd slice.nii u.mts
+    denied warp -o pair.mhd slice.mha u.mts
     cp sphere.nii sphere.nii.gz
     nifti segments sphere.nii.gz sphere.seg.nrrd 1 sphere
     denied voxels -h 20mm sphere.seg.nrrd

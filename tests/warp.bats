@@ -82,6 +82,11 @@ setup_file() {
             warp --like $image.nii $image.$end $still | cmp - again.$end
             warp -o back.nii again.$end $still
             nifti same ours.nii back.nii 0
+            pair=pair.$( [ $end = nrrd ] && echo nhdr || echo mhd) # and in two files
+            rm -f pair.raw
+            warp -o $pair $image.nii $still
+            warp -o again.$end $pair $still
+            cmp $image.$end again.$end
             [ $image = rgb ] && continue # which they take for something else
             plastimatch convert --input $image.$end --output-img theirs.nii > said
             nifti same $image.nii theirs.nii 0
@@ -102,7 +107,10 @@ setup_file() {
     run -0 --separate-stderr warp -i nearest -o moved.seg.nrrd ball.seg.nrrd u.dat
     [[ $stderr == *"share $(cat shared) voxels"* ]]
     [ "$(grep -aE '_(Name|LabelValue|Layer):' moved.seg.nrrd | cut -d= -f2 | xargs)" = "Left lung 1 0 tumour 2 0" ]
-    refused 2 "-o x.nhdr: images are written as .nii, .nii.gz, .nrrd or .mha" warp -o x.nhdr oblique.nii still.dat
+    refused 2 "-o x.png: images are written as .nii, .nii.gz, .nrrd, .nhdr, .mha or .mhd" warp -o x.png oblique.nii still.dat
+    refused 2 "-o a%d.mhd: a header cannot name data of such a name" warp -o a%d.mhd oblique.nii still.dat
+    echo > other.raw
+    refused 2 "-o other.mhd: replaces other.raw, which may be of another image" warp -o other.mhd oblique.nii still.dat
     { printf 'a\nb\n-'; cat theirs.raw; } > skip.raw
     for skip in 'line skip: 2\nbyte skip: 1' 'byte skip: -1'; do
         sed "s/^data file: .*/$skip\ndata file: skip.raw/" theirs.nhdr > skip.nhdr

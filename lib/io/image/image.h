@@ -99,6 +99,12 @@ void image_range(const struct image *image, double *least, double *most);
 MUST_CHECK enum status image_write(const struct image *image, int descriptor, enum image_format format,
                                    struct error *error);
 
+/* The two files of a detached image of NRRD or MetaImage: the values alone, raw; the header, which names the
+ * file of these in its folder. Errors as image_write. */
+MUST_CHECK enum status image_write_data(const struct image *image, int descriptor, struct error *error);
+MUST_CHECK enum status image_write_header(const struct image *image, int descriptor, enum image_format format,
+                                          const char *data_file, struct error *error);
+
 /* Release values and segments; the image becomes empty. */
 void image_free(struct image *image);
 

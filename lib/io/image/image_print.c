@@ -21,7 +21,7 @@ static void print_vector(FILE *file, const struct image *image, int column)
             0.0 - 1e3 * image->to_world[1][column], 0.0 + 1e3 * image->to_world[2][column]);
 }
 
-void nrrd_print(const struct image *image, FILE *file)
+void nrrd_print(const struct image *image, const char *data_file, FILE *file)
 {
     char type[32];
     bool several = image->components > 1;
@@ -44,15 +44,15 @@ void nrrd_print(const struct image *image, FILE *file)
     for (int a = 0; a < 3; a++) {
         print_vector(file, image, a);
     }
-    fprintf(file, "\nkinds:%s domain domain domain\nendian: little\nencoding: gzip\nspace origin:",
-            several ? kind : "");
+    fprintf(file, "\nkinds:%s domain domain domain\nendian: little\nencoding: %s\nspace origin:",
+            several ? kind : "", data_file != NULL ? "raw" : "gzip");
     print_vector(file, image, 3);
     fprintf(file, "\nspace units: \"mm\" \"mm\" \"mm\"\n");
     image_segments_print(image, file);
-    fprintf(file, "\n");
+    data_file != NULL ? fprintf(file, "data file: %s\n", data_file) : fprintf(file, "\n");
 }
 
-void metaimage_print(const struct image *image, FILE *file)
+void metaimage_print(const struct image *image, const char *data_file, FILE *file)
 {
     char type[32];
     fprintf(file, "ObjectType = Image\nNDims = 3\n");
@@ -73,6 +73,6 @@ void metaimage_print(const struct image *image, FILE *file)
     if (image->components > 1) {
         fprintf(file, "ElementNumberOfChannels = %zu\n", image->components);
     }
-    fprintf(file, "ElementType = %s\nElementDataFile = LOCAL\n",
-            text_type(metaimage_types, image->datatype, type));
+    fprintf(file, "ElementType = %s\nElementDataFile = %s\n",
+            text_type(metaimage_types, image->datatype, type), data_file != NULL ? data_file : "LOCAL");
 }

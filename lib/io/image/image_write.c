@@ -71,27 +71,32 @@ static enum status write_gzip(const unsigned char *bytes, size_t size, int descr
     return status;
 }
 
-/* Write a header of text, and the values. */
-static enum status write_text(const struct image *image, const struct nifti_type *type, int descriptor,
-                              enum image_format format, struct error *error)
+static enum status write_header(const struct image *image, int descriptor, enum image_format format,
+                                const char *data_file, struct error *error)
 {
     SCRATCH char *text = NULL;
-    SCRATCH unsigned char *bytes = NULL;
-    size_t length, size = image_voxels(image) * image->components * (size_t)type->bytes;
+    size_t length;
     FILE *file = open_memstream(&text, &length);
     if (file == NULL) {
         return fail_memory(error, "header of the image");
     }
-    format == IMAGE_NRRD ? nrrd_print(image, file) : metaimage_print(image, file);
+    format == IMAGE_NRRD ? nrrd_print(image, data_file, file) : metaimage_print(image, data_file, file);
     bool failed = ferror(file) != 0;
     if (fclose(file) != 0 || failed) {
         return fail_memory(error, "header of the image");
     }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&bytes, (int64_t)size, error));
+    return descriptor_write(descriptor, text, length, error);
+}
+
+/* Write all values, those of a voxel together. */
+static enum status write_values(const struct image *image, bool packed, int descriptor, struct error *error)
+{
+    const struct nifti_type *type = nifti_type(image->datatype);
+    size_t size = image_voxels(image) * image->components * (size_t)type->bytes;
+    NEW_SCRATCH(unsigned char, bytes, (int64_t)size, error);
     store_values(image, type, true, bytes);
-    RETURN_IF_ERROR(descriptor_write(descriptor, text, length, error));
-    return format == IMAGE_NRRD ? write_gzip(bytes, size, descriptor, error)
-                                : descriptor_write(descriptor, bytes, size, error);
+    return packed ? write_gzip(bytes, size, descriptor, error)
+                  : descriptor_write(descriptor, bytes, size, error);
 }
 
 /* A type that holds scaled values of a type. */
@@ -100,22 +105,47 @@ static int real_type(const struct nifti_type *type)
     return type->code == IMAGE_FLOAT32 || type->bytes < 4 ? IMAGE_FLOAT32 : IMAGE_FLOAT64;
 }
 
+/* The image without scaling, which headers of text do not know; its values are those of the image. */
+static enum status unscaled(const struct image *image, struct image *plain, struct error *error)
+{
+    const struct nifti_type *type = nifti_type(image->datatype);
+    if (type == NULL || (type->components > 1 && image->components != (size_t)type->components)) {
+        return fail(error, STATUS_INPUT, "%zu components do not fit values of type %d", image->components,
+                    image->datatype);
+    }
+    *plain = *image;
+    plain->datatype = is_scaled(image, type) ? real_type(type) : image->datatype;
+    plain->slope = 1;
+    plain->inter = 0;
+    return STATUS_OK;
+}
+
+enum status image_write_data(const struct image *image, int descriptor, struct error *error)
+{
+    struct image plain;
+    RETURN_IF_ERROR(unscaled(image, &plain, error));
+    return write_values(&plain, false, descriptor, error);
+}
+
+enum status image_write_header(const struct image *image, int descriptor, enum image_format format,
+                               const char *data_file, struct error *error)
+{
+    struct image plain;
+    RETURN_IF_ERROR(unscaled(image, &plain, error));
+    return write_header(&plain, descriptor, format, data_file, error);
+}
+
 enum status image_write(const struct image *image, int descriptor, enum image_format format,
                         struct error *error)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
     unsigned char header[NIFTI2_HEADER + 4];
+    struct image plain;
     SCRATCH unsigned char *bytes = NULL;
-    if (type == NULL || (type->components > 1 && image->components != (size_t)type->components)) {
-        return fail(error, STATUS_INPUT, "%zu components do not fit values of type %d", image->components,
-                    image->datatype);
-    }
+    RETURN_IF_ERROR(unscaled(image, &plain, error));
     if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {
-        struct image plain = *image;
-        plain.datatype = is_scaled(image, type) ? real_type(type) : image->datatype;
-        plain.slope = 1;
-        plain.inter = 0;
-        return write_text(&plain, nifti_type(plain.datatype), descriptor, format, error);
+        RETURN_IF_ERROR(write_header(&plain, descriptor, format, NULL, error));
+        return write_values(&plain, format == IMAGE_NRRD, descriptor, error);
     }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;

@@ -34,7 +34,36 @@ static int format_of(const char *name, int other)
             return f;
         }
     }
-    return other;
+    return text_ends(name, ".nhdr") ? IMAGE_NRRD : text_ends(name, ".mhd") ? IMAGE_METAIMAGE : other;
+}
+
+/* The file of the values of an image written as NAME.nhdr or NAME.mhd, NAME.raw; NULL: it is one file. */
+static char *data_file(const struct tool *tool)
+{
+    const char *name = tool->output;
+    int end = name == NULL ? 0 : text_ends(name, ".nhdr") ? 5 : text_ends(name, ".mhd") ? 4 : 0;
+    return end > 0 ? tool_text(tool, "%.*s.raw", (int)strlen(name) - end, name) : NULL;
+}
+
+static const char *within_folder(const char *path)
+{
+    return strrchr(path, '/') != NULL ? strrchr(path, '/') + 1 : path;
+}
+
+/* A header names its data in the rest of a line, without patterns; data of another header are not replaced.
+ */
+static void check_data_file(const struct tool *tool)
+{
+    SCRATCH char *data = data_file(tool);
+    const char *within = data != NULL ? within_folder(data) : "";
+    if (strpbrk(within, "%\n\r") != NULL || within[0] == ' ' || within[0] == '\t' ||
+        strncmp(within, "LIST", 4) == 0) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: a header cannot name data of such a name", tool->output);
+    }
+    if (data != NULL && access(data, F_OK) == 0 && access(tool->output, F_OK) != 0) {
+        tool_fail(tool, STATUS_INPUT, "-o %s: replaces %s, which may be of another image: name another file",
+                  tool->output, data);
+    }
 }
 
 void tool_check_image_output(const struct tool *tool)
@@ -45,8 +74,10 @@ void tool_check_image_output(const struct tool *tool)
     const char *name = tool->output;
     if (name != NULL && format_of(name, IMAGE_FORMATS) == IMAGE_FORMATS && strchr(name, '.') != NULL &&
         strncmp(name, "/dev/", 5) != 0) {
-        tool_fail(tool, STATUS_INPUT, "-o %s: images are written as .nii, .nii.gz, .nrrd or .mha", name);
+        tool_fail(tool, STATUS_INPUT,
+                  "-o %s: images are written as .nii, .nii.gz, .nrrd, .nhdr, .mha or .mhd", name);
     }
+    check_data_file(tool);
 }
 
 void tool_write_image(const struct tool *tool, const struct image *image)
@@ -54,9 +85,17 @@ void tool_write_image(const struct tool *tool, const struct image *image)
     struct target target;
     struct error error;
     int format = tool->output != NULL ? format_of(tool->output, (int)image->format) : (int)image->format;
+    SCRATCH char *data = data_file(tool);
+    if (data != NULL) { /* before the header, without which they are no image */
+        target_open(tool, &target, data);
+        target_close(tool, &target, image_write_data(image, target.output.descriptor, &error), &error);
+    }
     target_open(tool, &target, tool->output);
-    target_close(tool, &target,
-                 image_write(image, target.output.descriptor, (enum image_format)format, &error), &error);
+    int to = target.output.descriptor;
+    enum status status =
+        data != NULL ? image_write_header(image, to, (enum image_format)format, within_folder(data), &error)
+                     : image_write(image, to, (enum image_format)format, &error);
+    target_close(tool, &target, status, &error);
 }
 
 const char *image_text(const struct image *image, char text[128])
