@@ -78,7 +78,7 @@ END
 @test "decks of Abaqus: what is wrong is told by keyword and line" {
     faulty inp << 'END'
 solid|s/^2, 1.D0/2, nan/|*NODE: line 6: coordinate: 'nan' is not a finite number
-solid|s/^9, 0/6, 0/|nodes: node tag 6 stands twice
+solid|s/^9, 0/6, 0/|nodes: line 11: node tag 6 stands twice
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6/|*ELEMENT: line 18: element 7 ends after 3 of 4 nodes
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 9, 1/|*ELEMENT: line 17: element 7 has more than 4 nodes
 solid|s/^7, 4, 5, 6, 9/7, 4, 5, 6, 8/|element 7 names the node 8, which is not in the file
@@ -132,12 +132,12 @@ v25|s/ 2, 1, 0</ 2, inf, 0</|<Nodes>: line 6: coordinate: 'inf' is not a finite 
 v25|s/ 2, 1, 0</ 2, 1, 0, 0</|<Nodes>: line 6: node 5 has more than three coordinates
 v25|s/brick/&&&&&&&&&&&&&&&&&&&&&&&&&&/|<Elements>: line 11: the name 'brickbrickbrickbrickbrickbrickbrickbrick...' is longer than 127 bytes
 v25|s/ 2, 1, 0</ 2, 1</|<Nodes>: line 6: coordinate: '' is not
-v25|s/id="4"> 2/id="3"> 2/|nodes: node tag 3 stands twice
+v25|s/id="4"> 2/id="3"> 2/|nodes: line 6: node tag 3 stands twice
 v25|s/"hex8"/"hex9"/|<Elements>: line 11: type 'hex9': no element that is read
 v25|s/"hex8"/"tet8"/|type 'tet8': no element
 v25|s/3, 4, 5, 6, 13/3, 4, 5, 13/|<Elements>: line 11: 7 nodes, where hexahedron has 8
 v25|s/3, 4, 5, 6, 13/3, 4, 5, 7, 13/|element 1 names the node 7, which is not in the file
-v25|s/node id="4".>/node id="7"\/>/|a set or surface names the node 7
+v25|s/node id="4".>/node id="7"\/>/|elements: the set or surface 'held' names the node 7
 v25|s/<node id="4".>/<node\/>/|<NodeSet>: line 14: 'node' is no <node id=...>
 v25|s/<node id="4".>/<NodeSet node_set="heldd"\/>/|<NodeSet>: line 14: there is no set of nodes 'heldd' as yet
 v25|s/<Geometry>/<Geometry from="x">/|other files are not read: put the content of that file in its place
@@ -245,6 +245,7 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
 text.vtu|s/="UnstructuredGrid" /="PolyData" /|type 'PolyData': only UnstructuredGrid is read
 text.vtu|s/byte_order/compressor="vtkLZ4DataCompressor" byte_order/|compressor vtkLZ4DataCompressor: only zlib is read
 text.vtu|s/NumberOfPoints="5"/NumberOfPoints="6"/|numbers, not 18
+text.vtu|s/NumberOfPoints="5"/NumberOfPoints="-5"/|Piece: line 12: NumberOfPoints: -5 is not
 text.vtu|s/NumberOfCells="2"/NumberOfCells="2147483648"/|NumberOfCells: 2147483648 is not within
 text.vtu|s/^4$/9/|grid: cell 0: its offset 9 is not within
 text.vtu|s/^10$/99/|type 99 of VTK with 4 points is no element

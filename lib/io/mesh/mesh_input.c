@@ -82,7 +82,9 @@ void input_add_node(struct mesh_input *in, int64_t tag, const double x[3])
     struct msh *msh = in->r->msh;
     MSH_GROW(in->r, &msh->x, 3 * (msh->node_count + 1), &in->x_room);
     MSH_GROW(in->r, &msh->node_tag, msh->node_count + 1, &in->node_room);
+    MSH_GROW(in->r, &in->line, msh->node_count + 1, &in->line_room);
     if (in->r->status == STATUS_OK) {
+        in->line[msh->node_count] = in->r->record;
         memcpy(&msh->x[3 * msh->node_count], x, 3 * sizeof *x);
         msh->node_tag[msh->node_count++] = tag;
     }
@@ -200,7 +202,31 @@ void input_index(struct mesh_input *in)
     if (r->status == STATUS_OK) {
         r->section = "nodes";
         r->kind = "node";
+        r->line = in->line;
         msh_index_make(r, &r->nodes, r->msh->node_count, r->msh->node_tag);
+        r->line = NULL;
+    }
+}
+
+/* Say that an element, a set or a surface names a node that there is not. */
+static void fail_corner(struct mesh_input *in, int64_t e, int64_t node)
+{
+    struct msh_reader *r = in->r;
+    int64_t tag = r->msh->element_tag[e];
+    int length = 0;
+    const char *name = "";
+    for (int64_t i = 0; i < r->name_count; i++) {
+        if (r->names[i].key == r->element_key[e]) {
+            name = r->names[i].text;
+            length = r->names[i].length;
+        }
+    }
+    if (tag != INPUT_NO_TAG) {
+        msh_fail(r, "element %lld names the node %lld, which is not in the file", (long long)tag,
+                 (long long)node);
+    } else {
+        msh_fail(r, "the set or surface '%.*s' names the node %lld, which is not in the file", length, name,
+                 (long long)node);
     }
 }
 
@@ -218,14 +244,9 @@ static void find_corners(struct mesh_input *in)
     for (int64_t e = 0; e < msh->element_count; e++) {
         for (int64_t k = msh->node_ptr[e]; r->status == STATUS_OK && k < msh->node_ptr[e + 1]; k++) {
             int64_t place = msh_index_find(&r->nodes, in->corners[k]);
-            char name[40] = "a set or surface";
             msh->node_idx[k] = (int32_t)place;
-            if (place < 0 && msh->element_tag[e] != INPUT_NO_TAG) {
-                snprintf(name, sizeof name, "element %lld", (long long)msh->element_tag[e]);
-            }
             if (place < 0) {
-                msh_fail(r, "%s names the node %lld, which is not in the file", name,
-                         (long long)in->corners[k]);
+                fail_corner(in, e, in->corners[k]);
             }
         }
     }
@@ -252,5 +273,5 @@ void input_finish(struct mesh_input *in)
 void input_free(struct mesh_input *in)
 {
     tdestroy(in->names, free);
-    free(in->corners);
+    FREE_ALL(in->line, in->corners);
 }

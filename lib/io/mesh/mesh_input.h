@@ -11,7 +11,8 @@
 
 struct mesh_input {
     struct msh_reader *r;
-    int64_t x_room, node_room, tag_room, type_room, key_room, ptr_room, corner_room, name_room;
+    int64_t x_room, node_room, line_room, tag_room, type_room, key_room, ptr_room, corner_room, name_room;
+    int64_t *line;      /* of each node in the file, or what the reader counts instead */
     int64_t *corners;   /* tags of the nodes of each element, in gmsh's order, from its node_ptr on */
     void *names;        /* a tree of them by kind and text */
     char left_out[320]; /* what is not read, ", " before each */

@@ -20,8 +20,11 @@ void msh_index_make(struct msh_reader *r, struct msh_index *index, int64_t count
     }
     for (int64_t i = 1; r->status == STATUS_OK && i < count; i++) {
         if (index->sorted[i].tag == index->sorted[i - 1].tag) {
-            r->record = 0;
-            msh_fail(r, "%s tag %lld stands twice", r->kind, (long long)index->sorted[i].tag);
+            const char *kind = r->kind;
+            int64_t a = index->sorted[i - 1].place, b = index->sorted[i].place;
+            r->kind = "line";
+            r->record = r->line != NULL ? r->line[a > b ? a : b] : 0;
+            msh_fail(r, "%s tag %lld stands twice", kind, (long long)index->sorted[i].tag);
         }
     }
 }

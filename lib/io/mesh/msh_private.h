@@ -65,6 +65,7 @@ struct msh_reader {
     struct msh *msh;
     const char *region_array; /* of VTK files, or NULL */
     struct msh_index nodes;
+    const int64_t *line; /* of each of the records that are indexed, or NULL */
     bool has[MSH_SECTIONS]; /* the section was read to its end */
     int64_t node_idx_room;
     int64_t *element_key; /* msh->element_count: key of the entity, in MSH 2 of the group; 0: none */

@@ -58,7 +58,9 @@ static const struct vtk_array *find_regions(struct vtk_input *v)
             input_leave_out(&v->in, array->name);
         }
     }
-    if (count > 1) {
+    if (count > 1 && named_array(v, found->name) != found) {
+        msh_fail(v->in.r, "the cells have two arrays '%s': take one out", found->name);
+    } else if (count > 1) {
         msh_fail(
             v->in.r,
             "the cells have several arrays of whole numbers: --regions-of tells which has the regions: %s",

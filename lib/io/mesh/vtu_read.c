@@ -117,9 +117,13 @@ static void begin(void *context, const char *name, const char **attributes, int 
 {
     struct vtu *u = context;
     struct msh_reader *r = u->v.in.r;
+    bool is_array = strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0;
+    if (depth < 4 && !is_array) {
+        snprintf(u->section, sizeof u->section, "%s", name);
+    }
     if (depth == 0) {
         begin_file(u, attributes);
-    } else if (strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0) {
+    } else if (is_array) {
         begin_array(u, attributes);
     } else if (strcmp(name, "Piece") == 0) {
         if (u->pieces++ > 0) {
@@ -127,8 +131,6 @@ static void begin(void *context, const char *name, const char **attributes, int 
         }
         u->v.point_count = number_of(u, attributes, "NumberOfPoints", 0);
         u->v.cell_count = number_of(u, attributes, "NumberOfCells", 0);
-    } else if (depth == 2 || depth == 3) {
-        snprintf(u->section, sizeof u->section, "%s", name);
     }
 }
 
