@@ -2,6 +2,7 @@
 #pragma once
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 
 static inline double vector_dot(int dim, const double *a, const double *b)
@@ -21,6 +22,22 @@ static inline double vector_product(int64_t size, const double *x, const double 
         sum += x[i] * y[i];
     }
     return sum;
+}
+
+/* Length of the longest of `count` vectors; *which, unless NULL: its number. */
+static inline double vector_longest(int dim, int64_t count, const double *x, int64_t *which)
+{
+    double most = 0.0;
+    for (int64_t n = 0; n < count; n++) {
+        double length2 = vector_dot(dim, x + n * dim, x + n * dim);
+        if (length2 > most) {
+            most = length2;
+            if (which != NULL) {
+                *which = n;
+            }
+        }
+    }
+    return sqrt(most);
 }
 
 /* |a - b|^2 */

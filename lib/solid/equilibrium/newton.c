@@ -34,9 +34,6 @@ static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
 /* By the body's size: a body that moves farther has no equilibrium. */
 static const double most_sizes = 10.0;
-/* Limits of the penetration at an equilibrium: of its depth, by the largest displacement; and of the work of
- * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. */
-static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
 static const int64_t usual_most_steps = 100000;
 
 /* How far a node may move in a step: between facets of the body so far that what is opposite a point is still
@@ -56,15 +53,20 @@ static double longest_step(const struct newton *n)
 
 /* ---- the preconditioner ---- */
 
-/* Make the preconditioner anew at u. */
-static enum status take_stiffness(struct newton *n, struct error *error)
+/* Set the mass of the preconditioner by the last evaluation, which was at u. */
+static enum status weigh(struct newton *n, struct error *error)
+{
+    system_relaxation_mass(n->system, false, n->scaled);
+    return preconditioner_set_mass(&n->preconditioner, n->system, n->scaled, error);
+}
+
+/* Measure the coarse fields at u, and evaluate it again. */
+static enum status measure(struct newton *n, struct error *error)
 {
     struct preconditioner *p = &n->preconditioner;
     n->lowest = 0.0;
-    system_relaxation_mass(n->system, false, n->scaled);
-    RETURN_IF_ERROR(preconditioner_set_mass(p, n->system, n->scaled, error));
     RETURN_IF_ERROR(preconditioner_measure(p, n->system, n->u, &n->report->force_evaluations, error));
-    (void)newton_evaluate(n, n->u, &n->at_u); /* the body's last evaluation again */
+    (void)newton_evaluate(n, n->u, &n->at_u);
     (void)preconditioner_follow(p, n->system, true, NULL, NULL);
     return STATUS_OK;
 }
@@ -125,7 +127,6 @@ static bool increase_load(struct newton *n)
     double from = n->load, target = newton_load_to_hold(n), square = 0.0, radius = n->body_size;
     double share = n->last_change != 0.0 ? left : left_at_first, least = 0.5 * n->report->least_jacobian;
     const double most = fmin(most_spacings * n->spacing, n->longest_step);
-    int64_t unused = 0;
     n->report->loading_steps++;
     while (radius > least_radius * n->spacing) {
         double change = fmin(n->load_change, target - from);
@@ -133,7 +134,7 @@ static bool increase_load(struct newton *n)
         predict(n, n->last_change != 0.0 ? change / n->last_change : 0.0);
         (void)newton_evaluate(n, n->u, &n->at_u);
         (void)newton_solve_model(n, share, radius, &square);
-        double length = newton_longest(n, n->step, &unused);
+        double length = newton_longest(n, n->step, NULL);
         bool far = radius > most && length > most;
         if (!far && try_step(n, 1.0) && n->report->least_jacobian > least) {
             n->last_change = n->load - from;
@@ -160,18 +161,9 @@ static bool falls(const struct newton *n, double share)
     return 0.5 * share * work > n->at_trial.contact_energy - n->at_u.contact_energy;
 }
 
-/* Whether contacts still give way at u, by more than their limits. A penetration within the tolerance of the
- * displacements cannot be distinguished from their error. */
-static bool contacts_lack(struct newton *n)
+static bool contacts_lack(const struct newton *n)
 {
-    struct relaxation_report *report = n->report;
-    double tolerance = n->options->tolerance, miss = system_contact_miss(n->system);
-    double missing_share = fmax(least_missing, missing_tolerances * tolerance);
-    report->penetration = miss;
-    report->penetration_allowed = penetration_share * report->move;
-    return miss > report->penetration_allowed ||
-           (miss > tolerance * report->move &&
-            system_missing_work(n->system) > missing_share * body_energy(&n->system->body, n->u));
+    return system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
 }
 
 /* What the nodal pressures may lack. */
@@ -237,9 +229,8 @@ static bool correct(struct newton *n)
 /* Estimate the error of u, with the residual of the multipliers that were advanced. */
 static void estimate(struct newton *n)
 {
-    int64_t unused = 0;
     struct relaxation_report *report = n->report;
-    double square = newton_square(n), move = newton_longest(n, n->u, &unused);
+    double square = newton_square(n), move = newton_longest(n, n->u, NULL);
     n->largest_move = fmax(n->largest_move, move);
     report->move = fmax(move, n->options->tolerance * n->largest_move);
     double left_of = n->square > 0.0 ? sqrt(fmax(square, 0.0) / n->square) : 0.0;
@@ -249,16 +240,6 @@ static void estimate(struct newton *n)
     }
     bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
     report->error = at_rest ? 0.0 : n->corrections > 0 ? error / report->move : INFINITY;
-}
-
-/* Whether a contact has pressed. */
-static bool touches(const struct solid_system *system)
-{
-    bool any = false;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        any = any || system->contacts[c].deepest > 0.0;
-    }
-    return any;
 }
 
 /* The error estimate that round-off alone causes, some units in the last place of positions. */
@@ -287,11 +268,13 @@ static bool ends(struct newton *n, enum relaxation_outcome *outcome)
     bool vain = report->steps - n->best_step > most_vain;
     double most = n->options->tolerance;
     if (vain) {
-        most = fmax(most, touches(n->system) ? most_hovering : round_off(n));
+        most = fmax(most, system_has_touched(n->system) ? most_hovering : round_off(n));
     }
     bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
     bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
     bool found = report->error <= most && pressures && contacts;
+    report->penetration = system_contact_miss(n->system);
+    report->penetration_allowed = system_penetration_allowed(report->move);
     *outcome = found ? RELAXATION_CONVERGED : RELAXATION_STALLED;
     return found || report->steps - n->best_step > 4 * most_vain;
 }
@@ -322,7 +305,10 @@ static bool step(struct newton *n, struct error *error)
     if (!increase_load(n)) {
         return false;
     }
-    n->failure = take_stiffness(n, error);
+    n->failure = weigh(n, error);
+    if (n->failure == STATUS_OK) {
+        n->failure = measure(n, error);
+    }
     return n->failure == STATUS_OK;
 }
 
@@ -359,13 +345,12 @@ static enum status begin(struct newton *n, struct error *error)
     if (n->options->frame != NULL && n->options->frames > 0) {
         n->options->frame(n->options->context, 0, 0.0, n->u);
     }
-    system_relaxation_mass(system, false, n->scaled);
-    RETURN_IF_ERROR(preconditioner_set_mass(&n->preconditioner, system, n->scaled, error));
+    RETURN_IF_ERROR(weigh(n, error));
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
     n->radius = fmin(n->spacing, n->longest_step);
     n->load_change = n->most_change;
     n->corrections = most_between + 1;
-    return take_stiffness(n, error);
+    return measure(n, error);
 }
 
 /* Continue from the state of another run. */

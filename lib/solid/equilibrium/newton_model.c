@@ -18,16 +18,7 @@ static const double slope_left = 0.1;
 
 double newton_longest(const struct newton *n, const double *x, int64_t *node)
 {
-    int dim = n->system->dim;
-    double most = 0.0;
-    for (int64_t k = 0; k < n->system->node_count; k++) {
-        double length2 = vector_dot(dim, x + k * dim, x + k * dim);
-        if (length2 > most) {
-            most = length2;
-            *node = k;
-        }
-    }
-    return sqrt(most);
+    return vector_longest(n->system->dim, n->system->node_count, x, node);
 }
 
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces)
@@ -49,8 +40,7 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
 
 double newton_difference(const struct newton *n, const double *move)
 {
-    int64_t unused = 0;
-    double longest = newton_longest(n, move, &unused);
+    double longest = newton_longest(n, move, NULL);
     return strain * n->spacing / (longest > 0.0 ? longest : 1.0);
 }
 
@@ -171,9 +161,8 @@ static double turn_search(struct newton *n, double square, double square_before)
 /* Begin the model at u + step: minus its gradient, without reactions. */
 static void begin_model(struct newton *n)
 {
-    int64_t unused = 0;
     memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
-    if (newton_longest(n, n->step, &unused) > 0.0) {
+    if (newton_longest(n, n->step, NULL) > 0.0) {
         multiply(n, n->step, n->product);
         add_scaled((int)n->size, -1.0, n->product, n->model.smooth);
     }
@@ -191,8 +180,7 @@ double newton_square(struct newton *n)
 
 bool newton_solve_model(struct newton *n, double share, double radius, double *square)
 {
-    int64_t unused = 0;
-    double before = 0.0, length = newton_longest(n, n->step, &unused), mark = 0.0;
+    double before = 0.0, length = newton_longest(n, n->step, NULL), mark = 0.0;
     int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
     begin_model(n);
     for (int k = 0; k < NEWTON_MOST_ITERATIONS; k++) {
@@ -209,7 +197,7 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
             return true;
         }
         double down = turn_search(n, now, before);
-        double most = (radius - length) / newton_longest(n, n->search, &unused);
+        double most = (radius - length) / newton_longest(n, n->search, NULL);
         multiply(n, n->search, n->product);
         double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
                                   vector_product(n->size, n->search, n->product), most);
@@ -221,7 +209,7 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
             return false;
         }
         before = now;
-        length = newton_longest(n, n->step, &unused);
+        length = newton_longest(n, n->step, NULL);
     }
     return true;
 }

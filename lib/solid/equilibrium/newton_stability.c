@@ -12,16 +12,6 @@ static const double least_told = 1e-6;
 /* Of the residual's square that is left, by the share of one mode of a pseudo-random one. */
 static const double share_left = 0.1;
 
-/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
-static void start(double *vector, int64_t size)
-{
-    uint64_t state = 0x9e3779b97f4a7c15u;
-    for (int64_t i = 0; i < size; i++) {
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        vector[i] = (double)(int64_t)state / 9223372036854775808.0;
-    }
-}
-
 /* product = K move with all that resists at u; returns move . K move. */
 static double multiply(struct newton *n, const double *move, double sign, double *product)
 {
@@ -55,9 +45,8 @@ void newton_judge_stability(struct newton *n)
     double *rest = n->model.smooth, square = 0.0, first = 0.0, norm2 = 0.0, largest = 0.0, way = 0.0;
     double diagonal[NEWTON_MOST_ITERATIONS], off_diagonal[NEWTON_MOST_ITERATIONS]; /* of Lanczos's matrix */
     int count = 0;
-    int64_t node = 0;
     stability->least = 0.0;
-    start(rest, n->size);
+    frequency_start(rest, n->size);
     memset(n->search, 0, (size_t)n->size * sizeof *n->search);
     for (int k = 0; k < NEWTON_MOST_ITERATIONS; k++) {
         preconditioner_apply(&n->preconditioner, rest, n->scaled);
@@ -75,9 +64,8 @@ void newton_judge_stability(struct newton *n)
         largest = fmax(largest, quotient);
         if (!(quotient > least_told * largest)) {
             if (is_negative(n, curvature, norm2, largest) && quotient < -report->error * largest) {
-                (void)newton_longest(n, n->search, &node);
+                (void)newton_longest(n, n->search, &stability->node);
                 stability->least = quotient / largest;
-                stability->node = node;
             }
             break;
         }

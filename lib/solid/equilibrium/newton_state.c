@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum status newton_allocate(struct newton *n, struct error *error)
 {
@@ -91,19 +90,14 @@ double newton_load_to_hold(const struct newton *n)
 
 enum status newton_row_forces(struct newton *n, struct error *error)
 {
-    struct constraint *constraint = &n->preconditioner.constraint;
-    int64_t count = n->system->rows.count;
     (void)newton_evaluate(n, n->u, &n->at_u);
-    if (n->row_force == NULL || count == 0) {
+    if (n->row_force == NULL || n->system->rows.count == 0) {
         return STATUS_OK;
     }
     for (int64_t i = 0; i < n->size; i++) {
         n->trial[i] = n->at_u.smooth[i] + n->at_u.contact[i];
     }
-    preconditioner_smooth(&n->preconditioner, n->trial, n->scaled);
-    constraint_project(constraint, NULL, n->scaled);
-    memcpy(n->row_force, constraint->multiplier, (size_t)count * sizeof *n->row_force);
-    return constraint_share_out(constraint, n->row_force, error);
+    return preconditioner_row_forces(&n->preconditioner, n->trial, n->scaled, n->row_force, error);
 }
 
 enum status newton_give_frame(struct newton *n, struct error *error)

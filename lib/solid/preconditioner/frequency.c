@@ -46,8 +46,7 @@ static double residual_along(struct solid_system *system, const double *u, doubl
     return epsilon;
 }
 
-/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
-static void start_mode(double *mode, int64_t size)
+void frequency_start(double *mode, int64_t size)
 {
     uint64_t state = 0x9e3779b97f4a7c15u;
     for (int64_t i = 0; i < size; i++) {
@@ -63,7 +62,7 @@ double system_largest_frequency(struct solid_system *system, struct precondition
     double *displaced = scratch, *response = scratch + size;
     double eigenvalue = 0.0;
     if (largest_entry(mode, size) == 0.0) {
-        start_mode(mode, size);
+        frequency_start(mode, size);
         constraint_project(&p->constraint, NULL, mode);
     }
     double spacing = point_spacing(system);
@@ -169,21 +168,6 @@ static void least_eigenvector(int n, const double *diagonal, const double *off_d
     }
 }
 
-/* The node that moves most in a vector of the nodes. */
-static int32_t most_moved(int dim, int64_t node_count, const double *vector)
-{
-    double most = -1.0;
-    int32_t node = 0;
-    for (int64_t n = 0; n < node_count; n++) {
-        double length2 = vector_dot(dim, vector + n * dim, vector + n * dim);
-        if (length2 > most) {
-            most = length2;
-            node = (int32_t)n;
-        }
-    }
-    return node;
-}
-
 /* A Lanczos iteration at a state. With each vector goes M times it. */
 struct lanczos {
     struct solid_system *system;
@@ -227,7 +211,7 @@ static struct lanczos lanczos_at(struct solid_system *system, struct preconditio
                         .response = scratch + 4 * size};
     memcpy(l.vector, start, (size_t)size * sizeof *start);
     if (largest_entry(start, size) == 0.0) {
-        start_mode(l.vector, size);
+        frequency_start(l.vector, size);
     }
     return l;
 }
@@ -341,6 +325,6 @@ enum status system_unstable_mode(struct solid_system *system, struct preconditio
         }
     }
     stability->least = stability->least < least_told ? stability->least : 0.0;
-    stability->node = most_moved(system->dim, system->node_count, mode);
+    (void)vector_longest(system->dim, system->node_count, mode, &stability->node);
     return STATUS_OK;
 }

@@ -42,6 +42,9 @@ MUST_CHECK enum status system_unstable_mode(struct solid_system *system,
                                             const double *start, double *scratch, struct stability *stability,
                                             struct error *error);
 
-/* The least eigenvalue of the symmetric tridiagonal matrix (diagonal[n], off_diagonal[n - 1]), to a part in 1e4 (or of
- * its rounding errors). */
+/* The least eigenvalue of the symmetric tridiagonal matrix (diagonal[n], off_diagonal[n - 1]), to a part in
+ * 1e4 (or of its rounding errors). */
 double tridiagonal_least(int n, const double *diagonal, const double *off_diagonal);
+
+/* A fixed sequence of pseudo-random numbers in [-1, 1): the same run gives the same bytes. */
+void frequency_start(double *mode, int64_t size);

@@ -182,6 +182,16 @@ void preconditioner_smooth(struct preconditioner *p, const double *force, double
     inverse_factor_apply_transposed(inverse, p->dim, within, result);
 }
 
+enum status preconditioner_row_forces(struct preconditioner *p, const double *residual, double *scratch,
+                                      double *row_force, struct error *error)
+{
+    struct constraint *constraint = &p->constraint;
+    preconditioner_smooth(p, residual, scratch);
+    constraint_project(constraint, NULL, scratch);
+    memcpy(row_force, constraint->multiplier, (size_t)constraint->rows->count * sizeof *row_force);
+    return constraint_share_out(constraint, row_force, error);
+}
+
 void preconditioner_restrict_force(struct preconditioner *p, const double *force, double *acceleration,
                                    double *amount)
 {

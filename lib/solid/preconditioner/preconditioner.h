@@ -134,6 +134,12 @@ void preconditioner_apply(struct preconditioner *preconditioner, const double *f
 /* result = B force */
 void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
 
+/* row_force[rows of the conditions] = their forces, which balance a residual along them, N (2D: N/m).
+ * scratch: node_count * dim. */
+MUST_CHECK enum status preconditioner_row_forces(struct preconditioner *preconditioner,
+                                                 const double *residual, double *scratch, double *row_force,
+                                                 struct error *error);
+
 /* x . B^-1 x */
 double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
 

@@ -34,10 +34,7 @@ static const int64_t least_steady_checks = 5;
 static const int calm_iterations = 5;       /* of the power iteration on a mode that may be unstable */
 static const double most_mass_checks = 5.0; /* between checks of the mass */
 
-/* Limits of the penetration at an equilibrium: of its depth, by the largest displacement; and of the work of
- * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. Then
- * the largest number of augmentations at a load. */
-static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
+/* Of contacts at a load. */
 static const int64_t most_augmentations = 100;
 
 double relaxation_body_size(const struct solid_system *system)
@@ -268,31 +265,17 @@ bool relaxation_calm(struct relaxation *r, const double *acceleration)
     return true;
 }
 
-static double penetration_allowed(const struct relaxation *r)
-{
-    return penetration_share * r->move;
-}
-
-/* Whether the penetration exceeds its limits. A penetration within the tolerance of the displacements cannot
- * be distinguished from their error. */
-static bool give_way(const struct relaxation *r)
-{
-    double miss = system_contact_miss(r->system), tolerance = r->options->tolerance;
-    double missing_share = fmax(least_missing, missing_tolerances * tolerance);
-    return miss > penetration_allowed(r) ||
-           (miss > tolerance * r->move &&
-            system_missing_work(r->system) > missing_share * body_energy(&r->system->body, r->residual_at));
-}
-
 bool relaxation_contacts_lack(const struct relaxation *r)
 {
-    return r->held_steps == 0 || (r->augmentations < most_augmentations && give_way(r));
+    return r->held_steps == 0 ||
+           (r->augmentations < most_augmentations &&
+            system_contacts_give_way(r->system, r->residual_at, r->move, r->options->tolerance));
 }
 
 bool relaxation_contacts_hold(struct relaxation *r)
 {
     system_measure_contacts(r->system, r->residual_at, false);
     r->report->penetration = system_contact_miss(r->system);
-    r->report->penetration_allowed = penetration_allowed(r);
+    r->report->penetration_allowed = system_penetration_allowed(r->move);
     return !relaxation_contacts_lack(r);
 }

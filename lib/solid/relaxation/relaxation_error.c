@@ -17,21 +17,6 @@ static const double safety = 2.0;
 static const int most_spectrum_iterations = 1000;
 static const double spectrum_share = 0.8; /* of its estimate from above */
 
-/* Length of the longest of the nodes' vectors, and its node. */
-static double largest_of_nodes(const struct relaxation *r, const double *x, int64_t *node)
-{
-    int dim = r->system->dim;
-    double largest2 = 0.0;
-    for (int64_t n = 0; n < r->system->node_count; n++) {
-        double length2 = vector_dot(dim, x + n * dim, x + n * dim);
-        if (length2 > largest2) {
-            largest2 = length2;
-            *node = n;
-        }
-    }
-    return sqrt(largest2);
-}
-
 static double ratio(double part, double whole)
 {
     return whole > 0.0 ? part / whole : part > 0.0 ? INFINITY : 0.0;
@@ -56,12 +41,11 @@ static double least_of_window(const struct relaxation *r)
 
 void relaxation_estimate(struct relaxation *r)
 {
-    int64_t unused;
     double *du = r->scratch, along = 0.0; /* the change of the residual along du */
     for (int64_t i = 0; i < r->size; i++) {
         du[i] = r->before[i] - r->last_u[i];
     }
-    r->moved = largest_of_nodes(r, du, &unused);
+    r->moved = vector_longest(r->system->dim, r->system->node_count, du, NULL);
     memcpy(r->last_u, r->before, (size_t)r->size * sizeof *r->before);
     constraint_project(&r->preconditioner.constraint, NULL, du);
     for (int64_t i = 0; i < r->size; i++) {
@@ -83,12 +67,15 @@ void relaxation_estimate(struct relaxation *r)
     double least_eigenvalue = least_of_window(r);
     r->displacement = scale(r, sqrt(preconditioner_square_diagonal(&r->preconditioner, r->before)),
                             &r->largest_displacement);
-    r->move = scale(r, largest_of_nodes(r, r->before, &unused), &r->largest_move);
+    r->move =
+        scale(r, vector_longest(r->system->dim, r->system->node_count, r->before, NULL), &r->largest_move);
     double on_the_whole =
         ratio(sqrt(preconditioner_square_diagonal(&r->preconditioner, r->acceleration)) / least_eigenvalue,
               r->displacement);
     double at_worst =
-        ratio(largest_of_nodes(r, r->acceleration, &r->report->worst_node) / least_eigenvalue, r->move);
+        ratio(vector_longest(r->system->dim, r->system->node_count, r->acceleration, &r->report->worst_node) /
+                  least_eigenvalue,
+              r->move);
     /* Moves below the round-off of positions are none. */
     bool at_rest = r->move <= DBL_EPSILON * r->body_size;
     r->report->error = at_rest ? 0.0 : safety * fmax(on_the_whole, at_worst);

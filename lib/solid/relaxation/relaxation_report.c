@@ -2,7 +2,6 @@
 #include "solid/relaxation/relaxation_private.h"
 
 #include <math.h>
-#include <string.h>
 
 double relaxation_load_share(const struct relaxation *r)
 {
@@ -41,11 +40,7 @@ enum status relaxation_row_forces(struct relaxation *r, const double *u, double 
     if (row_force == NULL || r->system->rows.count == 0) {
         return STATUS_OK;
     }
-    preconditioner_smooth(&r->preconditioner, r->residual, r->scratch);
-    constraint_project(&r->preconditioner.constraint, NULL, r->scratch);
-    memcpy(row_force, r->preconditioner.constraint.multiplier,
-           (size_t)r->system->rows.count * sizeof *row_force);
-    return constraint_share_out(&r->preconditioner.constraint, row_force, error);
+    return preconditioner_row_forces(&r->preconditioner, r->residual, r->scratch, row_force, error);
 }
 
 bool relaxation_gives_frames(const struct relaxation *r)

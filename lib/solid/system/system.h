@@ -44,8 +44,8 @@ struct cost {
 struct stability {
     double least; /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
     int64_t node; /* of an unstable state: where its mode is largest */
-    double left;  /* Newton's method: share of the load at which it first left an equilibrium that is not stable;
-                     0: it has not */
+    double left;  /* Newton's method: share of the load at which it first left an equilibrium that is not
+                     stable;  0: it has not */
 };
 
 struct condition;
@@ -129,6 +129,15 @@ void system_free_contacts(struct solid_system *system);
 void system_augment_contacts(struct solid_system *system, bool steady);
 double system_contact_miss(const struct solid_system *system);
 double system_missing_work(const struct solid_system *system);
+
+/* The penetration of contacts that an equilibrium may have, m, where a node has moved by `move`; whether
+ * there is more at u, or the work of the contact forces along it is more than a share of the elastic energy.
+ * A penetration within the tolerance of the displacements cannot be distinguished from their error. */
+double system_penetration_allowed(double move);
+bool system_contacts_give_way(struct solid_system *system, const double *u, double move, double tolerance);
+
+/* Whether a contact has pressed in an accepted state. */
+bool system_has_touched(const struct solid_system *system);
 
 /* contact_stiffen of all contacts; whether any penalty was increased. */
 bool system_stiffen_contacts(struct solid_system *system);

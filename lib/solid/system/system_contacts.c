@@ -7,6 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Limits of the penetration at an equilibrium: of its depth, by the largest displacement; and of the work of
+ * the contact forces along it, by the energy of the body, as a multiple of the tolerance and at least. */
+static const double penetration_share = 1e-3, missing_tolerances = 10.0, least_missing = 1e-5;
+
 void system_free_contacts(struct solid_system *system)
 {
     for (int64_t i = 0; i < system->contact_count; i++) {
@@ -71,4 +75,27 @@ double system_missing_work(const struct solid_system *system)
         work += contact_missing_work(&system->contacts[c]);
     }
     return work;
+}
+
+double system_penetration_allowed(double move)
+{
+    return penetration_share * move;
+}
+
+bool system_contacts_give_way(struct solid_system *system, const double *u, double move, double tolerance)
+{
+    double miss = system_contact_miss(system);
+    double missing_share = fmax(least_missing, missing_tolerances * tolerance);
+    return miss > system_penetration_allowed(move) ||
+           (miss > tolerance * move &&
+            system_missing_work(system) > missing_share * body_energy(&system->body, u));
+}
+
+bool system_has_touched(const struct solid_system *system)
+{
+    bool touched = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        touched = touched || system->contacts[c].deepest > 0.0;
+    }
+    return touched;
 }

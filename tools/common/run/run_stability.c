@@ -47,23 +47,13 @@ void run_stability_free(struct run *run)
     free(run->stability.near);
 }
 
-/* Whether some contact has pressed: its augmentations, and points that come and go, begin another problem. */
-static bool has_touched(const struct solid_system *system)
-{
-    bool touched = false;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        touched = touched || system->contacts[c].deepest > 0.0;
-    }
-    return touched;
-}
-
 void run_stability_follow(struct run *run, const struct progress *progress)
 {
     struct run_stability *stability = &run->stability;
     const struct solid_system *system = &run->model->system;
     int64_t last = (stability->samples + RUN_STABILITY_SAMPLES - 1) % RUN_STABILITY_SAMPLES;
-    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || has_touched(system)) {
-        return;
+    if (stability->left || run->scene->analysis == SCENE_DYNAMIC || system_has_touched(system)) {
+        return; /* augmentations, and points that come and go, begin another problem */
     }
     if (progress->time != stability->load || !isfinite(progress->move)) {
         stability->load = progress->time;
