@@ -33,10 +33,11 @@ static void require_materials(const struct scene *scene)
         const struct scene_material *material = &scene->materials[i];
         require_names(&material->regions);
         REQUIRE(material->regions.count >= 1);
-        REQUIRE(material->density > 0.0 && material->density < INFINITY);
-        REQUIRE(material->table != NULL ||
-                (material->youngs_modulus > 0.0 && material->youngs_modulus < INFINITY &&
-                 material->poisson_ratio > -1.0 && material->poisson_ratio < 0.5));
+        const struct material *law = &material->material;
+        REQUIRE(law->model >= 0 && law->model < law_count);
+        REQUIRE(law->density > 0.0 && law->density < INFINITY);
+        REQUIRE(material->table != NULL || (law->shear_modulus > 0.0 && law->shear_modulus < INFINITY &&
+                                            law->bulk_modulus > 0.0 && law->bulk_modulus < INFINITY));
     }
 }
 

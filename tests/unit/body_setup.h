@@ -3,6 +3,7 @@
 #pragma once
 
 #include "body_fixture.h"
+#include "law_fixture.h"
 
 #include "solid/body/body.h"
 
@@ -19,14 +20,7 @@ struct setup {
     const int32_t *group;      /* of each material; NULL: each by itself */
 };
 
-static inline struct material make_material(enum material_model model, double youngs_modulus)
-{
-    struct material material = {.model = model, .density = 1000.0, .mooney_ratio = 0.4, .ogden_alpha = -4.7};
-    material_set_moduli(&material, youngs_modulus, 0.49);
-    return material;
-}
-
-static inline struct setup one_material(enum material_model model, bool averaged)
+static inline struct setup one_material(int model, bool averaged)
 {
     struct setup setup = {.averaged = averaged, .model_count = 1};
     setup.material[0] = make_material(model, 3000.0);
@@ -37,7 +31,7 @@ static inline struct setup three_materials(bool averaged)
 {
     struct setup setup = {.averaged = averaged, .model_count = 3};
     setup.material[0] = make_material(MATERIAL_NEO_HOOKEAN, 3000.0);
-    setup.material[1] = make_material(MATERIAL_OGDEN, 2000.0);
+    setup.material[1] = make_material(law_find("ogden"), 2000.0);
     setup.material[2] = make_material(MATERIAL_NEO_HOOKEAN, 6000.0);
     return setup;
 }
@@ -122,8 +116,8 @@ static inline void for_all(void (*check)(const struct sample *, const struct set
     for (int i = 0; i < 4; i++) {
         for (int averaged = 0; averaged < 2; averaged++) {
             for (int faces = 0; faces < 1 + (int)samples[i].smoothed; faces++) {
-                for (int model = 0; model < (int)MATERIAL_MODEL_COUNT; model++) {
-                    struct setup setup = one_material((enum material_model)model, averaged == 1);
+                for (int model = 0; model < law_count; model++) {
+                    struct setup setup = one_material(model, averaged == 1);
                     setup.faces = faces == 1;
                     check(&samples[i], &setup, &random);
                 }

@@ -30,7 +30,8 @@ static const char full[] =
     "damping = 3\nmax_steps = 1000000\n";
 
 #define HEAD "[scene]\ndim = 2\nanalysis = quasi-static\n"
-#define BODY "[material m]\nregion = r\nE = 3000\nnu = .49\nrho = 1000\n"
+#define REGION "[material m]\nregion = r\n"
+#define BODY REGION "E = 3000\nnu = .49\nrho = 1000\n"
 
 static void write_bytes(const char *bytes, size_t size)
 {
@@ -60,9 +61,11 @@ TEST(reads_everything)
     assert_string_equal(scene.materials[0].regions.names[1], "white_matter");
     same(scene.materials[0].youngs_modulus, 3000);
     same(scene.materials[0].poisson_ratio, .49);
-    same(scene.materials[0].density, 1000);
+    same(scene.materials[0].material.density, 1000);
+    same(scene.materials[0].material.bulk_modulus, 50000);
     assert_non_null(strstr(scene.materials[0].label.where, ".scene:8: [material "));
-    assert_int_equal(scene.materials[1].model, SCENE_OGDEN);
+    assert_int_equal(scene.materials[1].material.model, law_find("ogden"));
+    same(scene.materials[1].parameters[6], -4.7);
     snprintf(expected, sizeof expected, "%s/sub/tumour.tsv", folder);
     assert_string_equal(scene.materials[1].table, expected);
     same(scene.materials[1].table_unit, 1e-3);
@@ -108,7 +111,7 @@ TEST(defaults)
     write_bytes(HEAD BODY, sizeof(HEAD BODY) - 1);
     GOOD(scene_read(path, &scene, &error));
     assert_string_equal(scene.title, "");
-    assert_int_equal(scene.materials[0].model, SCENE_NEO_HOOKEAN);
+    assert_int_equal(scene.materials[0].material.model, MATERIAL_NEO_HOOKEAN);
     assert_int_equal(scene.solver.constraints, SCENE_EBCIEM);
     assert_int_equal(scene.solver.constraint_points, SCENE_NODAL_AVERAGES);
     assert_int_equal(scene.solver.volume, SCENE_NODAL_VOLUME);
@@ -202,7 +205,7 @@ TEST(density_that_is_not_felt)
     FREED_BY(scene_free) struct scene scene = {0};
     write_bytes(text, sizeof text - 1);
     GOOD(scene_read(path, &scene, &error));
-    assert_true(scene.materials[0].density > 0);
+    assert_true(scene.materials[0].material.density > 0);
 }
 
 TEST(material_keys)
@@ -219,6 +222,25 @@ TEST(material_keys)
     fails(HEAD BODY "model = ogden\nalpha = 0\n", 10, "must not be 0");
     fails(HEAD BODY "ratio = 1\n", 9, "not allowed: it belongs to model mooney-rivlin");
     fails(HEAD BODY "model = mooney-rivlin\nratio = -1\n", 10, "-1 is not at least 0");
+    fails(HEAD BODY "model = ogden\nalpha = 1, 2\n", 10, "alpha: E goes with one number");
+    fails(HEAD BODY "kappa = 1\n", 9, "kappa: not allowed: nu gives the volume: give one of nu, kappa, D");
+    fails(HEAD BODY "mu = 1\n", 9, "mu: not allowed: the stiffness is given by E");
+    fails(HEAD REGION "E = 9\nkappa = 1\n", 6, "E: is not below 9 kappa");
+    fails(HEAD REGION "kappa = 1\nD = 1\n", 4, "E: missing");
+    fails(HEAD REGION "mu = 1\nkappa = 1\nD = 1\n", 8, "D: not allowed: kappa gives the volume");
+    fails(HEAD REGION "mu = 1\nD = 1e-320\n", 4, "the moduli are too small or too large");
+    fails(HEAD REGION "mu = -1\nkappa = 1\n", 6, "mu: -1 is not above 0");
+    fails(HEAD REGION "mu = 1, 2\nkappa = 1\n", 6, "mu: has more than 1 number");
+    fails(HEAD REGION "model = ogden\nmu = 1, -1\nalpha = 2, 3\nnu = 0\n", 7, "mu: the sum is not positive");
+    fails(HEAD REGION "model = ogden\nmu = 1, 2\nalpha = 3\nnu = 0\n", 8,
+          "alpha: mu and alpha have different");
+    fails(HEAD REGION "model = ogden\nmu = 1, x\nalpha = 2, 3\nnu = 0\n", 7,
+          "mu: 'x' is not a finite number");
+    fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nc2 = -1\nnu = 0\n", 7, "c1: c1 + c2 is not positive");
+    fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nnu = 0\n", 4, "c2: missing");
+    fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nratio = 1\n", 8, "ratio: not allowed: it goes with E");
+    fails(HEAD BODY "model = yeoh\n", 6, "E: not allowed: the law has its own moduli");
+    fails(HEAD REGION "model = yeoh\nc1 = 1\n", 4, "nu: missing: give Poisson's ratio, or kappa in Pa, or D");
     fails(HEAD BODY "table = t\n", 6, "E: not allowed: the table gives E and nu");
     fails(HEAD "[material m]\nregion = r\nrho = 1\ntable = t\n", 7, "table: needs unit");
     fails(HEAD BODY "unit = mm\n", 9, "unit: not allowed");
@@ -226,6 +248,31 @@ TEST(material_keys)
           "[material n]: region: 'r' is of material m already");
     fails(HEAD "[material m]\nregion = r,,q\n", 5, "region: has an empty name");
     fails(HEAD "[material m]\nregion = r, q, r\n", 5, "region: names 'r' twice");
+}
+
+/* The moduli of laws by the parameters of each, and the volume by each of its keys. */
+TEST(moduli)
+{
+    static const struct {
+        const char *keys;
+        double shear, bulk, parameter;
+    } cases[] = {{"E = 3000\nkappa = 50000\n", 3000 / 2.98, 50000, 0},
+                 {"mu = 3\nnu = 0.25\n", 3, 5, 0},
+                 {"model = st-venant-kirchhoff\nmu = 3\nD = 0.5\n", 3, 4, 0},
+                 {"model = mooney-rivlin\nc1 = 2\nc2 = 3\nkappa = 7\n", 10, 7, 1.5},
+                 {"model = mooney-rivlin\nratio = 3\nE = 9\nnu = 0\n", 4.5, 3, 3},
+                 {"model = ogden\nmu = 1, 2, 5\nalpha = 2, -3, .5\nkappa = 7\n", 8, 7, .125},
+                 {"model = yeoh\nc1 = 2\nc3 = 1\nkappa = 7\n", 4, 7, .5}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        FREED_BY(scene_free) struct scene scene = {0};
+        char text[256];
+        int length = snprintf(text, sizeof text, HEAD REGION "%s", cases[i].keys);
+        write_bytes(text, (size_t)length);
+        GOOD(scene_read(path, &scene, &error));
+        NEAR_TO(scene.materials[0].material.shear_modulus, cases[i].shear, 1e-9);
+        NEAR_TO(scene.materials[0].material.bulk_modulus, cases[i].bulk, 1e-9);
+        NEAR_TO(scene.materials[0].parameters[0], cases[i].parameter, 1e-15);
+    }
 }
 
 TEST(conditions)

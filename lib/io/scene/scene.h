@@ -5,19 +5,12 @@
 #pragma once
 
 #include "base/memory.h"
+#include "solid/material/law.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 enum scene_analysis { SCENE_QUASI_STATIC, SCENE_DYNAMIC };
-
-enum scene_model {
-    SCENE_NEO_HOOKEAN,
-    SCENE_NEO_HOOKEAN_LOG,
-    SCENE_MOONEY_RIVLIN,
-    SCENE_OGDEN,
-    SCENE_ST_VENANT_KIRCHHOFF
-};
 
 enum scene_prescription { SCENE_TABLE, SCENE_COMPONENTS, SCENE_NORMAL, SCENE_POINTS };
 
@@ -50,12 +43,11 @@ struct scene_curve {
 struct scene_material {
     struct scene_label label;
     struct name_list regions; /* at least one; in no other material */
-    enum scene_model model;
-    double youngs_modulus; /* Pa, > 0; 0 with a table */
-    double poisson_ratio;  /* -1 < nu < .5; 0 with a table */
-    double density;        /* kg/m3, > 0; not given: 1000, which has no effect at rest without gravity */
-    double mooney_ratio;   /* C01/C10 >= 0, mooney-rivlin only */
-    double ogden_alpha;    /* not 0, ogden only */
+    const char *model;        /* name of the law; NULL: the default */
+    double youngs_modulus, poisson_ratio, bulk_modulus, compressibility; /* E, nu, kappa, D as given, or 0 */
+    double parameters[LAW_NUMBERS]; /* of the law, relative to the shear modulus */
+    struct material material; /* without its pointers, and with a table without moduli. A density that is not
+                                 given is 1000, which has no effect at rest without gravity */
     const char *table; /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
     double table_unit; /* m per unit of the table's coordinates */
 };

@@ -18,58 +18,6 @@ static enum status check_scene(const struct place *place, struct scene *scene)
     return STATUS_OK;
 }
 
-static enum status check_elasticity(const struct place *place, double nu)
-{
-    RETURN_IF_ERROR(place_require(place, "E", "give Young's modulus in Pa, or a table"));
-    RETURN_IF_ERROR(place_require(place, "nu", "give Poisson's ratio, or a table"));
-    if (nu >= .5) {
-        return place_fail(place, "nu",
-                          "%.15g is not below 0.5: nearly incompressible tissue needs nu < 0.5, as 0.49", nu);
-    }
-    if (nu <= -1) {
-        return place_fail(place, "nu", "%.15g is not above -1", nu);
-    }
-    return STATUS_OK;
-}
-
-/* Check a key that one model requires and all others forbid. */
-static enum status check_model_key(const struct place *place, bool is_model, const char *key,
-                                   const char *missing, const char *why)
-{
-    return is_model ? place_require(place, key, missing) : place_forbid(place, key, why);
-}
-
-/* Without motion and weight the density has no effect. */
-static const double no_matter = 1000.0; /* kg/m3, where it is not given */
-
-static bool is_density_felt(const struct scene *scene)
-{
-    return scene->analysis == SCENE_DYNAMIC || fabs(scene->gravity[0]) > 0.0 ||
-           fabs(scene->gravity[1]) > 0.0 || fabs(scene->gravity[2]) > 0.0;
-}
-
-static enum status check_material(const struct place *place, struct scene *scene)
-{
-    struct scene_material *material = &scene->materials[scene->material_count - 1];
-    RETURN_IF_ERROR(check_model_key(place, material->model == SCENE_MOONEY_RIVLIN, "ratio",
-                                    "model mooney-rivlin needs C01/C10",
-                                    "it belongs to model mooney-rivlin"));
-    RETURN_IF_ERROR(check_model_key(place, material->model == SCENE_OGDEN, "alpha",
-                                    "model ogden needs its exponent", "it belongs to model ogden"));
-    if (material->model == SCENE_OGDEN && fpclassify(material->ogden_alpha) == FP_ZERO) {
-        return place_fail(place, "alpha", "must not be 0");
-    }
-    if (is_density_felt(scene)) {
-        RETURN_IF_ERROR(place_require(place, "rho", "give the density in kg/m3"));
-    }
-    if (!place_has(place, "rho")) {
-        material->density = no_matter;
-    }
-    return material->table != NULL
-               ? place_forbid_all(place, KEYS{"E", "nu", NULL}, "the table gives E and nu")
-               : check_elasticity(place, material->poisson_ratio);
-}
-
 static enum status check_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
@@ -79,7 +27,8 @@ static enum status check_displacement(const struct place *place, struct scene *s
         displacement->kind = SCENE_POINTS;
         return place_only_keys(place, KEYS{"points", "moved", "unit", "reach", "model_error", "curve", NULL});
     }
-    RETURN_IF_ERROR(place_forbid_all(place, KEYS{"moved", "reach", "model_error", NULL}, "it goes with points"));
+    RETURN_IF_ERROR(
+        place_forbid_all(place, KEYS{"moved", "reach", "model_error", NULL}, "it goes with points"));
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     if (place_has(place, "normal")) {
         RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
@@ -220,13 +169,12 @@ static const struct scene_key scene_keys[] = {{"dim", VALUE_DIM, AT(scene, dim),
 
 static const struct scene_key material_keys[] = {
     {"region", VALUE_NAMES, AT(scene_material, regions), .missing = "name the regions made of it"},
-    {"model", VALUE_CHOICE, AT(scene_material, model),
-     WORDS("neo-hookean", "neo-hookean-log", "mooney-rivlin", "ogden", "st-venant-kirchhoff")},
+    {"model", VALUE_TEXT, AT(scene_material, model)},
     {"E", VALUE_POSITIVE, AT(scene_material, youngs_modulus)},
     {"nu", VALUE_NUMBER, AT(scene_material, poisson_ratio)},
-    {"rho", VALUE_POSITIVE, AT(scene_material, density)},
-    {"ratio", VALUE_NOT_NEGATIVE, AT(scene_material, mooney_ratio)},
-    {"alpha", VALUE_NUMBER, AT(scene_material, ogden_alpha)},
+    {"kappa", VALUE_POSITIVE, AT(scene_material, bulk_modulus)},
+    {"D", VALUE_POSITIVE, AT(scene_material, compressibility)},
+    {"rho", VALUE_POSITIVE, AT(scene_material, material.density)},
     {"table", VALUE_TABLE, AT(scene_material, table)},
     {"unit", VALUE_UNIT, AT(scene_material, table_unit)},
     {NULL}};
@@ -322,7 +270,7 @@ static const struct scene_key solver_keys[] = {
 
 static const struct scene_kind kinds[] = {
     {"scene", scene_keys, check_scene, false, 0, 0, 0},
-    {"material", material_keys, check_material, ITEMS(materials, material_count)},
+    {"material", material_keys, scene_material_check, ITEMS(materials, material_count)},
     {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
     {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
@@ -332,7 +280,7 @@ static const struct scene_kind kinds[] = {
     {"output", output_keys, check_output, false, 0, 0, 0},
     {"solver", solver_keys, check_solver, false, 0, 0, 0},
 };
-enum { KIND_COUNT = sizeof kinds / sizeof kinds[0], MOST_KEYS = 16 };
+enum { KIND_COUNT = sizeof kinds / sizeof kinds[0], MOST_KEYS = 64 };
 
 enum status scene_kind_find(const struct place *place, const struct scene_kind **kind)
 {
@@ -341,8 +289,12 @@ enum status scene_kind_find(const struct place *place, const struct scene_kind *
         names[k] = kinds[k].name;
         if (strcmp(kinds[k].name, place->section->kind) == 0) {
             *kind = &kinds[k];
-            for (int i = 0; kinds[k].keys[i].name != NULL; i++) {
-                keys[i] = kinds[k].keys[i].name;
+            int count = 0;
+            for (; kinds[k].keys[count].name != NULL; count++) {
+                keys[count] = kinds[k].keys[count].name;
+            }
+            if (kinds[k].keys == material_keys) {
+                scene_material_list_keys(keys, count, MOST_KEYS - 1);
             }
             return place_only_keys(place, keys);
         }

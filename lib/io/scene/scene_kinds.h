@@ -16,5 +16,13 @@ struct scene_kind {
     size_t item_size;    /* items begin with a struct scene_label */
 };
 
+/* ---- scene_material.c ---- */
+
+/* Append the keys of all laws to keys[count], up to `most`: each once. */
+void scene_material_list_keys(const char **keys, int count, int most);
+
+/* The check of a material: of its law, whose keys it reads, and of its moduli. */
+MUST_CHECK enum status scene_material_check(const struct place *place, struct scene *scene);
+
 /* The kind of the section; STATUS_INPUT for an unknown kind or key. */
 MUST_CHECK enum status scene_kind_find(const struct place *place, const struct scene_kind **kind);

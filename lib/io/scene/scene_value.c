@@ -118,14 +118,9 @@ struct range {
     bool open_least, open_most;
 };
 
-static enum status read_number(const struct place *place, const char *key, const char *text,
-                               enum value_type type, double *value)
+static enum status read_within(const struct place *place, const char *key, const char *text,
+                               struct range range, double *value)
 {
-    static const struct range ranges[] = {[VALUE_NUMBER] = {-DBL_MAX, DBL_MAX, false, false},
-                                          [VALUE_POSITIVE] = {0, DBL_MAX, true, false},
-                                          [VALUE_NOT_NEGATIVE] = {0, DBL_MAX, false, false},
-                                          [VALUE_SHARE] = {0, 1, true, true}};
-    struct range range = ranges[type];
     RETURN_IF_ERROR(number(place, key, text, value));
     bool above = range.open_least ? *value > range.least : *value >= range.least;
     bool below = range.open_most ? *value < range.most : *value <= range.most;
@@ -138,6 +133,16 @@ static enum status read_number(const struct place *place, const char *key, const
     }
     return place_fail(place, key, "%s is not %s %g", text, range.open_least ? "above" : "at least",
                       range.least);
+}
+
+static enum status read_number(const struct place *place, const char *key, const char *text,
+                               enum value_type type, double *value)
+{
+    static const struct range ranges[] = {[VALUE_NUMBER] = {-DBL_MAX, DBL_MAX, false, false},
+                                          [VALUE_POSITIVE] = {0, DBL_MAX, true, false},
+                                          [VALUE_NOT_NEGATIVE] = {0, DBL_MAX, false, false},
+                                          [VALUE_SHARE] = {0, 1, true, true}};
+    return read_within(place, key, text, ranges[type], value);
 }
 
 static enum status read_dim(const struct place *place, const char *key, const char *text, int *dim)
@@ -210,6 +215,20 @@ static enum status read_vector(const struct place *place, const char *key, char 
     return count == dim ? STATUS_OK
                         : place_fail(place, key, "has %d components: dim = %d needs %d%s", count, dim, dim,
                                      count > dim ? ", with decimal points" : "");
+}
+
+enum status place_numbers(const struct place *place, const struct law_key *key, double *values, int *given)
+{
+    const struct range range = {key->least, key->most, key->open, false};
+    char *item, *list = ini_find(place->section, key->name)->value;
+    for (*given = 0; (item = next_item(&list)) != NULL; ++*given) {
+        if (*given == key->count) {
+            return place_fail(place, key->name, "has more than %d %s", key->count,
+                              key->count == 1 ? "number: write it with a decimal point" : "numbers");
+        }
+        RETURN_IF_ERROR(read_within(place, key->name, item, range, &values[*given]));
+    }
+    return STATUS_OK;
 }
 
 static enum status read_names(const struct place *place, const char *key, char *rest, struct name_list *list)

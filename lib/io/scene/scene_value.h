@@ -48,6 +48,10 @@ struct scene_key {
 MUST_CHECK enum status place_read(const struct place *place, const struct scene_key *key, int dim,
                                   void *item);
 
+/* Read the numbers of a key of a material law that the section has: at most key->count, within its range. */
+MUST_CHECK enum status place_numbers(const struct place *place, const struct law_key *key, double *values,
+                                     int *given);
+
 /* An error if a file of lengths is named without their unit. */
 MUST_CHECK enum status place_check_units(const struct place *place, const struct scene_key *keys);
 

@@ -5,6 +5,7 @@
 #include "solid/body/kernel.h"
 #include "solid/body/merged_cells.h"
 #include "solid/body/nodal_volume.h"
+#include "solid/material/law.h"
 
 #include <omp.h>
 #include <string.h>
@@ -15,7 +16,7 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
-static enum material_model model_of(const struct body_input *input, int64_t point)
+static int model_of(const struct body_input *input, int64_t point)
 {
     return input->materials[input->material[point]].model;
 }
@@ -30,7 +31,7 @@ static enum status order_all(const struct body_input *input, struct body *body, 
     RETURN_IF_ERROR(NEW_ARRAY(&body->node_order, input->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&body->node_place, input->node_count, error));
     for (int64_t q = 0; q < input->point_count; q++) {
-        model[q] = (int32_t)model_of(input, q);
+        model[q] = model_of(input, q);
     }
     RETURN_IF_ERROR(renumber_morton(input->dim, input->point_count, input->x, model, body->order, error));
     if (body->smoothed) {
@@ -81,11 +82,11 @@ static enum status copy_points(const struct body_input *input, struct body *body
 static enum status cut_blocks(const struct body_input *input, struct body *body, struct error *error)
 {
     int64_t most = points_of_block(body->dim);
-    RETURN_IF_ERROR(NEW_ARRAY(
-        &body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + MATERIAL_MODEL_COUNT + 1, error));
+    RETURN_IF_ERROR(
+        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + law_count + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
-        enum material_model model = model_of(input, body->order[q]);
+        int model = model_of(input, body->order[q]);
         block->first_point = q;
         block->neo_hookean = model == MATERIAL_NEO_HOOKEAN;
         while (q < body->point_count && model_of(input, body->order[q]) == model) {

@@ -11,7 +11,7 @@
 static void note_volumes(const struct body *body, struct block *block)
 {
     for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
-        bool is_log = body->materials[body->material[q]].model == MATERIAL_NEO_HOOKEAN_LOG;
+        bool is_log = material_is_logarithmic(&body->materials[body->material[q]]);
         if (is_log && !body->averaged && body->J[q] <= 0.0 && block->least_jacobian > 0.0) {
             block->least_jacobian = body->J[q];
             block->worst_point = q;

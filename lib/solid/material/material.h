@@ -1,35 +1,24 @@
 /* Hyperelastic materials: energy per reference volume, first Piola stress, and their volumetric part.
  *
  * Equation (11) of lib/README.md: W(F) = W_iso(F) + U(J), U = kappa/2 y(J)^2 with y = J - 1, or ln J and
- * lambda for kappa. Only U is averaged over nodal volumes. W_iso is isochoric for the models with J^(-2/3)
+ * lambda for kappa. Only U is averaged over nodal volumes. W_iso is isochoric for the laws with J^(-2/3)
  * below; for the logarithmic one it is the rest of W, and St. Venant-Kirchhoff has no such split (U = 0). F
  * is 3 x 3 row-major; plane strain has F33 = 1. Units Pa.
  *
- *   neo-Hookean            mu/2 (I1' - 3) + kappa/2 (J - 1)^2
- *   neo-Hookean (log)      mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2
- *   Mooney-Rivlin          C10 (I1' - 3) + C01 (I2' - 3) + kappa/2 (J - 1)^2
- *   Ogden                  2 mu/alpha^2 (l1^alpha + l2^alpha + l3^alpha - 3) + kappa/2 (J - 1)^2
- *   St. Venant-Kirchhoff   lambda/2 (tr E)^2 + mu E:E
- *
- * with I1', I2' and the stretches l isochoric (I1' = J^(-2/3) I1), C10 + C01 = mu/2, E = (F^T F - I)/2. */
+ * A law is one file of this folder, which begins with its energy, and one line of the table in law.c. */
 #pragma once
 
-enum material_model {
-    MATERIAL_NEO_HOOKEAN,
-    MATERIAL_NEO_HOOKEAN_LOG,
-    MATERIAL_MOONEY_RIVLIN,
-    MATERIAL_OGDEN,
-    MATERIAL_ST_VENANT_KIRCHHOFF,
-    MATERIAL_MODEL_COUNT
-};
+#include <stdbool.h>
+
+enum { MATERIAL_NEO_HOOKEAN = 0 }; /* the number of the law that has kernels of its own */
 
 struct material {
-    enum material_model model;
-    double shear_modulus; /* mu, Pa */
-    double bulk_modulus;  /* kappa, Pa */
-    double density;       /* kg/m3 */
-    double mooney_ratio;  /* C01 / C10 */
-    double ogden_alpha;
+    int model;                /* number of the law in material_laws, see law.h */
+    double shear_modulus;     /* mu at rest, Pa; of a law with fibres that of the isotropic tangent nearest to
+                                 its own, see law.h */
+    double bulk_modulus;      /* kappa, Pa */
+    double density;           /* kg/m3 */
+    const double *parameters; /* of the law, relative to the shear modulus; the caller's */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */
@@ -46,6 +35,9 @@ double material_isochoric_energy(const struct material *material, const double F
 
 /* P = dW_iso/dF. */
 void material_isochoric_stress(const struct material *material, const double F[9], double P[9]);
+
+/* Whether y(J) is defined for J > 0 only. */
+bool material_is_logarithmic(const struct material *material);
 
 /* y(J) and dy/dJ. */
 double material_volume_strain(const struct material *material, double J);

@@ -3,20 +3,6 @@
 
 #include "io/files/table.h"
 
-static void set_material(const struct scene_material *section, struct material *material)
-{
-    static const enum material_model models[] = {[SCENE_NEO_HOOKEAN] = MATERIAL_NEO_HOOKEAN,
-                                                 [SCENE_NEO_HOOKEAN_LOG] = MATERIAL_NEO_HOOKEAN_LOG,
-                                                 [SCENE_MOONEY_RIVLIN] = MATERIAL_MOONEY_RIVLIN,
-                                                 [SCENE_OGDEN] = MATERIAL_OGDEN,
-                                                 [SCENE_ST_VENANT_KIRCHHOFF] = MATERIAL_ST_VENANT_KIRCHHOFF};
-    *material = (struct material){.model = models[section->model],
-                                  .density = section->density,
-                                  .mooney_ratio = section->mooney_ratio,
-                                  .ogden_alpha = section->ogden_alpha};
-    material_set_moduli(material, section->youngs_modulus, section->poisson_ratio);
-}
-
 /* Check that row `row` of a table belongs to point q, and contains valid moduli. */
 static enum status check_row(const struct model *model, const struct scene_material *section,
                              const struct table *table, int64_t row, int64_t q, struct error *error)
@@ -128,7 +114,8 @@ enum status model_materials(struct model *model, struct error *error)
     RETURN_IF_ERROR(NEW_ARRAY(&list->section, scene->material_count + points, error));
     list->count = scene->material_count;
     for (int64_t m = 0; m < scene->material_count; m++) {
-        set_material(&scene->materials[m], &list->items[m]);
+        list->items[m] = scene->materials[m].material;
+        list->items[m].parameters = scene->materials[m].parameters;
         list->section[m] = (int32_t)m;
     }
     for (int64_t q = 0; q < points; q++) {
