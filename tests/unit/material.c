@@ -66,6 +66,24 @@ static void random_gradient(struct random *random, double F[9])
     } while (determinant(F) < 0.3 || determinant(F) > 3.0);
 }
 
+/* Uniaxial, biaxial, shear, volume, and all of these turned; then anything. */
+static void take_state(int round, struct random *random, double F[9])
+{
+    static const double states[4][9] = {{1.3, 0, 0, 0, 1, 0, 0, 0, 1},
+                                        {1.2, 0, 0, 0, 0.9, 0, 0, 0, 1},
+                                        {1, 0.4, 0, 0, 1, 0, 0, 0, 1},
+                                        {1.12, 0, 0, 0, 1.1, 0, 0, 0, 1.1}};
+    double Q[9];
+    random_rotation(random, Q);
+    if (round < 4) {
+        memcpy(F, states[round], sizeof states[round]);
+    } else if (round < 8) {
+        multiply(Q, states[round - 4], F);
+    } else {
+        random_gradient(random, F);
+    }
+}
+
 TEST(stress_is_gradient)
 {
     struct random random = {2};
@@ -74,7 +92,7 @@ TEST(stress_is_gradient)
     for (int m = 0; m < MATERIALS; m++) {
         for (int round = 0; round < 50; round++) {
             double F[9], P[9], h = 1e-5, scale = 1.0;
-            random_gradient(&random, F);
+            take_state(round, &random, F);
             stress(&all[m], F, P);
             for (int i = 0; i < 9; i++) {
                 scale = fmax(scale, fabs(P[i]));
@@ -110,7 +128,8 @@ TEST(pressure_is_derivative)
     }
 }
 
-/* Rotating the body afterwards turns the stress with it; the material has no direction. */
+/* Rotating the body afterwards turns the stress with it, so that P F^T is symmetric; rotating it before, with
+ * its fibres, as well. */
 TEST(rotations)
 {
     struct random random = {3};
@@ -118,21 +137,30 @@ TEST(rotations)
     make_all(all);
     for (int m = 0; m < MATERIALS; m++) {
         for (int round = 0; round < 50; round++) {
-            double F[9], Q[9], QF[9], FQ[9], P[9], turned[9], expected[9];
-            random_gradient(&random, F);
+            double F[9], Q[9], QF[9], FQ[9], P[9], turned[9], expected[9], fibre[6] = {0.0};
+            struct material before = all[m];
+            take_state(round, &random, F);
             random_rotation(&random, Q);
+            for (int i = 0; i < 18 && before.fibre != NULL; i++) {
+                fibre[i / 3] += Q[i % 3 * 3 + i / 3 % 3] * before.fibre[i / 9 * 3 + i % 3];
+            }
+            before.fibre = fibre;
             multiply(Q, F, QF);
             multiply(F, Q, FQ);
             double W = energy(&all[m], F);
             NEAR_TO(energy(&all[m], QF), W, 1e-11 * fabs(W) + 1e-9);
-            NEAR_TO(energy(&all[m], FQ), W, 1e-11 * fabs(W) + 1e-9);
+            NEAR_TO(energy(&before, FQ), W, 1e-11 * fabs(W) + 1e-9);
             stress(&all[m], F, P);
             multiply(Q, P, expected);
             stress(&all[m], QF, turned);
             ALL_NEAR(9, turned, expected, 1e-11 * fabs(W) + 1e-9);
             multiply(P, Q, expected);
-            stress(&all[m], FQ, turned);
+            stress(&before, FQ, turned);
             ALL_NEAR(9, turned, expected, 1e-11 * fabs(W) + 1e-9);
+            for (int i = 0; i < 3; i++) {
+                int j = 3 * ((i + 1) % 3), k = 3 * ((i + 2) % 3);
+                NEAR_TO(vector_dot(3, P + j, F + k), vector_dot(3, P + k, F + j), 1e-11 * fabs(W) + 1e-9);
+            }
             /* Rotation alone makes neither stress nor energy. */
             stress(&all[m], Q, P);
             NEAR_TO(energy(&all[m], Q), 0.0, 1e-10);
@@ -151,10 +179,43 @@ TEST(rest)
         stress(&all[m], identity, P);
         NEAR_TO(energy(&all[m], identity), 0.0, 0.0);
         ALL_NEAR(9, P, NULL, 0.0);
+        assert_true(material_is_elliptic(&all[m], 2, identity) && material_is_elliptic(&all[m], 3, identity));
     }
 }
 
-/* P = lambda tr(e) I + 2 mu e for small e, whatever the model. */
+/* A fifth of the sum of the eigenvalues of the tangent for isochoric strains is 2 mu, where fibres begin to
+ * be stretched. */
+TEST(mean_shear_modulus)
+{
+    struct material all[MATERIALS];
+    make_all(all);
+    for (int m = 0; m < MATERIALS; m++) {
+        double sum = 0.0, a[3] = {0.8, 0.6, 0.0};
+        for (int k = 0; k < 5; k++) {
+            double strain[9] = {0.0}, P[2][9], h = 1e-6;
+            static const double basis[5][9] = {{0, 1, 0, 1, 0, 0, 0, 0, 0},
+                                               {0, 0, 1, 0, 0, 0, 1, 0, 0},
+                                               {0, 0, 0, 0, 0, 1, 0, 1, 0},
+                                               {1, 0, 0, 0, -1, 0, 0, 0, 0},
+                                               {1, 0, 0, 0, 1, 0, 0, 0, -2}};
+            double square = vector_dot(9, basis[k], basis[k]);
+            for (int side = 0; side < 2; side++) {
+                for (int i = 0; i < 9; i++) {
+                    strain[i] = (i % 4 == 0) * (1.0 - 0.5e-4) + 1.5e-4 * a[i / 3] * a[i % 3] +
+                                (side == 0 ? h : -h) * basis[k][i];
+                }
+                material_isochoric_stress(&all[m], strain, P[side]);
+            }
+            vector_subtract(9, P[0], P[1], strain);
+            sum += vector_dot(9, strain, basis[k]) / (2.0 * h * square);
+        }
+        if (material_bulk(&all[m]) > 0.0) {
+            NEAR_TO(sum / 10.0, all[m].shear_modulus, 2e-3 * all[m].shear_modulus);
+        }
+    }
+}
+
+/* P = lambda tr(e) I + 2 mu e for small e, whatever the law without fibres. */
 TEST(small_strain)
 {
     struct random random = {4};
@@ -164,7 +225,7 @@ TEST(small_strain)
     for (int r = 0; r < 5; r++) {
         double mu = 3000.0 / 2.0 / (1.0 + ratios[r]);
         double lambda = 3000.0 * ratios[r] / (1.0 + ratios[r]) / (1.0 - 2.0 * ratios[r]);
-        for (int m = 0; m < MATERIALS; m++) {
+        for (int m = 0; m < MATERIALS && all[m].fibre == NULL; m++) {
             double F[9], P[9], strain = 1e-7;
             material_set_moduli(&all[m], 3000.0, ratios[r]);
             NEAR_TO(material_wave_modulus(&all[m]), lambda + 2.0 * mu, 1e-8 * (lambda + 2.0 * mu));
@@ -247,6 +308,44 @@ TEST(unconfined_compression)
             NEAR_TO(energy(&material, F), 70.051447, 5e-7);
         }
     }
+}
+
+/* Cauchy stress along axis k of an incompressible solid of one law, fibres along axis 0, free across. */
+static double uniaxial(const char *name, const double *numbers, int k, double s0, double s1, double s2)
+{
+    static const double fibre[6] = {1.0};
+    struct law_input input = {.given = {1, 1, 1, 1}};
+    struct law_fault fault;
+    double parameters[LAW_NUMBERS], P[9], F[9] = {s0, 0, 0, 0, s1, 0, 0, 0, s2};
+    struct material material = {.model = law_find(name), .parameters = parameters, .fibre = fibre};
+    memcpy(input.number, numbers, 5 * sizeof *numbers);
+    material.shear_modulus = law_prepare(material_laws[material.model], &input, parameters, &fault);
+    material_isochoric_stress(&material, F, P);
+    int side = k == 0 ? 4 : 0;
+    NEAR_TO(P[side] * F[side], P[8] * F[8], 1e-5);
+    return P[4 * k] * F[4 * k] - P[8] * F[8];
+}
+
+/* Closed forms of uniaxial stress: Weiss's law with c1 = c3 = c4 = 1; Guccione's with 2 kPa, 8, 2, 4, along
+ * and across; that of Holzapfel, Gasser and Ogden with both families along the axis. */
+TEST(fibres)
+{
+    static const double weiss[5] = {1, 0, 1, 1}, guccione[5] = {2, 8, 2, 4}, c = 2, k1 = 3, k2 = 4, d = 0.1;
+    static const double expected[3][3] = {{1.1, .70699, 2.42069}, {1.2, 1.43474, 8.09652}, {1.5, 3.81539, 0}};
+    for (int i = 0; i < 3; i++) {
+        double l = expected[i][0], s = 1.0 / sqrt(l),
+               E = d * (l * l + 2.0 / l - 3.0) + (1 - 3 * d) * (l * l - 1.0);
+        NEAR_TO(uniaxial("trans-iso", weiss, 0, l, s, s), expected[i][1], 5e-6);
+        if (i < 2) {
+            NEAR_TO(uniaxial("guccione", guccione, 0, l, s, s), expected[i][2], 5e-6);
+        }
+        NEAR_TO(uniaxial("holzapfel-gasser-ogden", (double[5]){c, k1, k2, d, 0}, 0, l, s, s),
+                c * (l * l - 1.0 / l) +
+                    4.0 * k1 * E * exp(k2 * E * E) * (d * (l * l - 1.0 / l) + (1.0 - 3.0 * d) * l * l),
+                1e-9 * exp(k2 * E * E));
+    }
+    NEAR_TO(uniaxial("guccione", guccione, 1, .983760, 1.1, .924098), .78445, 1e-5);
+    NEAR_TO(uniaxial("guccione", guccione, 1, .973817, 1.2, .855740), 1.90477, 2e-5);
 }
 
 TEST(confined_compression)

@@ -31,6 +31,9 @@ static const char full[] =
 
 #define HEAD "[scene]\ndim = 2\nanalysis = quasi-static\n"
 #define REGION "[material m]\nregion = r\n"
+#define HEAD3 "[scene]\ndim = 3\nanalysis = quasi-static\n"
+#define GUCCIONE REGION "model = guccione\nC = 9\nbf = 1\nbt = 1\nbfs = 1\nkappa = 1e5\n"
+#define HOLZAPFEL REGION "model = holzapfel-gasser-ogden\nc = 9\nk1 = 1\nk2 = 1\ngamma = 30\nkappa = 1e5\n"
 #define BODY REGION "E = 3000\nnu = .49\nrho = 1000\n"
 
 static void write_bytes(const char *bytes, size_t size)
@@ -239,6 +242,21 @@ TEST(material_keys)
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nc2 = -1\nnu = 0\n", 7, "c1: c1 + c2 is not positive");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nnu = 0\n", 4, "c2: missing");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nratio = 1\n", 8, "ratio: not allowed: it goes with E");
+    fails(HEAD BODY "fibre = 1, 0\n", 9, "fibre: not allowed: the law has no fibres");
+    fails(HEAD GUCCIONE, 4, "fibre: missing: give the direction of the fibres");
+    fails(HEAD GUCCIONE "fibre = 0, -0\n", 12, "fibre: has no length: give a direction, as 1, 0, 0");
+    fails(HEAD GUCCIONE "fibre = nan, 1\n", 12, "fibre: 'nan' is not a finite number");
+    fails(HEAD GUCCIONE "fibre = 0, 0, 1\n", 12, "fibre: has 3 components: dim = 2 needs 2");
+    fails(HEAD GUCCIONE "fibre = 0, 1\nfibre_plane = 0, 1\n", 13, "fibre_plane: not allowed: in 2D it is");
+    fails(HEAD3 GUCCIONE "fibre = 0, 1, 0\nfibre_plane = 1, 0, 0\n", 13, "the law has one family of fibres");
+    fails(HEAD3 HOLZAPFEL "fibre = 0, 1, 0\n", 4, "fibre_plane: missing: give a direction that spans");
+    fails(HEAD3 HOLZAPFEL "fibre = 0, 1, 0\nfibre_plane = 0, 2, 1e-7\n", 13, "no direction other than fibre");
+    fails(HEAD3 HOLZAPFEL "dispersion = .4\nfibre = 0, 1, 0\nfibre_plane = 1, 0, 0\n", 12,
+          "dispersion: .4 is not within [0, 0.333333]");
+    fails(HEAD REGION "model = trans-iso\nc1 = -1\nc3 = 1\nc4 = 1\nfibre = 0, 1\n", 7,
+          "c1: c1 + c2 is not positive");
+    fails(HEAD REGION "model = trans-iso\nc1 = 1\nc3 = 1\nc4 = 1\nc5 = 2\nfibre = 0, 1\n", 10,
+          "c5: not allowed: it goes with lambda_max");
     fails(HEAD BODY "model = yeoh\n", 6, "E: not allowed: the law has its own moduli");
     fails(HEAD REGION "model = yeoh\nc1 = 1\n", 4, "nu: missing: give Poisson's ratio, or kappa in Pa, or D");
     fails(HEAD BODY "table = t\n", 6, "E: not allowed: the table gives E and nu");
@@ -256,13 +274,17 @@ TEST(moduli)
     static const struct {
         const char *keys;
         double shear, bulk, parameter;
-    } cases[] = {{"E = 3000\nkappa = 50000\n", 3000 / 2.98, 50000, 0},
-                 {"mu = 3\nnu = 0.25\n", 3, 5, 0},
-                 {"model = st-venant-kirchhoff\nmu = 3\nD = 0.5\n", 3, 4, 0},
-                 {"model = mooney-rivlin\nc1 = 2\nc2 = 3\nkappa = 7\n", 10, 7, 1.5},
-                 {"model = mooney-rivlin\nratio = 3\nE = 9\nnu = 0\n", 4.5, 3, 3},
-                 {"model = ogden\nmu = 1, 2, 5\nalpha = 2, -3, .5\nkappa = 7\n", 8, 7, .125},
-                 {"model = yeoh\nc1 = 2\nc3 = 1\nkappa = 7\n", 4, 7, .5}};
+    } cases[] = {
+        {"E = 3000\nkappa = 50000\n", 3000 / 2.98, 50000, 0},
+        {"mu = 3\nnu = 0.25\n", 3, 5, 0},
+        {"model = st-venant-kirchhoff\nmu = 3\nD = 0.5\n", 3, 4, 0},
+        {"model = mooney-rivlin\nc1 = 2\nc2 = 3\nkappa = 7\n", 10, 7, 1.5},
+        {"model = mooney-rivlin\nratio = 3\nE = 9\nnu = 0\n", 4.5, 3, 3},
+        {"model = ogden\nmu = 1, 2, 5\nalpha = 2, -3, .5\nkappa = 7\n", 8, 7, .125},
+        {"model = yeoh\nc1 = 2\nc3 = 1\nkappa = 7\n", 4, 7, .5},
+        {"model = trans-iso\nc1 = 1\nc3 = 5\nc4 = 6\nfibre = 3, 4\nkappa = 7\n", 4, 7, .25},
+        {"model = guccione\nC = 2\nbf = 8\nbt = 2\nbfs = 4\nfibre = 1, 0\nkappa = 7\n", 3.6, 7, 2 / 3.6},
+        {"model = holzapfel-gasser-ogden\nc = 1\nk1 = 15\nk2 = 2\nfibre = 1, 0\nkappa = 7\n", 9, 7, 1. / 9}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         FREED_BY(scene_free) struct scene scene = {0};
         char text[256];

@@ -3,15 +3,11 @@
 #include <string.h>
 
 extern const struct law law_neo_hookean, law_neo_hookean_log, law_mooney_rivlin, law_ogden,
-    law_st_venant_kirchhoff, law_yeoh;
+    law_st_venant_kirchhoff, law_yeoh, law_trans_iso, law_guccione, law_holzapfel;
 
-const struct law *const material_laws[] = {&law_neo_hookean,
-                                           &law_neo_hookean_log,
-                                           &law_mooney_rivlin,
-                                           &law_ogden,
-                                           &law_st_venant_kirchhoff,
-                                           &law_yeoh,
-                                           NULL};
+const struct law *const material_laws[] = {
+    &law_neo_hookean, &law_neo_hookean_log, &law_mooney_rivlin, &law_ogden,     &law_st_venant_kirchhoff,
+    &law_yeoh,        &law_trans_iso,       &law_guccione,      &law_holzapfel, NULL};
 
 const int law_count = (int)(sizeof material_laws / sizeof material_laws[0]) - 1;
 

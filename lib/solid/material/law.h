@@ -45,6 +45,8 @@ struct law {
     const struct law_key *keys; /* the last one has no name */
     bool by_e;                  /* its stiffness may be given by E */
     enum law_volume volume;
+    bool has_fibres;
+    const char *plane; /* the key that, if given, needs the plane of two families of fibres; NULL: none */
     /* From a section's numbers, within their ranges, to the law's parameters relative to the shear modulus at
      * rest, which is returned, Pa; 0 where that comes from E; negative: *fault says why the law has none, as
      * where it is not elliptic at rest. With fibres the shear modulus is mu of the tangent 2 mu e:e for
@@ -76,3 +78,7 @@ void neo_hookean_stress(double mu, const double F[9], double P[9]);
 /* c1 (I1' - 3) + c2 (I2' - 3) */
 double mooney_energy(double c1, double c2, const double F[9]);
 void mooney_stress(double c1, double c2, const double F[9], double P[9]);
+
+/* I4' = J^(-2/3) |F a|^2 of the unit vector a, and P += slope dI4'/dF. */
+double fibre_square(const double F[9], const double a[3]);
+void add_fibre_stress(const double F[9], const double a[3], double slope, double P[9]);

@@ -19,6 +19,8 @@ struct material {
     double bulk_modulus;      /* kappa, Pa */
     double density;           /* kg/m3 */
     const double *parameters; /* of the law, relative to the shear modulus; the caller's */
+    const double *fibre; /* unit vectors at rest: along the fibres and, or zeros, across them in the plane
+                            of two families; the caller's; NULL: the law has no fibres */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */

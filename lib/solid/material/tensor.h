@@ -36,3 +36,11 @@ static inline void green_lagrange(const double F[9], double E[9])
         E[i] = 0.5 * (E[i] - (i % 4 == 0 ? 1.0 : 0.0));
     }
 }
+
+/* y = A x */
+static inline void transform(const double A[9], const double x[3], double y[3])
+{
+    for (int i = 0; i < 3; i++) {
+        y[i] = vector_dot(3, A + 3 * i, x);
+    }
+}

@@ -1,7 +1,13 @@
 #include "model/model.h"
 #include "model/tissue.h"
 
+#include "base/vector.h"
 #include "io/files/table.h"
+
+static bool has_fibres(const struct scene_material *section)
+{
+    return vector_dot(3, section->directions, section->directions) > 0.0;
+}
 
 /* Check that row `row` of a table belongs to point q, and contains valid moduli. */
 static enum status check_row(const struct model *model, const struct scene_material *section,
@@ -116,6 +122,7 @@ enum status model_materials(struct model *model, struct error *error)
     for (int64_t m = 0; m < scene->material_count; m++) {
         list->items[m] = scene->materials[m].material;
         list->items[m].parameters = scene->materials[m].parameters;
+        list->items[m].fibre = has_fibres(&scene->materials[m]) ? scene->materials[m].directions : NULL;
         list->section[m] = (int32_t)m;
     }
     for (int64_t q = 0; q < points; q++) {
