@@ -112,6 +112,9 @@ denied() {
 # bats test_tags=thorough
 @test "fault 25: mtled, contact with a rigid surface in 3D" {
     denied mtled cube.scene cube.mts
+    mts print nodes.x cube.mts | sed 's/$/ 1 0 0/' > fibres.tsv
+    sed 's/^E = .*/model = guccione\nC = 2000\nbf = 1\nbt = 1\nbfs = 1\nfibres = fibres.tsv\nunit = m/' cube.scene > fibres.scene
+    denied mtled fibres.scene cube.mts
 }
 
 @test "fault 25: mtled, loads, in time" {

@@ -176,6 +176,7 @@ static const struct scene_key material_keys[] = {
     {"D", VALUE_POSITIVE, AT(scene_material, compressibility)},
     {"rho", VALUE_POSITIVE, AT(scene_material, material.density)},
     {"fibre", VALUE_VECTOR, AT(scene_material, fibre)},
+    {"fibres", VALUE_TABLE, AT(scene_material, fibres)},
     {"fibre_plane", VALUE_VECTOR, AT(scene_material, fibre_plane)},
     {"table", VALUE_TABLE, AT(scene_material, table)},
     {"unit", VALUE_UNIT, AT(scene_material, table_unit)},

@@ -1,5 +1,4 @@
 /* The section [material NAME]: its law, the parameters of this, and the moduli at rest. */
-#include "base/vector.h"
 #include "io/scene/scene_kinds.h"
 
 #include <math.h>
@@ -156,56 +155,39 @@ static enum status set_law(const struct place *place, struct scene_material *sec
     return section->table != NULL ? STATUS_OK : set_moduli(place, shear, section);
 }
 
-/* Make v a unit vector orthogonal to the unit vector u, or to none if this is NULL; false if it has no
- * direction of its own. */
-static bool orthonormalise(const double *u, double v[3])
+static enum status forbid_fibres(const struct place *place)
 {
-    double most = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    for (int i = 0; i < 3 && most > 0.0; i++) {
-        v[i] /= most;
-    }
-    double before = vector_length(3, v);
-    if (u != NULL) {
-        add_scaled(3, -vector_dot(3, u, v), u, v);
-    }
-    double length = vector_length(3, v);
-    for (int i = 0; i < 3 && length > 0.0; i++) {
-        v[i] /= length;
-    }
-    return most > 0.0 && length > 1e-6 * before;
+    static const char *const keys[] = {"fibre", "fibres", "fibre_plane", NULL};
+    return place_forbid_all(place, keys, "the law has no fibres");
 }
 
-/* The directions of the fibres, where the law has some. */
+/* The directions of the fibres, where the law has some: for the region, or in a table. */
 static enum status set_fibres(const struct place *place, const struct law *law, int dim,
                               struct scene_material *section)
 {
-    double *along = section->directions, *across = along + 3;
-    if (!law->has_fibres) {
-        RETURN_IF_ERROR(place_forbid(place, "fibre", "the law has no fibres"));
-        return place_forbid(place, "fibre_plane", "the law has no fibres");
-    }
-    RETURN_IF_ERROR(place_require(place, "fibre", "give the direction of the fibres at rest, as 1, 0, 0"));
-    memcpy(along, section->fibre, sizeof section->fibre);
-    if (!orthonormalise(NULL, along)) {
-        return place_fail(place, "fibre", "has no length: give a direction, as 1, 0, 0");
+    bool given = place_has(place, "fibre_plane");
+    const double *fibre = section->fibre, *plane = section->fibre_plane;
+    if (place_has(place, "fibres")) {
+        RETURN_IF_ERROR(place_forbid(place, "fibre", "the table fibres gives the directions"));
+    } else {
+        RETURN_IF_ERROR(place_require(
+            place, "fibre", "give the direction of the fibres at rest, as 1, 0, 0, or a table by fibres"));
+        if (!fibre_frame(dim, fibre, NULL, section->directions)) {
+            return place_fail(place, "fibre", "has no length: give a direction, as 1, 0, 0");
+        }
     }
     if (dim == 2 || law->plane == NULL) {
-        across[0] = dim == 2 ? -along[1] : 0.0;
-        across[1] = dim == 2 ? along[0] : 0.0;
         return place_forbid(place, "fibre_plane",
                             dim == 2 ? "in 2D it is the plane of the body"
                                      : "the law has one family of fibres");
     }
-    memcpy(across, section->fibre_plane, sizeof section->fibre_plane);
-    if (!place_has(place, "fibre_plane")) {
-        return place_has(place, law->plane)
-                   ? place_require(place, "fibre_plane",
-                                   "give a direction that spans the plane of both families with fibre")
-                   : STATUS_OK;
+    if (!given && place_has(place, law->plane)) {
+        return place_require(place, "fibre_plane",
+                             "give a direction that spans the plane of both families with fibre");
     }
-    return orthonormalise(along, across)
-               ? STATUS_OK
-               : place_fail(place, "fibre_plane", "has no direction other than fibre");
+    bool good = !given || fibre_frame(dim, section->fibres != NULL ? plane : fibre,
+                                      section->fibres != NULL ? NULL : plane, section->directions);
+    return good ? STATUS_OK : place_fail(place, "fibre_plane", "has no direction other than fibre");
 }
 
 /* Without motion and weight the density has no effect. */
@@ -229,7 +211,8 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
     if (!place_has(place, "rho")) {
         section->material.density = no_matter;
     }
-    RETURN_IF_ERROR(set_fibres(place, material_laws[section->material.model], scene->dim, section));
+    const struct law *law = material_laws[section->material.model];
+    RETURN_IF_ERROR(law->has_fibres ? set_fibres(place, law, scene->dim, section) : forbid_fibres(place));
     if (section->table != NULL) {
         RETURN_IF_ERROR(place_forbid_all(place, moduli, "the table gives E and nu"));
     }

@@ -295,7 +295,8 @@ enum status place_check_units(const struct place *place, const struct scene_key 
 static enum status read_unit(const struct place *place, const char *key, const char *text, double *metres)
 {
     struct error why;
-    if (!place_has(place, "table") && !place_has(place, "points") && !place_has(place, "rigid")) {
+    if (!place_has(place, "table") && !place_has(place, "fibres") && !place_has(place, "points") &&
+        !place_has(place, "rigid")) {
         return place_forbid(place, key, "it is the unit of a file, and none is named");
     }
     return parse_length_unit(text, key, metres, &why) == STATUS_OK

@@ -79,6 +79,10 @@ void neo_hookean_stress(double mu, const double F[9], double P[9]);
 double mooney_energy(double c1, double c2, const double F[9]);
 void mooney_stress(double c1, double c2, const double F[9], double P[9]);
 
+/* frame[6]: unit vectors along the fibres and across them in the plane that `plane` spans with `along`; in 2D
+ * that of the body, and zeros if `plane` is NULL. false if one of the two has no direction. */
+bool fibre_frame(int dim, const double along[3], const double *plane, double frame[6]);
+
 /* I4' = J^(-2/3) |F a|^2 of the unit vector a, and P += slope dI4'/dF. */
 double fibre_square(const double F[9], const double a[3]);
 void add_fibre_stress(const double F[9], const double a[3], double slope, double P[9]);

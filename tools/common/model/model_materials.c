@@ -132,6 +132,9 @@ enum status model_materials(struct model *model, struct error *error)
         if (scene->materials[m].table != NULL) {
             RETURN_IF_ERROR(add_point_table(model, m, error));
         }
+        if (scene->materials[m].fibres != NULL) {
+            RETURN_IF_ERROR(model_fibres(model, m, error));
+        }
     }
     return STATUS_OK;
 }
