@@ -54,6 +54,8 @@ alpha = 3
 E = 3000
 nu = 0.4995
 rho = 1000
+fibre = 1, 1, 0
+active = 200
 [displacement bottom]
 facets = zmin
 components = 0, 0, 0

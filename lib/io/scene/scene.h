@@ -50,6 +50,7 @@ struct scene_material {
                                  given is 1000, which has no effect at rest without gravity */
     double fibre[3], fibre_plane[3]; /* as given; zeros: not given */
     double directions[6];            /* of the fibres, as in struct material; zeros: none, or by the table */
+    struct scene_curve curve;        /* of material.active */
     const char *fibres;              /* NULL, or rows (dim coordinates, direction of the fibres) */
     const char *table; /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
     double table_unit; /* m per unit of the table's coordinates */

@@ -176,6 +176,8 @@ static const struct scene_key material_keys[] = {
     {"D", VALUE_POSITIVE, AT(scene_material, compressibility)},
     {"rho", VALUE_POSITIVE, AT(scene_material, material.density)},
     {"fibre", VALUE_VECTOR, AT(scene_material, fibre)},
+    {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active)},
+    {"curve", VALUE_CURVE, AT(scene_material, curve)},
     {"fibres", VALUE_TABLE, AT(scene_material, fibres)},
     {"fibre_plane", VALUE_VECTOR, AT(scene_material, fibre_plane)},
     {"table", VALUE_TABLE, AT(scene_material, table)},

@@ -158,7 +158,7 @@ static enum status set_law(const struct place *place, struct scene_material *sec
 static enum status forbid_fibres(const struct place *place)
 {
     static const char *const keys[] = {"fibre", "fibres", "fibre_plane", NULL};
-    return place_forbid_all(place, keys, "the law has no fibres");
+    return place_forbid_all(place, keys, "the law has no fibres, and no active stress is given");
 }
 
 /* The directions of the fibres, where the law has some: for the region, or in a table. */
@@ -212,7 +212,15 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
         section->material.density = no_matter;
     }
     const struct law *law = material_laws[section->material.model];
-    RETURN_IF_ERROR(law->has_fibres ? set_fibres(place, law, scene->dim, section) : forbid_fibres(place));
+    if (place_has(place, "active") && scene->analysis == SCENE_DYNAMIC) {
+        return place_fail(place, "active", "not allowed: it belongs to quasi-static scenes");
+    }
+    if (!place_has(place, "active")) {
+        RETURN_IF_ERROR(place_forbid(place, "curve", "it is that of active, which is not given"));
+    }
+    RETURN_IF_ERROR(law->has_fibres || place_has(place, "active")
+                        ? set_fibres(place, law, scene->dim, section)
+                        : forbid_fibres(place));
     if (section->table != NULL) {
         RETURN_IF_ERROR(place_forbid_all(place, moduli, "the table gives E and nu"));
     }

@@ -141,6 +141,7 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     RETURN_IF_ERROR(NEW_ARRAY(&system->factor, system->curve_count, error));
     RETURN_IF_ERROR(lump_mass(input, system, error));
     RETURN_IF_ERROR(build_body(input, system, error));
+    system->body.load_factors = (const double *const *)&system->factor;
     RETURN_IF_ERROR(assembly_add_loads(input, system, error));
     RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
     RETURN_IF_ERROR(assembly_add_points(input, system, note, error));

@@ -7,6 +7,7 @@
 #include "solid/body/nodal_volume.h"
 #include "solid/material/law.h"
 
+#include <math.h>
 #include <omp.h>
 #include <string.h>
 
@@ -16,9 +17,11 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
+/* The law of a point, which with active stress counts as another one: it has no kernel of its own. */
 static int model_of(const struct body_input *input, int64_t point)
 {
-    return input->materials[input->material[point]].model;
+    const struct material *material = &input->materials[input->material[point]];
+    return material->model + (fabs(material->active) > 0.0 ? law_count : 0);
 }
 
 /* Order the points by material law, so that each block has one law, and within a law along a Morton curve, so
@@ -83,7 +86,7 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
 {
     int64_t most = points_of_block(body->dim);
     RETURN_IF_ERROR(
-        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + law_count + 1, error));
+        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + 2 * law_count + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
         int model = model_of(input, body->order[q]);

@@ -97,6 +97,8 @@ struct body {
     int32_t *node_place;        /* node_count: the body's index of each of the caller's nodes */
     double *weight;             /* point_count */
     struct material *materials; /* material_count */
+    const double *const *load_factors; /* present values of the load curves, set by the caller after
+                                          body_build: of active stresses; NULL: there are none */
     int64_t material_count;
     int32_t *material; /* point_count */
     int64_t block_count;
@@ -148,9 +150,9 @@ bool body_is_limited(const struct body *body);
 /* Augmentation: the nodal pressures of the last evaluation become the held ones. Where the body can change
  * its volume, few augmentations suffice; where it is confined, each one supplies only the share limited /
  * bulk of what the pressures lack. `steady`: the load was the same at the last two augmentations; where their
- * changes form a geometric sequence, and they lack more than `most`, its limit is held (Aitken's extrapolation). Returns an estimate of what
- * the pressures still lack, relative to the pressures or to the shear stress at `strain`, whichever is
- * larger; INFINITY: not known yet. */
+ * changes form a geometric sequence, and they lack more than `most`, its limit is held (Aitken's
+ * extrapolation). Returns an estimate of what the pressures still lack, relative to the pressures or to the
+ * shear stress at `strain`, whichever is larger; INFINITY: not known yet. */
 double body_augment(struct body *body, bool steady, double most, double strain);
 
 /* The largest relative lack of the pressures in an accepted state. */

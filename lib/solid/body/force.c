@@ -243,7 +243,7 @@ double body_volume(const struct body *body)
 static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double sum = material_isochoric_energy(material, F);
+    double sum = material_isochoric_energy(material, F) + stress_active_energy(body, q, F);
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
     *(double *)energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
 }

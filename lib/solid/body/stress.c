@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "solid/material/ellipticity.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Volumetric pressure at a point, Pa; negative in compression. */
@@ -24,11 +25,43 @@ void stress_matrix(int dim, const double *row, int64_t apart, double F[9])
     }
 }
 
+/* The active stress T of a point, Pa. */
+static double active_stress(const struct body *body, const struct material *material)
+{
+    return fabs(material->active) > 0.0 ? material->active * (*body->load_factors)[material->active_curve]
+                                        : 0.0;
+}
+
+double stress_active_energy(const struct body *body, int64_t point, const double F[9])
+{
+    const struct material *material = &body->materials[body->material[point]];
+    double T = active_stress(body, material), square = -1.0;
+    if (!(fabs(T) > 0.0)) {
+        return 0.0;
+    }
+    for (int i = 0; i < 3; i++) {
+        double along = vector_dot(3, F + 3 * i, material->fibre);
+        square += along * along;
+    }
+    return 0.5 * T * square;
+}
+
+/* The stress of the law but for its volumetric part, and T F a (x) a. */
+static void isochoric_stress(const struct body *body, int64_t q, const double F[9], double P[9])
+{
+    const struct material *material = &body->materials[body->material[q]];
+    double T = active_stress(body, material);
+    material_isochoric_stress(material, F, P);
+    for (int i = 0; i < 3 && fabs(T) > 0.0; i++) {
+        add_scaled(3, T * vector_dot(3, F + 3 * i, material->fibre), material->fibre, P + 3 * i);
+    }
+}
+
 /* P at a point: the isochoric part, and the volumetric part along the cofactor of F. */
 static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
 {
     double C[9];
-    material_isochoric_stress(&body->materials[body->material[q]], F, P);
+    isochoric_stress(body, q, F, P);
     cofactor(F, C);
     double pressure = point_pressure(body, q, J);
     for (int k = 0; k < 9; k++) {
@@ -106,13 +139,12 @@ static void cofactor_along(const double H[9], const double D[9], double along[9]
 
 static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
 {
-    const struct material *material = &body->materials[body->material[q]];
     double F[9], H[9], C[9], D[9], along[9];
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     vector_subtract(9, H, F, D);
     double pressure = point_pressure(body, q, body->J[q]);
-    material_isochoric_stress(material, F, P);
+    isochoric_stress(body, q, F, P);
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {

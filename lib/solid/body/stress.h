@@ -16,5 +16,8 @@ void stress_points(const struct body *body, const struct block *block, block_row
 /* Weighted stresses of a block of cells, P on F and T on F_h: see smoothed_cells.h. */
 void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
 
+/* Energy of the active stress at a point at present, per volume, Pa. */
+double stress_active_energy(const struct body *body, int64_t point, const double F[9]);
+
 /* Energy of the variance of a cell's gradient at the last evaluation, J (2D: J/m): see smoothed_cells.h. */
 double stress_variance_energy(const struct body *body, int64_t point);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { MATERIAL_NEO_HOOKEAN = 0 }; /* the number of the law that has kernels of its own */
 
@@ -19,8 +20,11 @@ struct material {
     double bulk_modulus;      /* kappa, Pa */
     double density;           /* kg/m3 */
     const double *parameters; /* of the law, relative to the shear modulus; the caller's */
-    const double *fibre; /* unit vectors at rest: along the fibres and, or zeros, across them in the plane
-                            of two families; the caller's; NULL: the law has no fibres */
+    const double *fibre;  /* unit vectors at rest: along the fibres and, or zeros, across them in the plane
+                             of two families; the caller's; NULL: there are no fibres */
+    double active;        /* second Piola-Kirchhoff stress along the fibres, Pa, times a load curve, which
+                             the body adds: T/2 (|F a|^2 - 1); 0: none */
+    int32_t active_curve; /* of body->load_factors */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */

@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Append a curve; *index receives its number. */
-static enum status add_curve(struct model *model, const struct scene_label *label,
-                             const struct scene_curve *curve, int32_t *index, struct error *error)
+enum status model_add_curve(struct model *model, const struct scene_label *label,
+                            const struct scene_curve *curve, int32_t *index, struct error *error)
 {
     static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
                                             [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
@@ -50,7 +49,7 @@ static enum status add_displacement(struct model *model, const struct scene_disp
                                     .table = section->table};
     memcpy(condition->components, section->components, sizeof section->components);
     memcpy(condition->is_free, section->is_free, sizeof section->is_free);
-    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    RETURN_IF_ERROR(model_add_curve(model, &section->label, &section->curve, &condition->curve, error));
     if (section->kind == SCENE_POINTS) {
         return model_points(model, section, condition, error);
     }
@@ -108,7 +107,7 @@ static enum status add_load(struct model *model, const struct scene_load *sectio
     if (section->density > 0.0) {
         RETURN_IF_ERROR(set_fluid(model, section, load, error));
     }
-    return add_curve(model, &section->label, &section->curve, &load->curve, error);
+    return model_add_curve(model, &section->label, &section->curve, &load->curve, error);
 }
 
 static enum status add_loads(struct model *model, struct error *error)
@@ -130,7 +129,7 @@ static enum status add_loads(struct model *model, struct error *error)
     input->loads = loads;
     memcpy(input->gravity, scene->gravity, sizeof input->gravity);
     if (assembly_has_gravity(input)) {
-        RETURN_IF_ERROR(add_curve(model, NULL, &curve, &input->gravity_curve, error));
+        RETURN_IF_ERROR(model_add_curve(model, NULL, &curve, &input->gravity_curve, error));
     }
     for (int k = 0; k < 3; k++) {
         for (int64_t i = 0; i < kinds[k].count; i++) {
@@ -166,8 +165,9 @@ static enum status add_contact(struct model *model, const struct scene_contact *
         motion->point[i] = section->axis_point[i];
         motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
     }
-    RETURN_IF_ERROR(add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
-    return add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
+    RETURN_IF_ERROR(
+        model_add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
+    return model_add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
 }
 
 /* Add the contacts of the scene that the model does not have; those it has keep their curves, which belong to

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* A point must not be farther from the rows of the table than this many of their spacings, or cells: on a lattice none
- * is farther than .87, and among random rows one in a million. */
+/* A point must not be farther from the rows of the table than this many of their spacings, or cells: on a
+ * lattice none is farther than .87, and among random rows one in a million. */
 static const double most_spacings = 1.5;
 /* The difference of the largest two eigenvalues of the mean of a (x) a, of trace 1, below which the mean has
  * no direction. */

@@ -124,6 +124,10 @@ enum status model_materials(struct model *model, struct error *error)
         list->items[m].parameters = scene->materials[m].parameters;
         list->items[m].fibre = has_fibres(&scene->materials[m]) ? scene->materials[m].directions : NULL;
         list->section[m] = (int32_t)m;
+        if (list->items[m].active > 0.0) {
+            RETURN_IF_ERROR(model_add_curve(model, &scene->materials[m].label, &scene->materials[m].curve,
+                                            &list->items[m].active_curve, error));
+        }
     }
     for (int64_t q = 0; q < points; q++) {
         list->of_point[q] = list->of_cell[model->assembly.point_cell[q]];
