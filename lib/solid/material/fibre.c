@@ -34,21 +34,27 @@ bool fibre_frame(int dim, const double along[3], const double *plane, double fra
     return good && (plane == NULL || orthonormalise(frame, across));
 }
 
-double fibre_square(const double F[9], const double a[3])
+double isochoric_scale(const double F[9])
 {
-    double Fa[3], J = determinant(F);
+    double J = determinant(F);
+    return 1.0 / cbrt(J * J);
+}
+
+double fibre_square(double scale, const double F[9], const double a[3])
+{
+    double Fa[3];
     transform(F, a, Fa);
-    return vector_dot(3, Fa, Fa) / cbrt(J * J);
+    return scale * vector_dot(3, Fa, Fa);
 }
 
 /* dI4'/dF = 2 J^(-2/3) (F a) (x) a - 2/3 I4' F^-T */
-void add_fibre_stress(const double F[9], const double a[3], double slope, double P[9])
+void add_fibre_stress(double scale, const double F[9], const double a[3], double slope, double P[9])
 {
-    double Fa[3], C[9], J = determinant(F);
+    double Fa[3], C[9];
     transform(F, a, Fa);
     cofactor(F, C);
-    double scale = 2.0 * slope / cbrt(J * J), third = vector_dot(3, Fa, Fa) / (3.0 * J);
+    double along = 2.0 * slope * scale, third = vector_dot(3, Fa, Fa) / (3.0 * determinant(F));
     for (int i = 0; i < 9; i++) {
-        P[i] += scale * (Fa[i / 3] * a[i % 3] - third * C[i]);
+        P[i] += along * (Fa[i / 3] * a[i % 3] - third * C[i]);
     }
 }

@@ -4,9 +4,12 @@
 #include "solid/material/law.h"
 #include "solid/material/tensor.h"
 
-enum { C, K1, K2, DISPERSION, GAMMA };
+enum { C, K1, K2, DISPERSION, GAMMA, COSINE = GAMMA, SINE };
 
-/* The parameters are the numbers of the keys, those in Pa relative to mu. At rest a family has the modulus 4
+static const double degree = 3.14159265358979323846 / 180.0;
+
+/* The parameters are the numbers of the keys, those in Pa relative to mu, and the cosine and sine of
+ * gamma. At rest a family has the modulus 4
  * k1 (1 - 3 d)^2 along its direction. */
 static double prepare(const struct law_input *input, double *parameters, struct law_fault *fault)
 {
@@ -14,37 +17,38 @@ static double prepare(const struct law_input *input, double *parameters, struct 
     const double *number = input->number;
     double aligned = 1.0 - 3.0 * number[DISPERSION];
     double mu = number[C] + 2.0 * 4.0 * number[K1] * aligned * aligned / 15.0;
-    for (int i = C; i <= GAMMA; i++) {
+    for (int i = C; i < GAMMA; i++) {
         parameters[i] = number[i] / (i <= K1 ? mu : 1.0);
     }
+    parameters[COSINE] = cos(number[GAMMA] * degree);
+    parameters[SINE] = sin(number[GAMMA] * degree);
     return mu;
 }
 
 /* The direction of family 0 or 1. */
 static void direction(const struct material *material, int family, double a[3])
 {
-    static const double degree = 3.14159265358979323846 / 180.0;
-    double gamma = (family == 0 ? degree : -degree) * material->parameters[GAMMA];
+    double along = material->parameters[COSINE], across = material->parameters[SINE];
     for (int i = 0; i < 3; i++) {
-        a[i] = cos(gamma) * material->fibre[i] + sin(gamma) * material->fibre[3 + i];
+        a[i] = along * material->fibre[i] + (family == 0 ? across : -across) * material->fibre[3 + i];
     }
 }
 
 /* E, where it is positive. */
-static double strain(const struct material *material, const double F[9], const double a[3])
+static double strain(const struct material *material, double scale, const double F[9], const double a[3])
 {
-    double d = material->parameters[DISPERSION], J = determinant(F);
-    double E = d * (norm2(F) / cbrt(J * J) - 3.0) + (1.0 - 3.0 * d) * (fibre_square(F, a) - 1.0);
+    double d = material->parameters[DISPERSION];
+    double E = d * (scale * norm2(F) - 3.0) + (1.0 - 3.0 * d) * (fibre_square(scale, F, a) - 1.0);
     return fmax(E, 0.0);
 }
 
 static double energy(const struct material *material, const double F[9])
 {
     const double *p = material->parameters;
-    double a[3], sum = neo_hookean_energy(p[C], F);
+    double a[3], scale = isochoric_scale(F), sum = neo_hookean_energy(p[C], F);
     for (int family = 0; family < 2; family++) {
         direction(material, family, a);
-        double E = strain(material, F, a);
+        double E = strain(material, scale, F, a);
         sum += p[K1] / (2.0 * p[K2]) * expm1(p[K2] * E * E);
     }
     return material->shear_modulus * sum;
@@ -53,16 +57,16 @@ static double energy(const struct material *material, const double F[9])
 static void stress(const struct material *material, const double F[9], double P[9])
 {
     const double *p = material->parameters;
-    double a[3], slope[2], mu = material->shear_modulus, d = p[DISPERSION];
+    double a[3], slope[2], mu = material->shear_modulus, d = p[DISPERSION], scale = isochoric_scale(F);
     for (int family = 0; family < 2; family++) {
         direction(material, family, a);
-        double E = strain(material, F, a);
+        double E = strain(material, scale, F, a);
         slope[family] = mu * p[K1] * E * exp(p[K2] * E * E);
     }
     neo_hookean_stress(mu * p[C] + 2.0 * d * (slope[0] + slope[1]), F, P);
     for (int family = 0; family < 2; family++) {
         direction(material, family, a);
-        add_fibre_stress(F, a, (1.0 - 3.0 * d) * slope[family], P);
+        add_fibre_stress(scale, F, a, (1.0 - 3.0 * d) * slope[family], P);
     }
 }
 

@@ -83,6 +83,7 @@ void mooney_stress(double c1, double c2, const double F[9], double P[9]);
  * that of the body, and zeros if `plane` is NULL. false if one of the two has no direction. */
 bool fibre_frame(int dim, const double along[3], const double *plane, double frame[6]);
 
-/* I4' = J^(-2/3) |F a|^2 of the unit vector a, and P += slope dI4'/dF. */
-double fibre_square(const double F[9], const double a[3]);
-void add_fibre_stress(const double F[9], const double a[3], double slope, double P[9]);
+/* J^(-2/3) of F; with it I4' = J^(-2/3) |F a|^2 of the unit vector a, and P += slope dI4'/dF. */
+double isochoric_scale(const double F[9]);
+double fibre_square(double scale, const double F[9], const double a[3]);
+void add_fibre_stress(double scale, const double F[9], const double a[3], double slope, double P[9]);

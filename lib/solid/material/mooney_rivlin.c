@@ -14,6 +14,9 @@ void mooney_stress(double c1, double c2, const double F[9], double P[9])
 {
     double cof[9], C[9], FC[9], J = determinant(F), I1 = norm2(F);
     neo_hookean_stress(2.0 * c1, F, P);
+    if (!(fabs(c2) > 0.0)) {
+        return;
+    }
     cofactor(F, cof);
     right_cauchy_green(F, C);
     double I2 = 0.5 * (I1 * I1 - norm2(C));

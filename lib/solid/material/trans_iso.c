@@ -50,7 +50,7 @@ static double exponential_integral(double c, double l)
 static double energy(const struct material *material, const double F[9])
 {
     const double *p = material->parameters;
-    double l = sqrt(fibre_square(F, material->fibre)), most = longest(p);
+    double l = sqrt(fibre_square(isochoric_scale(F), F, material->fibre)), most = longest(p);
     double sum = mooney_energy(p[C1], p[C2], F);
     if (l > 1.0) {
         sum += p[C3] * exponential_integral(p[C4], fmin(l, most));
@@ -64,11 +64,12 @@ static double energy(const struct material *material, const double F[9])
 static void stress(const struct material *material, const double F[9], double P[9])
 {
     const double *p = material->parameters;
-    double mu = material->shear_modulus, square = fibre_square(F, material->fibre), l = sqrt(square);
+    double mu = material->shear_modulus, scale = isochoric_scale(F);
+    double square = fibre_square(scale, F, material->fibre), l = sqrt(square);
     mooney_stress(mu * p[C1], mu * p[C2], F, P);
     if (l > 1.0) {
         double along = l < longest(p) ? p[C3] * expm1(p[C4] * (l - 1.0)) : p[C5] * l + offset(p);
-        add_fibre_stress(F, material->fibre, mu * along / (2.0 * square), P);
+        add_fibre_stress(scale, F, material->fibre, mu * along / (2.0 * square), P);
     }
 }
 
