@@ -212,7 +212,7 @@ modules() { awk -F '[|`]' -v head="| module of \`$1\` |" 'index($0, head) == 1 {
     printf '[scene]\ndim = 2\nanalysis = quasi-static\n[material all]\nregion = body\nE = 3000\nnu = 0.4\nrho = 1000\n' > all.scene
     printf '[displacement low]\nfacets = ymin\ncomponents = 0, 0\n[displacement high]\nfacets = ymax\ncomponents = 0, -0.01\n' >> all.scene
     printf '[contact wall]\nfacets = xmax\nrigid = wall.tsv\nunit = m\nside = left\n' >> all.scene
-    printf '[output]\nframes = 1\nstress = yes\nstrain = yes\npressure = yes\nvolume_ratio = yes\nreactions = yes\nmoments = yes\ngaps = yes\nenergy = yes\n' >> all.scene
+    printf '[output]\nframes = 1\nstress = yes\nstrain = yes\npressure = yes\nvolume_ratio = yes\nfibre = yes\nreactions = yes\nmoments = yes\ngaps = yes\nenergy = yes\n' >> all.scene
     printf '2 -1\n2 2\n' > wall.tsv
     mtled all.scene table.mts > u.dat
     interp -f u --deformed -t <(mts drop '*.frame.*' u.dat | shapefn 2> note) > deformed.dat
@@ -220,7 +220,7 @@ modules() { awk -F '[|`]' -v head="| module of \`$1\` |" 'index($0, head) == 1 {
     for stream in table.mts u.dat deformed.dat map.mts; do
         mts list $stream | cut -f 1 | sed 's/[.]frame[.].*/.frame.K/'
     done | sort -u > names
-    for name in u.frame.K stress.frame.K gaps.frame.K reactions.frames moments.frames energy.frames stress strain pressure volume_ratio reactions moments gaps energy difference x.deformed; do
+    for name in u.frame.K stress.frame.K gaps.frame.K reactions.frames moments.frames energy.frames stress strain pressure volume_ratio fibre reactions moments gaps energy difference x.deformed; do
         grep -qx "$name" names
     done
     while IFS= read -r name; do

@@ -60,11 +60,12 @@ norm() {
         printf '[scene]\ndim = %s\nanalysis = quasi-static\n[material all]\nregion = body\nmu = 1000\nkappa = 1e8\nactive = 1500\ncurve = linear\n' "$1"
         [ "$1" = 2 ] && printf 'fibre = 1, 0\n' || printf 'fibre = 1, 0, 0\n[displacement c]\nfacets = zmin\nnormal = 0\n'
         printf '[displacement %s]\nfacets = %s\nnormal = 0\n' a xmin b ymin
-        printf '[output]\nframes = 2\nenergy = yes\n[solver]\ntolerance = 1e-8\n%b' "$2"
+        printf '[output]\nframes = 2\nfibre = yes\nenergy = yes\n[solver]\ntolerance = 1e-8\n%b' "$2"
     }
     check() { # DIM
         for frame in 1 2; do mts print "u.frame.$frame" u.dat | tail -n 1; done | awk -v dim="$1" '
             { l = (1000 / (1000 + 750 * NR))^(1 / (dim == 2 ? 4 : 3)); off = $1 - (l - 1); print; bad += off * off > 1e-10 } END { exit bad || NR != 2 }'
+        mts print fibre u.dat | awk -v dim="$1" '{ l = 0.4^(1 / (dim == 2 ? 4 : 3)); bad += ($1 - l)^2 + $2^2 > 1e-10 } END { exit bad || NR < 32 }'
     }
     for dim in 2 3; do
         cloud -d $dim -k regular -n 5 --box "$([ $dim = 2 ] && echo 0,1,0,1 || echo 0,1,0,1,0,1)" | shapefn > block.mts 2> note

@@ -7,7 +7,7 @@ static const char usage[] =
     "every section with one row for each node or each cell, and names other than\n"
     "lists (.ptr, .idx), facets, faces, sets and parameters. Nodes without cells become\n"
     "points. Where nodes and cells are equally many, sections cells.*, points.*, stress,\n"
-    "strain, pressure and volume_ratio belong to the cells, all others to the nodes.\n"
+    "strain, pressure, volume_ratio and fibre belong to the cells, all others to the nodes.\n"
     "Everything is in SI units, displacements are in m.\n"
     "\n"
     "Vectors in 2D get a third component of zeros. Symmetric tensors have six\n"

@@ -51,7 +51,7 @@ static bool is_structure(const char *name)
 static bool is_of_points(const char *name)
 {
     static const char *const first[] = {"cells",    "points",       "stress", "strain",
-                                        "pressure", "volume_ratio", "J",      NULL};
+                                        "pressure", "volume_ratio", "fibre",  "J",      NULL};
     return is_one_of(name, first);
 }
 

@@ -119,7 +119,7 @@ struct scene_initial {
 struct scene_output {
     int64_t frames;  /* evenly spaced frames besides the final state; 0: none */
     double interval; /* s between frames (dynamic); 0: none. Not both. */
-    bool stress, strain, pressure, volume_ratio, energy, reactions, moments, gaps;
+    bool stress, strain, pressure, volume_ratio, fibre, energy, reactions, moments, gaps;
     double about[3];    /* the point of the moments, m; default the origin */
     bool folds_allowed; /* a body that folds is not refused */
 };

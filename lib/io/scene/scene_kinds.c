@@ -249,6 +249,7 @@ static const struct scene_key output_keys[] = {
     {"strain", VALUE_YES, AT(scene, output.strain)},
     {"pressure", VALUE_YES, AT(scene, output.pressure)},
     {"volume_ratio", VALUE_YES, AT(scene, output.volume_ratio)},
+    {"fibre", VALUE_YES, AT(scene, output.fibre)},
     {"energy", VALUE_YES, AT(scene, output.energy)},
     {"reactions", VALUE_YES, AT(scene, output.reactions)},
     {"moments", VALUE_YES, AT(scene, output.moments)},

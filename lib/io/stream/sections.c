@@ -54,6 +54,7 @@ const struct section_kind section_kinds[SECTION_KINDS] = {
     {"strain", TYPE_F8, COLS_ANY, "points.x", ANY, NULL, MADE_WITH_RESULTS},
     {"pressure", TYPE_F8, COLS_ANY, "points.x", ANY, NULL, MADE_WITH_RESULTS},
     {"volume_ratio", TYPE_F8, COLS_ANY, "points.x", ANY, NULL, MADE_WITH_RESULTS},
+    {"fibre", TYPE_F8, COLS_DIM, "points.x", ANY, NULL, MADE_WITH_RESULTS},
     {"reactions", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"moments", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"gaps", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},

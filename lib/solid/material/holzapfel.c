@@ -6,8 +6,6 @@
 
 enum { C, K1, K2, DISPERSION, GAMMA, COSINE = GAMMA, SINE };
 
-static const double degree = 3.14159265358979323846 / 180.0;
-
 /* The parameters are the numbers of the keys, those in Pa relative to mu, and the cosine and sine of
  * gamma. At rest a family has the modulus 4
  * k1 (1 - 3 d)^2 along its direction. */
@@ -15,13 +13,13 @@ static double prepare(const struct law_input *input, double *parameters, struct 
 {
     (void)fault;
     const double *number = input->number;
-    double aligned = 1.0 - 3.0 * number[DISPERSION];
+    double gamma = number[GAMMA] / 180.0 * acos(-1.0), aligned = 1.0 - 3.0 * number[DISPERSION];
     double mu = number[C] + 2.0 * 4.0 * number[K1] * aligned * aligned / 15.0;
     for (int i = C; i < GAMMA; i++) {
         parameters[i] = number[i] / (i <= K1 ? mu : 1.0);
     }
-    parameters[COSINE] = cos(number[GAMMA] * degree);
-    parameters[SINE] = sin(number[GAMMA] * degree);
+    parameters[COSINE] = cos(gamma);
+    parameters[SINE] = sin(gamma);
     return mu;
 }
 

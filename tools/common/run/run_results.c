@@ -3,6 +3,7 @@
 #include "run/run.h"
 
 #include "approx/field/field_compare.h"
+#include "base/vector.h"
 #include "solid/system/energy.h"
 
 #include <stdio.h>
@@ -111,6 +112,20 @@ static void put_tensors(const struct run *run, const struct moment *moment, cons
     put(run, moment, name, points, count, attributes, values);
 }
 
+/* Put the deformed directions F a of the fibres, 0 where there are none. */
+static void put_fibres(const struct run *run, const struct moment *moment, const double *F)
+{
+    const struct material_list *list = &run->model->assembly.materials;
+    int dim = run->scene->dim;
+    int64_t points = run->model->system.body.point_count;
+    double *values = run_new_values(run, points * dim);
+    for (int64_t i = 0; i < points * dim; i++) {
+        const double *fibre = list->items[list->of_point[i / dim]].fibre;
+        values[i] = fibre != NULL ? vector_dot(dim, F + i / dim * 9 + i % dim * 3, fibre) : 0.0;
+    }
+    put(run, moment, "fibre", points, dim, "unit=1", values);
+}
+
 /* Put the requested fields at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
  * ratio. */
 static void put_point_fields(struct run *run, const struct moment *moment)
@@ -123,13 +138,16 @@ static void put_point_fields(struct run *run, const struct moment *moment)
         body_volume_ratio(body, ratio);
         put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
     }
-    if (!output->stress && !output->strain && !output->pressure) {
+    if (!output->stress && !output->strain && !output->pressure && !output->fibre) {
         return;
     }
     double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
     double *pressure = run_new_values(run, points);
     body_gradient(body, F);
     body_stress(body, P);
+    if (output->fibre) {
+        put_fibres(run, moment, F);
+    }
     for (int64_t q = 0; q < points; q++) {
         double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
         cauchy_stress(f, p, stress);
