@@ -179,7 +179,8 @@ TEST(rest)
         stress(&all[m], identity, P);
         NEAR_TO(energy(&all[m], identity), 0.0, 0.0);
         ALL_NEAR(9, P, NULL, 0.0);
-        assert_true(material_is_elliptic(&all[m], 2, identity) && material_is_elliptic(&all[m], 3, identity));
+        assert_true(material_is_elliptic(&all[m], 0.0, 2, identity) &&
+                    material_is_elliptic(&all[m], 0.0, 3, identity));
     }
 }
 
@@ -457,8 +458,10 @@ TEST(ellipticity)
         double l = i == 0 ? 0.87 : 0.855, lambda = stiff.bulk_modulus - 2.0 / 3.0 * stiff.shear_modulus;
         double free2 = 1.0 - 2.0 * lambda * (l * l - 1.0) / (lambda + 2.0 * stiff.shear_modulus);
         const double F[9] = {l, 0.0, 0.0, 0.0, l, 0.0, 0.0, 0.0, sqrt(free2)};
-        assert_int_equal(material_is_elliptic(&stiff, 3, F), i == 0);
-        assert_true(material_is_elliptic(&neo, 3, F));
+        assert_int_equal(material_is_elliptic(&stiff, 0.0, 3, F), i == 0);
+        assert_true(material_is_elliptic(&neo, 0.0, 3, F));
+        neo.fibre = (double[6]){0.6, 0.8};
+        assert_true(material_is_elliptic(&neo, 2000.0, 3, F) && !material_is_elliptic(&neo, -2000.0, 3, F));
     }
 }
 

@@ -211,7 +211,8 @@ static void add_inelliptic(const struct body *body, int64_t q, const double F[9]
 {
     struct inelliptic *found = sum;
     (void)J;
-    if (!material_is_elliptic(&body->materials[body->material[q]], body->dim, F)) {
+    const struct material *material = &body->materials[body->material[q]];
+    if (!material_is_elliptic(material, active_stress(body, material), body->dim, F)) {
         found->share += body->weight[q];
         found->point = found->point < 0 ? body->order[q] : found->point;
     }

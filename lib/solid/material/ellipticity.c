@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Directions are those from the origin to the points of a lattice, whose coordinates are at most this. */
@@ -37,6 +38,15 @@ static void tangent(const struct material *material, int dim, const double F[9],
     }
 }
 
+/* A += T I (x) a (x) a */
+static void add_active(const double a[3], double T, double A[81])
+{
+    for (int i = 0; i < 27; i++) {
+        int k = i / 9, b = i / 3 % 3, c = i % 3;
+        A[9 * (3 * k + b) + 3 * k + c] += T * a[b] * a[c];
+    }
+}
+
 /* Whether the acoustic tensor along n, of any length, is positive definite: its leading minors are positive.
  */
 static bool is_positive_along(int dim, const double A[81], const double n[3])
@@ -54,13 +64,16 @@ static bool is_positive_along(int dim, const double A[81], const double n[3])
     return Q[0] > 0.0 && Q[0] * Q[4] - Q[1] * Q[3] > 0.0 && determinant(Q) > 0.0;
 }
 
-bool material_is_elliptic(const struct material *material, int dim, const double F[9])
+bool material_is_elliptic(const struct material *material, double active, int dim, const double F[9])
 {
-    double A[81];
-    if (material->model == MATERIAL_NEO_HOOKEAN) {
+    double A[81] = {0.0};
+    if (material->model == MATERIAL_NEO_HOOKEAN && !(active < 0.0)) {
         return true; /* along m (x) n the second derivative of (11) is at least mu J^(-2/3) / 5 */
     }
     tangent(material, dim, F, A);
+    if (fabs(active) > 0.0) {
+        add_active(material->fibre, active, A);
+    }
     for (int x = 0; x <= LATTICE; x++) {
         for (int y = -LATTICE; y <= LATTICE; y++) {
             for (int z = dim == 3 ? -LATTICE : 0; z <= (dim == 3 ? LATTICE : 0); z++) {

@@ -8,6 +8,6 @@
 #include <stdbool.h>
 
 /* Whether the acoustic tensor Q_ik(n) = d2W / dF_ia dF_kb n_a n_b is positive definite at F, row-major 3 x 3,
- * for directions n spread over the sphere (dim 3) or the circle of the plane (dim 2). Active stress, which
- * adds T (a . n)^2 I, is left out. */
-bool material_is_elliptic(const struct material *material, int dim, const double F[9]);
+ * for directions n spread over the sphere (dim 3) or the circle of the plane (dim 2). The active stress T
+ * along the fibres, Pa, adds T (a . n)^2 I. */
+bool material_is_elliptic(const struct material *material, double active, int dim, const double F[9]);

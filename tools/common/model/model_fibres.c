@@ -10,9 +10,6 @@
 /* A point must not be farther from the rows of the table than this many of their spacings, or cells: on a
  * lattice none is farther than .87, and among random rows one in a million. */
 static const double most_spacings = 1.5;
-/* The difference of the largest two eigenvalues of the mean of a (x) a, of trace 1, below which the mean has
- * no direction. */
-static const double least_order = 0.05;
 
 /* The dim (dim + 1) / 2 entries of a symmetric matrix. */
 enum { MOST_ENTRIES = 6 };
@@ -52,27 +49,22 @@ static enum status square_directions(const struct scene_material *section, const
     return STATUS_OK;
 }
 
-/* The axis of the interpolated a (x) a: the eigenvector of the largest eigenvalue; false if it has none. */
-static bool principal_axis(int dim, const double *values, double axis[3])
+/* The axis of the interpolated a (x) a: the eigenvector of the largest eigenvalue. */
+static void principal_axis(int dim, const double *values, double axis[3])
 {
-    double A[9], eigenvalue[3], V[9], trace = 0.0;
-    int first = 0, second = 1;
+    double A[9], eigenvalue[3], V[9];
+    int first = 0;
     for (int v = 0; v < dim * (dim + 1) / 2; v++) {
         int r = entry_row(dim, v), c = entry_column(dim, v);
         A[dim * r + c] = A[dim * c + r] = values[v];
-        trace += r == c ? values[v] : 0.0;
     }
     eigen_symmetric(dim, A, eigenvalue, V);
     for (int i = 1; i < dim; i++) {
-        second = eigenvalue[i] > eigenvalue[first]              ? first
-                 : i == 1 || eigenvalue[i] > eigenvalue[second] ? i
-                                                                : second;
         first = eigenvalue[i] > eigenvalue[first] ? i : first;
     }
     for (int a = 0; a < dim; a++) {
         axis[a] = V[dim * a + first];
     }
-    return trace > 0.0 && eigenvalue[first] - eigenvalue[second] > least_order * trace;
 }
 
 /* The directions at point q. */
@@ -95,11 +87,7 @@ static enum status directions_at(const struct model *model, const struct scene_m
             "wrong unit or wrong place, else give rows there",
             section->label.where, section->fibres, distance, place, spacing);
     }
-    if (!principal_axis(dim, values, axis)) {
-        return fail(error, STATUS_INPUT,
-                    "%s: fibres: %s: the directions around %s cross each other: give more rows there",
-                    section->label.where, section->fibres, place);
-    }
+    principal_axis(dim, values, axis);
     bool two = vector_dot(3, plane, plane) > 0.0;
     return fibre_frame(dim, axis, two ? plane : NULL, directions)
                ? STATUS_OK
