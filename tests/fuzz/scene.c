@@ -35,6 +35,9 @@ static void require_materials(const struct scene *scene)
         REQUIRE(material->regions.count >= 1);
         const struct material *law = &material->material;
         REQUIRE(law->model >= 0 && law->model < law_count);
+        for (int k = 0; k < LAW_NUMBERS; k++) {
+            REQUIRE(isfinite(material->parameters[k]) && isfinite(material->directions[k % 6]));
+        }
         REQUIRE(law->density > 0.0 && law->density < INFINITY);
         REQUIRE(material->table != NULL || (law->shear_modulus > 0.0 && law->shear_modulus < INFINITY &&
                                             law->bulk_modulus > 0.0 && law->bulk_modulus < INFINITY));

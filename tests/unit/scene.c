@@ -232,6 +232,8 @@ TEST(material_keys)
     fails(HEAD REGION "kappa = 1\nD = 1\n", 4, "E: missing");
     fails(HEAD REGION "mu = 1\nkappa = 1\nD = 1\n", 8, "D: not allowed: kappa gives the volume");
     fails(HEAD REGION "mu = 1\nD = 1e-320\n", 4, "the moduli are too small or too large");
+    fails(HEAD REGION "model = yeoh\nc1 = 1e-300\nc2 = 1e300\nnu = 0\n", 4,
+          "the moduli are too small or too large");
     fails(HEAD REGION "mu = -1\nkappa = 1\n", 6, "mu: -1 is not above 0");
     fails(HEAD REGION "mu = 1, 2\nkappa = 1\n", 6, "mu: has more than 1 number");
     fails(HEAD REGION "model = ogden\nmu = 1, -1\nalpha = 2, 3\nnu = 0\n", 7, "mu: the sum is not positive");

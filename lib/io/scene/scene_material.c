@@ -133,9 +133,12 @@ static enum status set_moduli(const struct place *place, double shear, struct sc
     struct material *material = &section->material;
     material->shear_modulus = shear;
     RETURN_IF_ERROR(shear > 0.0 ? set_bulk(place, section) : set_by_e(place, section));
-    return material->shear_modulus > 0.0 && material_wave_modulus(material) < INFINITY
-               ? STATUS_OK
-               : place_fail(place, NULL, "the moduli are too small or too large for floating-point numbers");
+    bool good = material->shear_modulus > 0.0 && material_wave_modulus(material) < INFINITY;
+    for (int i = 0; i < LAW_NUMBERS; i++) {
+        good = good && isfinite(section->parameters[i]);
+    }
+    return good ? STATUS_OK
+                : place_fail(place, NULL, "the moduli are too small or too large for floating-point numbers");
 }
 
 static enum status set_law(const struct place *place, struct scene_material *section)
