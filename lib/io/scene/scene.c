@@ -127,7 +127,7 @@ enum status scene_read(const char *path, struct scene *scene, struct error *erro
 void scene_free(struct scene *scene)
 {
     owned_free(&scene->owned);
-    FREE_ALL(scene->files.names, scene->materials, scene->displacements, scene->contacts, scene->pressures,
-             scene->tractions, scene->forces);
+    FREE_ALL(scene->files.names, scene->materials, scene->displacements, scene->contacts, scene->supports,
+             scene->pressures, scene->tractions, scene->forces);
     *scene = (struct scene){0};
 }

@@ -109,6 +109,14 @@ struct scene_load {
     struct scene_curve curve;
 };
 
+/* Elastic surroundings that hold facets. */
+struct scene_support {
+    struct scene_label label;
+    struct name_list facets;   /* at least one */
+    double normal, tangential; /* Pa/m, >= 0, not both 0 */
+    double damping;            /* Pa s/m, >= 0, dynamic; default 0 */
+};
+
 /* The initial state of a dynamic scene. */
 struct scene_initial {
     const char
@@ -152,6 +160,8 @@ struct scene {
     int64_t displacement_count;
     struct scene_contact *contacts;
     int64_t contact_count;
+    struct scene_support *supports;
+    int64_t support_count;
     struct scene_load *pressures;
     int64_t pressure_count;
     struct scene_load *tractions;

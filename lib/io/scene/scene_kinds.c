@@ -111,6 +111,17 @@ static enum status check_pressure(const struct place *place, struct scene *scene
                : place_forbid_all(place, KEYS{"level", "side", "gravity", NULL}, "it goes with density");
 }
 
+static enum status check_support(const struct place *place, struct scene *scene)
+{
+    const struct scene_support *support = &scene->supports[scene->support_count - 1];
+    if (!(support->normal > 0.0 || support->tangential > 0.0)) {
+        return place_fail(place, NULL, "normal and tangential: both are 0: give a stiffness in Pa/m");
+    }
+    return scene->analysis == SCENE_DYNAMIC
+               ? STATUS_OK
+               : place_forbid(place, "damping", "a quasi-static scene has no velocities");
+}
+
 static enum status check_initial(const struct place *place, struct scene *scene)
 {
     return scene->analysis == SCENE_DYNAMIC
@@ -236,6 +247,13 @@ static const struct scene_key force_keys[] = {
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
 
+static const struct scene_key support_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_support, facets), .missing = "name the facet groups supported"},
+    {"normal", VALUE_NOT_NEGATIVE, AT(scene_support, normal)},
+    {"tangential", VALUE_NOT_NEGATIVE, AT(scene_support, tangential)},
+    {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, damping)},
+    {NULL}};
+
 static const struct scene_key initial_keys[] = {
     {"table", VALUE_TABLE, AT(scene, initial.table),
      .missing = "name the file of displacements and velocities at the nodes"},
@@ -279,6 +297,7 @@ static const struct scene_kind kinds[] = {
     {"material", material_keys, scene_material_check, ITEMS(materials, material_count)},
     {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
+    {"support", support_keys, check_support, ITEMS(supports, support_count)},
     {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
     {"traction", traction_keys, NULL, ITEMS(tractions, traction_count)},
     {"force", force_keys, NULL, ITEMS(forces, force_count)},

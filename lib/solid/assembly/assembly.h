@@ -34,6 +34,15 @@ struct contact_condition {
     struct rigid_motion motion;
 };
 
+/* Elastic surroundings of facets: springs and dashpots between the points of the facets and the ground. */
+struct support_condition {
+    const char *where; /* as of a condition */
+    struct facet_set facets;
+    double normal, tangential; /* stiffness along the normals at rest, and across them, Pa/m */
+    double damping;            /* in all directions, Pa s/m; for dynamics */
+    int32_t curve;             /* any: the springs are at rest where u = 0 */
+};
+
 /* Materials: one for each section, or one for each integration point of a section with a table. */
 struct material_list {
     struct material *items; /* count */
@@ -82,6 +91,8 @@ struct assembly {
     int32_t gravity_curve;
     const struct contact_condition *contacts;
     int64_t contact_count;
+    const struct support_condition *supports;
+    int64_t support_count;
     bool in_time; /* for dynamics: gravity by the lumped mass */
 
     /* Set by assembly_complete. */
@@ -100,7 +111,8 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
- * contacts, and the reduced moduli of smoothed cells at junctions of prescribed and free boundary. */
+ * contacts, supports, and the reduced moduli of smoothed cells at junctions of prescribed and free boundary.
+ */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);
 MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
@@ -108,6 +120,8 @@ MUST_CHECK enum status assembly_add_points(const struct assembly *input, struct 
 MUST_CHECK enum status assembly_add_loads(const struct assembly *input, struct solid_system *system,
                                           struct error *error);
 MUST_CHECK enum status assembly_add_contacts(const struct assembly *input, struct solid_system *system,
+                                             struct error *error);
+MUST_CHECK enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
                                              struct error *error);
 MUST_CHECK enum status assembly_soften_junctions(const struct assembly *input, struct material_list *list,
                                                  struct error *error);

@@ -121,7 +121,7 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
         if (is_check && !is_last) {
             dynamics_estimate_frequency(d, n == 0 ? first_iterations : later_iterations);
             system_measure_contacts(d->system, d->u, false);
-            if (!dynamics_choose_step(d)) {
+            if (!dynamics_choose_step(d) || !dynamics_weigh_dashpots(d, error)) {
                 return DYNAMICS_COLLAPSED;
             }
         }
@@ -157,7 +157,8 @@ static void meet_conditions(struct dynamics *d)
     struct solid_system *system = d->system;
     factors_at(d, 0.0, d->factor_now);
     use_factors(d);
-    double energy = body_energy(&system->body, d->u) + energy_kinetic(system, d->before, d->before);
+    double energy = body_energy(&system->body, d->u) + system_spring_energy(system, d->u) +
+                    energy_kinetic(system, d->before, d->before);
     constraint_project(&d->constraint, d->factor_now, d->u);
     for (int64_t i = 0; i < system->curve_count; i++) {
         d->factor_now[i] = curve_rate(&system->curves[i], 0.0) / d->options->end_time;
@@ -207,6 +208,8 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
     RETURN_IF_ERROR(system_constrain(system, system->lumped_mass, NULL, NULL, &d.constraint, error));
     if (options->restored != NULL) {
         RETURN_IF_ERROR(dynamics_visit(&d, options->restored, error));
+        (void)dynamics_weigh_dashpots(&d, error);
+        RETURN_IF_ERROR(d.failure);
     } else {
         begin(&d, u, v);
     }

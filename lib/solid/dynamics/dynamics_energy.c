@@ -34,6 +34,9 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
      * first step with contact. The largest energy is at least so large that this does not count as drift. */
     d->balance.largest = fmax(d->balance.largest, unresolved / (8.0 * DYNAMICS_MOST_DRIFT));
     d->balance.work += 0.5 * work;
+    if (d->drag != NULL) {
+        d->balance.dissipated += 0.5 * step * vector_product(d->size, d->drag, velocity);
+    }
     if (d->options->damping > 0.0) {
         double speed =
             energy_kinetic(system, d->before, velocity) + energy_kinetic(system, d->after, velocity);

@@ -12,7 +12,11 @@ struct dynamics {
     double *u, *next;       /* at this step, at the next one */
     double *before, *after; /* velocities half a step before and after this one */
     double *residual, *mode, *scratch;
-    double *loads;                                     /* NULL without loads */
+    double *loads;       /* NULL without loads */
+    double *mass;        /* node_count: the lumped one, with half a step of the dashpots of supports: see
+                            dynamics_weigh_dashpots; without dashpots that of the system */
+    double *drag;        /* force of the dashpots in this step, against the motion; NULL: none */
+    double weighed_step; /* step that `mass` and `constraint` are for */
     double *factor_before, *factor_now, *factor_after; /* of the load curves */
     double *factor_change;                             /* in this step */
     /* Time runs in spans of equal steps: t = mark + done * step; `left` more of them end at T. */
@@ -24,7 +28,7 @@ struct dynamics {
     int64_t frames;
     struct energy_balance balance;
     struct energy_log *log; /* the caller's, or NULL */
-    enum status failure;    /* of the log */
+    enum status failure;    /* of the log, or of memory */
 };
 
 /* ---- dynamics_step.c: the length of the steps, and the move itself ---- */
@@ -42,6 +46,10 @@ void dynamics_estimate_frequency(struct dynamics *d, int iterations);
 /* If the steps have become too long, or shorter than necessary, begin a new span of equal steps to the end.
  * False: the step has collapsed. */
 bool dynamics_choose_step(struct dynamics *d);
+
+/* With dashpots c, the step is implicit, c (v- + v+)/2, so that it is stable for any c: v+ has the mass M + c
+ * dt/2, which the constraint takes as well. Let both be those of the step. False on failure. */
+bool dynamics_weigh_dashpots(struct dynamics *d, struct error *error);
 
 /* Compute v+ and the next u from the residual at u, and meet the conditions. constraint.multiplier receives
  * the forces of the conditions, N (2D: N/m). */

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum status dynamics_allocate(struct dynamics *d, struct error *error)
 {
@@ -18,6 +19,12 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
     if (system->load_count + system->pressure_count > 0) {
         RETURN_IF_ERROR(NEW_ARRAY(&d->loads, d->size, error));
     }
+    d->mass = system->lumped_mass;
+    if (system->dashpot != NULL) {
+        RETURN_IF_ERROR(NEW_ARRAY(&d->drag, d->size, error));
+        RETURN_IF_ERROR(NEW_ARRAY(&d->mass, system->node_count, error));
+        memcpy(d->mass, system->lumped_mass, (size_t)system->node_count * sizeof *d->mass);
+    }
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_before, system->curve_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_now, system->curve_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&d->factor_after, system->curve_count, error));
@@ -26,8 +33,11 @@ enum status dynamics_allocate(struct dynamics *d, struct error *error)
 
 void dynamics_release(struct dynamics *d)
 {
-    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->factor_before,
-             d->factor_now, d->factor_after, d->factor_change);
+    FREE_ALL(d->u, d->next, d->before, d->after, d->residual, d->mode, d->scratch, d->loads, d->drag,
+             d->factor_before, d->factor_now, d->factor_after, d->factor_change);
+    if (d->mass != d->system->lumped_mass) {
+        free(d->mass);
+    }
     constraint_free(&d->constraint);
 }
 

@@ -89,6 +89,36 @@ bool dynamics_choose_step(struct dynamics *d)
     return true;
 }
 
+bool dynamics_weigh_dashpots(struct dynamics *d, struct error *error)
+{
+    const struct solid_system *system = d->system;
+    if (d->drag == NULL || d->weighed_step == d->step) {
+        return true;
+    }
+    double half = 0.5 * d->step / (1.0 + 0.5 * d->options->damping * d->step);
+    for (int64_t n = 0; n < system->node_count; n++) {
+        d->mass[n] = system->lumped_mass[n] + half * system->dashpot[n];
+    }
+    d->weighed_step = d->step;
+    if (system->rows.count > 0) {
+        constraint_free(&d->constraint);
+        d->failure =
+            constraint_build(&system->rows, system->node_count, d->mass, NULL, NULL, &d->constraint, error);
+    }
+    return d->failure == STATUS_OK;
+}
+
+/* The forces of the dashpots in a step that has been made. */
+static void find_drag(struct dynamics *d, double push)
+{
+    const struct solid_system *system = d->system;
+    for (int64_t i = 0; i < d->size; i++) {
+        int64_t n = i / system->dim;
+        double added = d->mass[n] - system->lumped_mass[n];
+        d->drag[i] = system->dashpot[n] * d->before[i] + added / push * (d->after[i] - d->before[i]);
+    }
+}
+
 void dynamics_advance(struct dynamics *d, bool is_first)
 {
     const struct solid_system *system = d->system;
@@ -101,9 +131,13 @@ void dynamics_advance(struct dynamics *d, bool is_first)
     }
     double *move = d->after;
     for (int64_t n = 0; n < system->node_count; n++) {
-        double share = push / system->lumped_mass[n];
+        double share = push / d->mass[n], kept = keep;
+        if (d->drag != NULL) { /* c v-, and the momentum of the added mass */
+            double whole = system->lumped_mass[n];
+            kept = (keep * whole + d->mass[n] - whole - push * system->dashpot[n]) / d->mass[n];
+        }
         for (int64_t i = n * dim; i < (n + 1) * dim; i++) {
-            move[i] = dt * (keep * d->before[i] + share * d->residual[i]);
+            move[i] = dt * (kept * d->before[i] + share * d->residual[i]);
         }
     }
     if (system->rows.count > 0) {
@@ -120,6 +154,9 @@ void dynamics_advance(struct dynamics *d, bool is_first)
     for (int64_t i = 0; i < d->size; i++) {
         d->next[i] = d->u[i] + move[i];
         d->after[i] = move[i] / dt;
+    }
+    if (d->drag != NULL) {
+        find_drag(d, push);
     }
     if (is_first) { /* the velocity half a step before the start, with the same acceleration */
         for (int64_t i = 0; i < d->size; i++) {

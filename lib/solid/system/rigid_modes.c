@@ -174,10 +174,10 @@ static void parts_free(struct parts *parts)
     free(parts->part);
 }
 
-/* The free motions of each part. Springs of measured points count as rows. On curved sides facets approximate
- * the surface: a motion along it has values on them that are not 0 but change their sign from facet to facet.
- * Such a motion is free: more than half of the mean square of its values vanishes where the values of facets
- * that meet are averaged. */
+/* The free motions of each part. Springs of measured points and of supports count as rows. On curved sides
+ * facets approximate the surface: a motion along it has values on them that are not 0 but change their sign
+ * from facet to facet. Such a motion is free: more than half of the mean square of its values vanishes where
+ * the values of facets that meet are averaged. */
 static enum status parts_find(struct parts *parts, struct error *error)
 {
     const struct solid_system *system = parts->system;

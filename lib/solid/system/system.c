@@ -27,7 +27,8 @@ void system_free(struct solid_system *system)
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
-    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->factor);
+    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->dashpot,
+             system->factor);
     constraint_rows_free(&system->rows);
     sliding_free(&system->sliding);
     constraint_rows_free(&system->penalties);

@@ -75,12 +75,14 @@ struct solid_system {
      * the targets, so that a linear field stays exact. */
     struct constraint_rows penalties;
     struct constraint_nodes penalty_nodes; /* their transpose; with several processes for own nodes */
-    int64_t spring_count;      /* the last penalties are springs of measured points, not of a condition */
+    int64_t spring_count;      /* the last penalties are springs of measured points, then those of supports:
+                                  they are not of a condition that is met exactly as well */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
     int64_t curve_count;
     double *lumped_mass; /* node_count, kg (2D: kg/m), positive: each cell shares its mass among its nodes */
+    double *dashpot;     /* node_count, N s/m (2D: N s/m2): of supports, lumped as the mass; NULL: none */
     double *factor;      /* curve_count: scratch, values of the curves */
     struct stability stability;
     struct cost cost;
@@ -157,9 +159,10 @@ double system_longest_change(const struct solid_system *system);
 void system_resist(struct solid_system *system, const double *u, double *force);
 
 /* Add the forces of the constraint penalties to force[node_count * dim], with several processes at own nodes;
- * and the energy of the penalties. */
+ * and the energy of the penalties; of the springs among them alone. */
 void system_add_penalties(struct solid_system *system, const double *u, double *force);
 double system_penalty_energy(const struct solid_system *system, const double *u);
+double system_spring_energy(const struct solid_system *system, const double *u);
 
 /* Append a constraint penalty: the arguments of constraint_rows_add, and the stiffness, N/m (2D: N/m2). */
 MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,

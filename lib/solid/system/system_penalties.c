@@ -1,4 +1,5 @@
-/* Constraint penalties of a system, and springs of measured points, which are stored with them. */
+/* Constraint penalties of a system, and springs of measured points and supports, which are stored with them.
+ */
 #include "solid/system/system.h"
 
 #include "base/chunks.h"
@@ -64,12 +65,23 @@ void system_add_penalties(struct solid_system *system, const double *u, double *
     constraint_nodes_spread(&system->penalty_nodes, pull, force);
 }
 
-double system_penalty_energy(const struct solid_system *system, const double *u)
+/* The energy of the penalties from `first` on. */
+static double energy_from(const struct solid_system *system, int64_t first, const double *u)
 {
     double energy = 0.0;
-    for (int64_t r = 0; r < system->penalties.count; r++) {
+    for (int64_t r = first; r < system->penalties.count; r++) {
         double pull = system_penalty_force(system, r, u);
         energy += 0.5 * pull * pull / system->penalty_stiffness[r];
     }
     return energy;
+}
+
+double system_penalty_energy(const struct solid_system *system, const double *u)
+{
+    return energy_from(system, 0, u);
+}
+
+double system_spring_energy(const struct solid_system *system, const double *u)
+{
+    return energy_from(system, system->penalties.count - system->spring_count, u);
 }

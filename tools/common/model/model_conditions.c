@@ -1,4 +1,4 @@
-/* Displacements, loads and contacts of a scene, as input of assembly. */
+/* Displacements, loads, supports and contacts of a scene, as input of assembly. */
 #include "model/model.h"
 
 #include "io/files/surface.h"
@@ -189,6 +189,27 @@ static enum status add_contacts(struct model *model, struct error *error)
     return STATUS_OK;
 }
 
+static enum status add_supports(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    const struct scene_curve any = {.kind = SCENE_CURVE_SMOOTH};
+    struct support_condition *supports;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &supports, scene->support_count, error));
+    input->supports = supports;
+    for (int64_t i = 0; i < scene->support_count; i++) {
+        const struct scene_support *section = &scene->supports[i];
+        supports[i] = (struct support_condition){.where = section->label.where,
+                                                 .normal = section->normal,
+                                                 .tangential = section->tangential,
+                                                 .damping = section->damping};
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &supports[i].facets, error));
+        RETURN_IF_ERROR(model_add_curve(model, &section->label, &any, &supports[i].curve, error));
+        input->support_count++;
+    }
+    return STATUS_OK;
+}
+
 enum status model_conditions(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;
@@ -205,6 +226,7 @@ enum status model_conditions(struct model *model, struct error *error)
                                          &conditions[input->condition_count], error));
     }
     RETURN_IF_ERROR(add_loads(model, error));
+    RETURN_IF_ERROR(add_supports(model, error));
     return add_contacts(model, error);
 }
 

@@ -1,4 +1,4 @@
-/* Forces and moments of the conditions and contacts of a scene. */
+/* Forces and moments of the conditions, supports and contacts of a scene. */
 #include "io/stream/sections.h"
 #include "base/vector.h"
 #include "run/run.h"
@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Sums over the conditions and contacts of a scene: a row for each displacement, then for each contact. */
+/* Sums over the conditions, supports and contacts of a scene: a row for each displacement, then for each
+ * support, then for each contact. */
 struct totals {
     int dim, moment_count; /* components of a force, of a moment */
     const double *about;   /* dim: the point of the moments, m */
@@ -39,7 +40,8 @@ static void add_force(const struct run *run, const struct average *average, cons
                totals->moment + row * count); /* in 2D only the last component */
 }
 
-/* Add the forces of the conditions and of their constraint penalties. */
+/* Add the forces of the conditions and of their constraint penalties, and those of the springs of supports.
+ */
 static void add_conditions(const struct run *run, struct totals *totals)
 {
     const struct solid_system *system = &run->model->system;
@@ -72,7 +74,7 @@ static void add_contacts(const struct run *run, struct totals *totals)
     const struct solid_system *system = &run->model->system;
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        int64_t row = run->scene->displacement_count + contact->section;
+        int64_t row = run->scene->displacement_count + run->scene->support_count + contact->section;
         double force[3], moment[3];
         contact_total(contact, force);
         contact_moment(contact, totals->about, moment);
@@ -82,11 +84,12 @@ static void add_contacts(const struct run *run, struct totals *totals)
     }
 }
 
-/* The name of row r: displacements, then contacts. */
 static const char *name_of_row(const struct scene *scene, int64_t r)
 {
-    return r < scene->displacement_count ? scene->displacements[r].label.name
-                                         : scene->contacts[r - scene->displacement_count].label.name;
+    int64_t support = r - scene->displacement_count, contact = support - scene->support_count;
+    return support < 0   ? scene->displacements[r].label.name
+           : contact < 0 ? scene->supports[support].label.name
+                         : scene->contacts[contact].label.name;
 }
 
 /* The attributes of a table of vectors, to be freed: "unit=N MORE rows=bottom,top" with a row for each
@@ -143,7 +146,7 @@ void run_put_forces(struct run *run, const struct moment *moment)
     const struct scene *scene = run->scene;
     const struct scene_output *output = &scene->output;
     bool is_plane = scene->dim == 2;
-    int64_t rows = scene->displacement_count + scene->contact_count;
+    int64_t rows = scene->displacement_count + scene->support_count + scene->contact_count;
     struct totals totals = {.dim = scene->dim, .moment_count = is_plane ? 1 : 3, .about = output->about};
     char more[128];
     if (!output->reactions && !output->moments) {

@@ -1,0 +1,123 @@
+# [support NAME]: facets on springs and dashpots, against closed forms; what it lacks is one line.
+
+load common.bash
+
+setup() { enter_alone; }
+
+# A block with nu = 0 in $dim dimensions: on the ANALYSIS; the sections that are given follow.
+scene() {
+    block "$1" | sed "s/^dim = 2/dim = $dim/; s/^nu = .*/nu = 0/"
+    printf '%b\n' "${@:2}"
+}
+
+# table N: a jittered block of 0.1 m as table.mts, turned by $turn radians about x (in 3D), then about z; $n: its last axis.
+table() {
+    cloud -t -d $dim -k jittered --jitter 0.1 -n "$1" --box 0,0.1,0,0.1$([ $dim = 2 ] || echo ,0,0.1) |
+        awk -v turn=$turn -v dim=$dim 'function put(i, j, a, b) { a = $i; b = $j; $i = c * a - s * b; $j = s * a + c * b }
+            BEGIN { OFMT = CONVFMT = "%.17g"; c = cos(turn); s = sin(turn) }
+            /^#/ { on = $2 == "nodes.x" } on && NF == dim && !/#/ { if (dim == 3) put(2, 3); put(1, 2) } { print }' |
+        shapefn > table.mts 2> note
+    n=$(awk -v t=$turn -v dim=$dim 'BEGIN { s = sin(t); c = cos(t); CONVFMT = "%.17g"
+        if (dim == 2) print -s ", " c; else print s * s ", " (-s * c) ", " c }')
+}
+
+# drift: the largest error of the energy balance in u.dat is below 1e-3, and what has been dissipated in the end is $1 to 1 %.
+drift() {
+    mts print energy u.dat | awk -v wanted="$1" '{ if ($7 ^ 2 > 1e-6) bad = 1 }
+        END { print "dissipated " $6; exit bad || NR < 100 || !(($6 - wanted) ^ 2 <= (0.01 * wanted) ^ 2) }'
+}
+
+@test "a block that is pressed sinks by p / k more, however it is turned: 2D and 3D, both methods; supports on one facet add" {
+    for dim in 2 3; do
+        low=$([ $dim = 2 ] && echo ymin || echo zmin)
+        for turn in 0 0.4; do
+            table 6
+            for method in relaxation newton; do
+                scene quasi-static "[support ground]\nfacets = $low\nnormal = 30000" "[support more]\nfacets = $low\nnormal = 20000" \
+                    "[support aside]\nfacets = $low\ntangential = 1" "[traction top]\nfacets = ${low/min/max}\ncomponents = $n\ncurve = load.tsv" \
+                    "[output]\nreactions = yes\n[solver]\ntolerance = 1e-9\nmethod = $method" > run.scene
+                printf '0 0\n1 -30\n' > load.tsv
+                mtled run.scene table.mts > u.dat
+                paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v n="$n" -v dim=$dim -v turn=$turn -v method=$method 'BEGIN { split(n, a, ", ") }
+                    { x = u = 0; for (i = 1; i <= dim; i++) { x += $i * a[i]; u += $(dim + i) * a[i] } }
+                    x < 1e-9 { count++; d = u * 50000 / 30 + 1; if (d ^ 2 > 1e-12) { bad = 1; print "off " d " at " turn " by " method } }
+                    END { exit bad || count != 6 ^ (dim - 1) }'
+                mts print reactions u.dat | awk -v n="$n" -v dim=$dim -v turn=$turn -v method=$method 'BEGIN { split(n, a, ", ") }
+                    { f = 0; for (i = 1; i <= dim; i++) f += $i * a[i]; d = f / (0.1 ^ (dim - 1) * (NR == 1 ? 18 : 12)) - 1
+                      if (NR < 3 && d ^ 2 > 1e-10) bad = 1 }
+                    END { exit bad || NR != 3 }'
+            done
+        done
+    done
+}
+
+@test "a bar dragged along a tangential support: u'' = k p / (E A) u, within a third of a percent, and nearer as the bar is thinner" {
+    dim=2
+    for height in 0.08 0.04; do
+        cloud -d 2 -k jittered -n 161,9 --jitter 0.1 --box 0,1,0,$height | shapefn > table.mts 2> note
+        scene quasi-static "[support sides]\nfacets = ymin, ymax\ntangential = $(awk -v h=$height 'BEGIN { print 6000 * h }')" \
+            '[displacement end]\nfacets = xmax\ncomponents = 0.001, 0' '[output]\nreactions = yes' > run.scene
+        mtled run.scene table.mts > u.dat
+        # cosh (2 x) / cosh 2, with the force E A 2 tanh 2; shear makes the thicker bar softer by k h / (6 G) of the support.
+        paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v h=$height 'BEGIN { cosh2 = (exp(2) + exp(-2)) / 2 }
+            { d = $3 / 0.001 - (exp(2 * $1) + exp(-2 * $1)) / 2 / cosh2; if (d ^ 2 > worst) worst = d ^ 2 }
+            END { print sqrt(worst); exit !(NR == 1449 && worst < (0.05 * h) ^ 2) }'
+        mts print reactions u.dat | awk -v h=$height 'BEGIN { f = 3000 * h * 0.002 * (exp(4) - 1) / (exp(4) + 1) }
+            { d = $1 / f - (NR == 1 ? 1 : -1); if (d ^ 2 > (0.05 * h) ^ 2) bad = 1 } END { exit bad || NR != 2 }'
+    done
+}
+
+@test "supports alone hold a body; one that lets it slide or lift does not; neither are they springs of points" {
+    turn=0
+    for dim in 2 3; do
+        table 5
+        load='[traction top]\nfacets = xmax\ncomponents = 10, 0'$([ $dim = 2 ] || echo ', 0')
+        scene quasi-static '[support all]\nfacets = *\nnormal = 1e4' "$load" > run.scene
+        mtled -v run.scene table.mts 2> said > u.dat
+        run -1 grep springs said
+        for keys in 'normal = 1e4' 'tangential = 1e4'; do
+            scene quasi-static "[support one]\nfacets = xmin\n$keys" "$load" > run.scene
+            refused 1 'nothing holds the body: it may move along (' mtled run.scene table.mts
+        done
+    done
+}
+
+@test "dynamics: a block that bounces on a support with dashpots: closed form, dissipated work, the balance, the bytes of a restart" {
+    dim=2 turn=0
+    table 8
+    motion='[traction top]\nfacets = ymax\ncomponents = 0, -1\ncurve = step\n[output]\nenergy = yes\n[solver]\nend_time = 1'
+    for damping in 0 100; do
+        # 100 kg/m2 on 1000 Pa/m and 100 Pa s/m, under 1 Pa; stiff enough to be rigid.
+        scene dynamic "[support ground]\nfacets = ymin\nnormal = 1000\ntangential = 1000\ndamping = $damping" "$motion" | sed 's/^E = .*/E = 3e5/' > run.scene
+        mtled run.scene table.mts > u.dat
+        read -r u lost < <(awk -v c=$damping 'BEGIN { g = c / 200; w = sqrt(10 - g * g)
+            for (i = 0; i <= 10000; i++) { t = i / 10000; e = exp(-g * t); u = -0.001 * (1 - e * (cos(w * t) + g / w * sin(w * t)))
+                v = -0.01 / w * e * sin(w * t); lost += 0.1 * c * v * v / 10000 } print u, lost }')
+        mts print u u.dat | awk -v u="$u" '{ d = $2 / u - 1; if (d ^ 2 > 1e-4) bad = 1 } END { exit bad || NR != 64 }'
+        drift "$lost"
+    done
+    begin_and_end TERM run.scene
+    [ $status -eq 143 ]
+    mtled -q -c run.ckpt -o out.dat run.scene table.mts
+    cmp <(bare u.dat) <(bare out.dat)
+    # Dashpots as stiff as they like need no shorter steps, also beside a displacement.
+    scene dynamic '[support ground]\nfacets = ymin\nnormal = 1000\ndamping = 1e9' '[displacement side]\nfacets = xmin\ncomponents = 1e-4, 1e-4' "$motion" > stiff.scene
+    mtled stiff.scene table.mts > u.dat
+    mts print energy u.dat | awk '{ if ($7 ^ 2 > 1e-6) bad = 1 } END { print "dissipated " $6; exit bad || !($6 > 0) }'
+}
+
+@test "what is wrong with a support is one line with its key" {
+    dim=2 turn=0
+    table 3
+    try() { # MESSAGE LINES
+        scene quasi-static "[support ground]" "$2" > run.scene
+        refused 2 "run.scene:$1" mtled run.scene table.mts
+    }
+    try '11: [support ground]: facets: missing' 'normal = 1'
+    try "11: [support ground]: the mesh has no facet group 'roof'; present: " 'facets = roof\nnormal = 1'
+    try '11: [support ground]: normal and tangential: both are 0: give a stiffness in Pa/m' 'facets = ymin\nnormal = 0'
+    try '13: [support ground]: normal: -1 is not at least 0' 'facets = ymin\nnormal = -1\ntangential = 1'
+    try "13: [support ground]: tangential: 'nan' is not a finite number" 'facets = ymin\ntangential = nan'
+    try '14: [support ground]: damping: not allowed: a quasi-static scene has no velocities' 'facets = ymin\nnormal = 1\ndamping = 1'
+    try '13: [support ground]: stiffness: unknown key: allowed are facets, normal, tangential, damping' 'facets = ymin\nstiffness = 1'
+}
