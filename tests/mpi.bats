@@ -73,6 +73,11 @@ curve = smooth
 facets = ymax
 normal = 2000
 tangential = 500
+[membrane skin]
+facets = xmax, ymax
+thickness = 1e-4
+E = 1e5
+nu = 0.4
 [pressure side]
 facets = xmax
 value = 100

@@ -128,6 +128,6 @@ void scene_free(struct scene *scene)
 {
     owned_free(&scene->owned);
     FREE_ALL(scene->files.names, scene->materials, scene->displacements, scene->contacts, scene->supports,
-             scene->pressures, scene->tractions, scene->forces);
+             scene->membranes, scene->pressures, scene->tractions, scene->forces);
     *scene = (struct scene){0};
 }

@@ -117,6 +117,15 @@ struct scene_support {
     double damping;            /* Pa s/m, >= 0, dynamic; default 0 */
 };
 
+/* A membrane on facets. */
+struct scene_membrane {
+    struct scene_label label;
+    struct name_list facets; /* at least one */
+    double thickness;        /* m, > 0 */
+    double youngs_modulus;   /* Pa, > 0 */
+    double poisson_ratio;    /* -1 < nu <= .5 */
+};
+
 /* The initial state of a dynamic scene. */
 struct scene_initial {
     const char
@@ -162,6 +171,8 @@ struct scene {
     int64_t contact_count;
     struct scene_support *supports;
     int64_t support_count;
+    struct scene_membrane *membranes;
+    int64_t membrane_count;
     struct scene_load *pressures;
     int64_t pressure_count;
     struct scene_load *tractions;

@@ -122,6 +122,13 @@ static enum status check_support(const struct place *place, struct scene *scene)
                : place_forbid(place, "damping", "a quasi-static scene has no velocities");
 }
 
+static enum status check_membrane(const struct place *place, struct scene *scene)
+{
+    double nu = scene->membranes[scene->membrane_count - 1].poisson_ratio;
+    return nu > -1.0 && nu <= .5 ? STATUS_OK
+                                 : place_fail(place, "nu", "%.15g is not above -1 and at most 0.5", nu);
+}
+
 static enum status check_initial(const struct place *place, struct scene *scene)
 {
     return scene->analysis == SCENE_DYNAMIC
@@ -254,6 +261,13 @@ static const struct scene_key support_keys[] = {
     {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, damping)},
     {NULL}};
 
+static const struct scene_key membrane_keys[] = {
+    {"facets", VALUE_NAMES, AT(scene_membrane, facets), .missing = "name the facet groups coated"},
+    {"thickness", VALUE_POSITIVE, AT(scene_membrane, thickness), .missing = "give it in m"},
+    {"E", VALUE_POSITIVE, AT(scene_membrane, youngs_modulus), .missing = "give Young's modulus in Pa"},
+    {"nu", VALUE_NUMBER, AT(scene_membrane, poisson_ratio), .missing = "give Poisson's ratio"},
+    {NULL}};
+
 static const struct scene_key initial_keys[] = {
     {"table", VALUE_TABLE, AT(scene, initial.table),
      .missing = "name the file of displacements and velocities at the nodes"},
@@ -298,6 +312,7 @@ static const struct scene_kind kinds[] = {
     {"displacement", displacement_keys, check_displacement, ITEMS(displacements, displacement_count)},
     {"contact", contact_keys, check_contact, ITEMS(contacts, contact_count)},
     {"support", support_keys, check_support, ITEMS(supports, support_count)},
+    {"membrane", membrane_keys, check_membrane, ITEMS(membranes, membrane_count)},
     {"pressure", pressure_keys, check_pressure, ITEMS(pressures, pressure_count)},
     {"traction", traction_keys, NULL, ITEMS(tractions, traction_count)},
     {"force", force_keys, NULL, ITEMS(forces, force_count)},

@@ -43,6 +43,13 @@ struct support_condition {
     int32_t curve;             /* any: the springs are at rest where u = 0 */
 };
 
+/* A thin skin on facets, see membrane.h. */
+struct membrane_condition {
+    const char *where; /* as of a condition */
+    struct facet_set facets;
+    double thickness, youngs_modulus, poisson_ratio; /* m, Pa */
+};
+
 /* Materials: one for each section, or one for each integration point of a section with a table. */
 struct material_list {
     struct material *items; /* count */
@@ -93,6 +100,8 @@ struct assembly {
     int64_t contact_count;
     const struct support_condition *supports;
     int64_t support_count;
+    const struct membrane_condition *membranes;
+    int64_t membrane_count;
     bool in_time; /* for dynamics: gravity by the lumped mass */
 
     /* Set by assembly_complete. */
@@ -111,7 +120,8 @@ MUST_CHECK enum status assembly_build(struct assembly *input, struct solid_syste
                                       struct error *error);
 
 /* Steps of assembly_build, in their own files: displacements, measured points, loads of a body that is built,
- * contacts, supports, and the reduced moduli of smoothed cells at junctions of prescribed and free boundary.
+ * contacts, supports with membranes, and the reduced moduli of smoothed cells at junctions of prescribed and
+ * free boundary.
  */
 MUST_CHECK enum status assembly_add_conditions(const struct assembly *input, struct solid_system *system,
                                                struct error *note, struct error *error);

@@ -1,4 +1,5 @@
-/* Supports: springs at the quadrature points of facets, which are penalties with target 0, and dashpots. */
+/* What surrounds a body. Supports: springs at the quadrature points of facets, which are penalties with
+ * target 0, and dashpots. And membranes. */
 #include "solid/assembly/assembly.h"
 
 #include "base/memory.h"
@@ -88,11 +89,25 @@ static enum status add_support(const struct assembly *input, int64_t number, str
     return support->damping > 0.0 ? add_dashpots(support, &points, system, error) : STATUS_OK;
 }
 
+static enum status add_membrane(const struct assembly *input, const struct membrane_condition *section,
+                                struct solid_system *system, struct error *error)
+{
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->membranes, system->membrane_count + 1, error));
+    struct membrane *added = &system->membranes[system->membrane_count++];
+    return fail_in(error,
+                   membrane_build(&input->face_table, &section->facets, section->thickness,
+                                  section->youngs_modulus, section->poisson_ratio, added, error),
+                   "%s", section->where);
+}
+
 enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,
                                   struct error *error)
 {
     for (int64_t i = 0; i < input->support_count; i++) {
         RETURN_IF_ERROR(add_support(input, i, system, error));
+    }
+    for (int64_t i = 0; i < input->membrane_count; i++) {
+        RETURN_IF_ERROR(add_membrane(input, &input->membranes[i], system, error));
     }
     return STATUS_OK;
 }

@@ -158,7 +158,7 @@ static void meet_conditions(struct dynamics *d)
     factors_at(d, 0.0, d->factor_now);
     use_factors(d);
     double energy = body_energy(&system->body, d->u) + system_spring_energy(system, d->u) +
-                    energy_kinetic(system, d->before, d->before);
+                    system_pull_membranes(system, d->u, NULL) + energy_kinetic(system, d->before, d->before);
     constraint_project(&d->constraint, d->factor_now, d->u);
     for (int64_t i = 0; i < system->curve_count; i++) {
         d->factor_now[i] = curve_rate(&system->curves[i], 0.0) / d->options->end_time;

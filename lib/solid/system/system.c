@@ -23,12 +23,15 @@ void system_free(struct solid_system *system)
         boundary_averages_free(&system->pressures[i].corners);
         boundary_averages_free(&system->pressures[i].points);
     }
+    for (int64_t i = 0; i < system->membrane_count; i++) {
+        membrane_free(&system->membranes[i]);
+    }
     system_free_contacts(system);
     for (int64_t i = 0; i < system->curve_count; i++) {
         curve_free(&system->curves[i]);
     }
-    FREE_ALL(system->loads, system->pressures, system->curves, system->lumped_mass, system->dashpot,
-             system->factor);
+    FREE_ALL(system->loads, system->pressures, system->membranes, system->curves, system->lumped_mass,
+             system->dashpot, system->factor);
     constraint_rows_free(&system->rows);
     sliding_free(&system->sliding);
     constraint_rows_free(&system->penalties);
@@ -275,6 +278,7 @@ void system_resist(struct solid_system *system, const double *u, double *force)
     system->cost.force += clock_seconds() - started;
     negate(system, force);
     system_add_penalties(system, u, force);
+    (void)system_pull_membranes(system, u, force);
     negate(system, force);
     body_gather(&system->body, force);
 }
@@ -286,6 +290,7 @@ struct deformation system_smooth_residual(struct solid_system *system, const dou
     double forced = clock_seconds();
     negate(system, residual);
     system_add_loads(system, u, residual);
+    (void)system_pull_membranes(system, u, residual);
     double loaded = clock_seconds();
     system_add_penalties(system, u, residual);
     double held = clock_seconds();
@@ -332,19 +337,6 @@ double system_longest_way(const struct solid_system *system)
     return longest;
 }
 
-double system_longest_change(const struct solid_system *system)
-{
-    const struct constraint_rows *rows = &system->rows;
-    double longest = 0.0;
-    if (rows->start == NULL) {
-        return system_longest_way(system);
-    }
-    for (int64_t r = 0; r < rows->count; r++) {
-        longest = fmax(longest, fabs(rows->start[r]));
-    }
-    return longest;
-}
-
 bool system_has_inverse(const struct solid_system *system)
 {
     return (system->dim == 3 || system->has_flat_cells) && system->body.smoothed &&
@@ -377,6 +369,9 @@ void system_relaxation_mass(struct solid_system *system, bool rest, double *mass
         body_nodal_diagonal(&system->body, rest, mass);
     } else {
         body_diagonal(&system->body, mass);
+        for (int64_t i = 0; i < system->membrane_count; i++) {
+            membrane_add_to_bound(&system->membranes[i], mass);
+        }
         add_penalties_to_bound(system, mass);
     }
     for (int64_t n = 0; n < system->node_count; n++) {

@@ -6,6 +6,7 @@
 #include "solid/constraint/constraint.h"
 #include "solid/contact/contact.h"
 #include "solid/system/curve.h"
+#include "solid/system/membrane.h"
 #include "solid/system/sliding.h"
 
 /* A dead load: forces on the parameters, scaled by a load curve. */
@@ -62,6 +63,8 @@ struct solid_system {
     int64_t load_count;
     struct pressure_load *pressures;
     int64_t pressure_count;
+    struct membrane *membranes;
+    int64_t membrane_count;
     struct contact *contacts;
     struct boundary_averages *contact_points, *contact_averages; /* contact_count: points of the contacts, and
                                                                 their nodal averages (may be empty) */
@@ -113,6 +116,10 @@ MUST_CHECK enum status system_constrain(const struct solid_system *system, const
 /* force[node_count * dim] += dead loads and pressures at system->factor, at parameters u. */
 void system_add_loads(const struct solid_system *system, const double *u, double *force);
 
+/* force[node_count * dim] -= internal forces of the membranes at u; returns their energy. force NULL: only
+ * that. */
+double system_pull_membranes(const struct solid_system *system, const double *u, double *force);
+
 /* residual[node_count * dim] = loads at system->factor + contact - internal forces, at parameters u. */
 struct deformation system_residual(struct solid_system *system, const double *u, double *residual);
 
@@ -154,8 +161,8 @@ double system_longest_way(const struct solid_system *system);
  * targets. */
 double system_longest_change(const struct solid_system *system);
 
-/* force[node_count * dim] = internal forces of body and constraint penalties at u, that is, minus the
- * residual without loads and contacts. */
+/* force[node_count * dim] = internal forces of body, membranes and constraint penalties at u, that is, minus
+ * the residual without loads and contacts. */
 void system_resist(struct solid_system *system, const double *u, double *force);
 
 /* Add the forces of the constraint penalties to force[node_count * dim], with several processes at own nodes;

@@ -1,5 +1,5 @@
-/* Constraint penalties of a system, and springs of measured points and supports, which are stored with them.
- */
+/* Constraint penalties of a system, and springs of measured points and supports, which are stored with them;
+ * and its membranes. */
 #include "solid/system/system.h"
 
 #include "base/chunks.h"
@@ -84,4 +84,13 @@ double system_penalty_energy(const struct solid_system *system, const double *u)
 double system_spring_energy(const struct solid_system *system, const double *u)
 {
     return energy_from(system, system->penalties.count - system->spring_count, u);
+}
+
+double system_pull_membranes(const struct solid_system *system, const double *u, double *force)
+{
+    double energy = 0.0;
+    for (int64_t i = 0; i < system->membrane_count; i++) {
+        energy += membrane_pull(&system->membranes[i], system->X, u, force);
+    }
+    return energy;
 }

@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "solid/system/system.h"
 
+#include <math.h>
+
 /* Replace each curve by the constant that is its value at the end. */
 static enum status hold_curves(struct solid_system *system, struct error *error)
 {
@@ -38,4 +40,17 @@ enum status system_start(struct solid_system *system, const double *u, struct er
         rows->start[r] = constraint_rows_value(rows, r, u) - constraint_rows_target(rows, r, system->factor);
     }
     return STATUS_OK;
+}
+
+double system_longest_change(const struct solid_system *system)
+{
+    const struct constraint_rows *rows = &system->rows;
+    double longest = 0.0;
+    if (rows->start == NULL) {
+        return system_longest_way(system);
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        longest = fmax(longest, fabs(rows->start[r]));
+    }
+    return longest;
 }

@@ -210,6 +210,25 @@ static enum status add_supports(struct model *model, struct error *error)
     return STATUS_OK;
 }
 
+static enum status add_membranes(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct membrane_condition *membranes;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &membranes, scene->membrane_count, error));
+    input->membranes = membranes;
+    for (int64_t i = 0; i < scene->membrane_count; i++) {
+        const struct scene_membrane *section = &scene->membranes[i];
+        membranes[i] = (struct membrane_condition){.where = section->label.where,
+                                                   .thickness = section->thickness,
+                                                   .youngs_modulus = section->youngs_modulus,
+                                                   .poisson_ratio = section->poisson_ratio};
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &membranes[i].facets, error));
+        input->membrane_count++;
+    }
+    return STATUS_OK;
+}
+
 enum status model_conditions(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;
@@ -227,6 +246,7 @@ enum status model_conditions(struct model *model, struct error *error)
     }
     RETURN_IF_ERROR(add_loads(model, error));
     RETURN_IF_ERROR(add_supports(model, error));
+    RETURN_IF_ERROR(add_membranes(model, error));
     return add_contacts(model, error);
 }
 
