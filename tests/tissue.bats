@@ -74,3 +74,20 @@ norm() {
         done
     done
 }
+
+@test "prony: a jump held in a dynamic scene fades as the closed form does, with its energies; after an interruption, too" {
+    cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > table.mts 2>> note
+    awk 'BEGIN { for (i = 0; i < 8; i++) print i % 2, int(i / 2) % 2, int(i / 4), 1e-3 * int(i / 4), 0, 0 }' > shear.tsv
+    printf '%s\n' '[scene]' 'dim = 3' 'analysis = dynamic' '[material all]' 'region = body' 'mu = 1000' 'nu = 0.45' 'rho = 1' 'prony = .45 .5, .365 50' \
+        '[displacement all]' 'facets = *' 'table = shear.tsv' 'unit = m' 'curve = step' '[output]' 'stress = yes' 'energy = yes' '[solver]' 'end_time = 0.5' > jump.scene
+    mtled jump.scene table.mts > jump.dat
+    mts print stress jump.dat | awk '{ off = $5 / 0.711914 - 1; bad += off * off > 1e-12 } END { exit bad || NR < 5 }'
+    mts print energy jump.dat | awk 'END { stored = 0.5e-3 * (0.185 + 0.45 * exp(-2) + 0.365 * exp(-0.02)); off = $3 / stored - 1; lost = $6 / (0.5e-3 - stored) - 1
+        exit off * off + lost * lost > 1e-10 || $7^2 > 1e-12 }'
+    sed -i 's/^end_time.*/end_time = 20/' jump.scene
+    mtled jump.scene table.mts > jump.dat
+    begin_and_end HUP jump.scene
+    [ $status -eq 129 ]
+    mtled -c run.ckpt -o out.dat jump.scene table.mts
+    cmp jump.dat out.dat
+}

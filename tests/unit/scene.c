@@ -248,6 +248,13 @@ TEST(material_keys)
     fails(HEAD BODY "active = 1\n", 4, "fibre: missing: give the direction of the fibres");
     fails(HEAD BODY "active = -1\n", 9, "active: -1 is not at least 0");
     fails(HEAD BODY "curve = step\n", 9, "curve: not allowed: it is that of active");
+    fails(HEAD BODY "prony = .45 .5, .55 50\n", 9, "prony: the sum of g is 1, not below 1");
+    fails(HEAD BODY "prony = .45 .5, .365 0\n", 9, "prony: 0 is not above 0");
+    fails(HEAD BODY "prony = 0 .5\n", 9, "prony: 0 is not within (0, 1)");
+    fails(HEAD BODY "prony = .45 nan\n", 9, "prony: 'nan' is not a finite number");
+    fails(HEAD BODY "prony = .45, .5\n", 9, "prony: '.45' is not a term: write g and tau in s");
+    fails(HEAD BODY "prony = .1 1, .1 2, .1 3, .1 4, .1 5, .1 6, .1 7\n", 9, "prony: has more than 6 terms");
+    fails(HEAD BODY "prony = .45 .5\n", 9, "prony: not allowed: it belongs to dynamic scenes");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "active = 1\n", 9,
           "active: not allowed: it belongs to quasi");
     fails(HEAD GUCCIONE, 4, "fibre: missing: give the direction of the fibres");

@@ -40,6 +40,12 @@ struct scene_curve {
     const char *file; /* SCENE_CURVE_FILE: rows (time, factor); else NULL */
 };
 
+/* Terms of a Prony series; none: elastic. */
+struct scene_prony {
+    double values[2 * PRONY_MOST_TERMS]; /* g and tau, s, of each */
+    int terms;
+};
+
 struct scene_material {
     struct scene_label label;
     struct name_list regions; /* at least one; in no other material */
@@ -51,9 +57,10 @@ struct scene_material {
     double fibre[3], fibre_plane[3]; /* as given; zeros: not given */
     double directions[6];            /* of the fibres, as in struct material; zeros: none, or by the table */
     struct scene_curve curve;        /* of material.active */
-    const char *fibres;              /* NULL, or rows (dim coordinates, direction of the fibres) */
-    const char *table; /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
-    double table_unit; /* m per unit of the table's coordinates */
+    struct scene_prony prony;
+    const char *fibres; /* NULL, or rows (dim coordinates, direction of the fibres) */
+    const char *table;  /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
+    double table_unit;  /* m per unit of the table's coordinates */
 };
 
 struct scene_displacement {

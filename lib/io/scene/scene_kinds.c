@@ -196,6 +196,7 @@ static const struct scene_key material_keys[] = {
     {"fibre", VALUE_VECTOR, AT(scene_material, fibre)},
     {"active", VALUE_NOT_NEGATIVE, AT(scene_material, material.active)},
     {"curve", VALUE_CURVE, AT(scene_material, curve)},
+    {"prony", VALUE_PRONY, AT(scene_material, prony)},
     {"fibres", VALUE_TABLE, AT(scene_material, fibres)},
     {"fibre_plane", VALUE_VECTOR, AT(scene_material, fibre_plane)},
     {"table", VALUE_TABLE, AT(scene_material, table)},

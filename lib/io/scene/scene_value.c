@@ -231,6 +231,31 @@ enum status place_numbers(const struct place *place, const struct law_key *key, 
     return STATUS_OK;
 }
 
+/* Read pairs of a share and a time, s. */
+static enum status read_prony(const struct place *place, const char *key, char *list,
+                              struct scene_prony *prony)
+{
+    const struct range share = {0.0, 1.0, true, true}, time = {0.0, DBL_MAX, true, false};
+    char *item;
+    double sum = 0.0;
+    for (prony->terms = 0; (item = next_item(&list)) != NULL; prony->terms++) {
+        double *term = prony->values + 2 * prony->terms;
+        char *g = strsep(&item, " \t"), *tau = item;
+        if (prony->terms == PRONY_MOST_TERMS) {
+            return place_fail(place, key, "has more than %d terms", PRONY_MOST_TERMS);
+        }
+        if (tau == NULL) {
+            return place_fail(place, key, "'%s' is not a term: write g and tau in s, as 0.45 0.5", g);
+        }
+        RETURN_IF_ERROR(read_within(place, key, g, share, &term[0]));
+        RETURN_IF_ERROR(read_within(place, key, tau + strspn(tau, " \t"), time, &term[1]));
+        sum += term[0];
+    }
+    return sum < 1.0 ? STATUS_OK
+                     : place_fail(place, key,
+                                  "the sum of g is %.15g, not below 1: nothing resists in the end", sum);
+}
+
 static enum status read_names(const struct place *place, const char *key, char *rest, struct name_list *list)
 {
     char *item;
@@ -348,6 +373,8 @@ enum status place_read(const struct place *place, const struct scene_key *key, i
         return read_file(place, text, value);
     case VALUE_UNIT:
         return read_unit(place, key->name, text, value);
+    case VALUE_PRONY:
+        return read_prony(place, key->name, text, value);
     case VALUE_CURVE:
         return read_curve(place, text, value);
     case VALUE_TEXT:

@@ -31,6 +31,7 @@ enum value_type {
     VALUE_TABLE,  /* const char *: a file of lengths, relative to the scene's folder unless absolute */
     VALUE_UNIT,   /* double: the unit of such a file in m; one is an error without the other */
     VALUE_CURVE,  /* struct scene_curve */
+    VALUE_PRONY,  /* struct scene_prony: a comma list of `g tau` */
     VALUE_TEXT    /* const char * */
 };
 

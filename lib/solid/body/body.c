@@ -17,11 +17,12 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
-/* The law of a point, which with active stress counts as another one: it has no kernel of its own. */
+/* The law of a point, which with active stress or viscosity counts as another one: it has no kernel of its
+ * own. */
 static int model_of(const struct body_input *input, int64_t point)
 {
     const struct material *material = &input->materials[input->material[point]];
-    return material->model + (fabs(material->active) > 0.0 ? law_count : 0);
+    return material->model + (fabs(material->active) > 0.0 || material->prony_terms > 0 ? law_count : 0);
 }
 
 /* Order the points by material law, so that each block has one law, and within a law along a Morton curve, so
@@ -78,7 +79,7 @@ static enum status copy_points(const struct body_input *input, struct body *body
         body->weight[q] = input->weight[from];
         body->material[q] = input->material[from];
     }
-    return STATUS_OK;
+    return prony_build(body, error);
 }
 
 /* Cut the ordered points into blocks of one law, merged cells together. */
@@ -209,6 +210,7 @@ void body_free(struct body *body)
     row_operator_free(&body->rows);
     smoothed_cells_free(&body->cells);
     nodal_volumes_free(&body->volumes);
+    prony_free(&body->prony);
     FREE_ALL(body->order, body->weight, body->materials, body->material, body->blocks, body->node_order,
              body->node_place, body->u, body->F, body->J, body->force, body->derivative);
     *body = (struct body){0};

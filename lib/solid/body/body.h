@@ -8,6 +8,7 @@
 #include "base/chunks.h"
 #include "base/status.h"
 #include "solid/body/body_share.h"
+#include "solid/body/prony.h"
 #include "solid/body/smoothed_cells.h"
 #include "solid/material/material.h"
 #include "solid/operators/row_operator.h"
@@ -51,7 +52,7 @@ struct block {
     bool neo_hookean;      /* all its points; else the general law */
     double least_jacobian; /* at the last evaluation, and where, in the body's order */
     int64_t worst_point;
-    double energy; /* at the last call of body_energy, J (2D: J/m) */
+    double energy, dissipated; /* at the last call of body_energy, J (2D: J/m) */
 };
 
 /* The matrix A of the nodal pressures, m3/Pa (2D: m2/Pa), and how A^-1 is applied: see nodal_pressure.c. */
@@ -109,10 +110,11 @@ struct body {
                                  at point q; or of smoothed cells field_averages.h */
     double *derivative;       /* du/dx_k, or the stress, of each row: VECTOR_STRIDE(dim) of each; */
     struct smoothed_cells cells; /* or smoothed cells instead */
-    double *u, *force; /* node_count * VECTOR_STRIDE(dim): displacements and forces in the body's order */
-    double *F;         /* dim * dim rows of point_count: deformation gradients of the last evaluation */
-    double *J;         /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
-    bool averaged;     /* nodal volumetric averaging */
+    double *u, *force;  /* node_count * VECTOR_STRIDE(dim): displacements and forces in the body's order */
+    double *F;          /* dim * dim rows of point_count: deformation gradients of the last evaluation */
+    double *J;          /* point_count: volume ratios, det F, or of cells that of smoothed_cells.h */
+    struct prony prony; /* histories of viscoelastic points */
+    bool averaged;      /* nodal volumetric averaging */
     struct nodal_volumes volumes;
     int threads;                       /* worth using for so many pairs */
     struct chunks bound_parts;         /* of the blocks, by each of which body_diagonal sums; */
@@ -161,8 +163,17 @@ double body_augment(struct body *body, bool steady, double most, double strain);
 /* Volume at rest, the sum of the weights of the points, m3 (2D: m2). */
 double body_volume(const struct body *body);
 
-/* Elastic energy at u, J (2D: J/m). */
+/* Elastic energy at u, J (2D: J/m). Of viscoelastic materials what they store; body->prony.dissipated becomes
+ * what they have dissipated up to the last accepted state. */
 double body_energy(struct body *body, const double *u);
+
+/* Viscoelastic materials: a step of dt from the last accepted state begins, 0: a jump; evaluations are then
+ * at its end. And the state evaluated last is accepted. Other bodies have no use for either. */
+void body_step(struct body *body, double dt);
+void body_accept(struct body *body);
+
+/* Collect the histories of all processes, so that each of them may write a checkpoint. */
+void body_collect_history(struct body *body);
 
 /* First Piola stress of each point at the last evaluation: stress[point_count * 9], caller's order, Pa. */
 void body_stress(struct body *body, double *stress);

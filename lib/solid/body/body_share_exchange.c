@@ -51,6 +51,7 @@ void body_share_collect(struct body *body)
         }
     }
     ranks_gather(share->ranks, body->J, sizeof *body->J, share->point_first);
+    body_collect_history(body);
     if (body->averaged) {
         ranks_gather(share->ranks, body->volumes.strain, sizeof *body->volumes.strain, share->point_first);
         body_share_collect_pressures(body);

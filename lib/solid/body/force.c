@@ -239,13 +239,16 @@ double body_volume(const struct body *body)
     return volume;
 }
 
-/* Add the energy of a point to *energy. */
-static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *energy)
+/* Add the energies of a point to its block's. */
+static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *block)
 {
     const struct material *material = &body->materials[body->material[q]];
-    double sum = material_isochoric_energy(material, F) + stress_active_energy(body, q, F);
+    struct block *of_block = block;
+    double dissipated = 0.0, W = material_isochoric_energy(material, F);
+    double sum = prony_energy(body, q, F, W, &dissipated) + stress_active_energy(body, q, F);
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
-    *(double *)energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
+    of_block->energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
+    of_block->dissipated += body->weight[q] * dissipated;
 }
 
 double body_energy(struct body *body, const double *u)
@@ -255,11 +258,13 @@ double body_energy(struct body *body, const double *u)
     set_state(body, u);
 #pragma omp parallel for schedule(static) num_threads(body->threads)
     for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
-        body->blocks[b].energy = 0.0;
-        body_visit(body, b, b + 1, add_energy, &body->blocks[b].energy);
+        body->blocks[b].energy = body->blocks[b].dissipated = 0.0;
+        body_visit(body, b, b + 1, add_energy, &body->blocks[b]);
     }
     ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
+    body->prony.dissipated = 0.0;
     for (int64_t b = 0; b < body->block_count; b++) {
+        body->prony.dissipated += body->blocks[b].dissipated;
         energy += body->blocks[b].energy;
     }
     return energy;

@@ -52,6 +52,7 @@ static void isochoric_stress(const struct body *body, int64_t q, const double F[
     const struct material *material = &body->materials[body->material[q]];
     double T = active_stress(body, material);
     material_isochoric_stress(material, F, P);
+    prony_stress(body, q, F, P);
     for (int i = 0; i < 3 && fabs(T) > 0.0; i++) {
         add_scaled(3, T * vector_dot(3, F + 3 * i, material->fibre), material->fibre, P + 3 * i);
     }

@@ -42,6 +42,7 @@ static void give_frames(struct dynamics *d)
 
 static bool tell(struct dynamics *d)
 {
+    body_collect_history(&d->system->body);
     double now = dynamics_time_now(d);
     struct progress progress = {.step = d->report->steps,
                                 .time = now,
@@ -113,9 +114,11 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
     for (;;) {
         int64_t n = d->report->steps;
         bool is_check = n % check_interval == 0, is_last = n > 0 && d->left == 0;
+        body_step(&d->system->body, n > 0 ? d->previous_step : 0.0);
         if (!evaluate(d)) {
             return DYNAMICS_INVERTED;
         }
+        body_accept(&d->system->body);
         system_accept(d->system);
         double contact = energy_contact(d->system);
         if (is_check && !is_last) {

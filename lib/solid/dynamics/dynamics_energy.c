@@ -51,6 +51,7 @@ bool dynamics_sample(struct dynamics *d, double contact, struct error *error)
                          .kinetic = energy_kinetic(d->system, d->before, d->after),
                          .internal = energy_internal(d->system, d->u),
                          .contact = contact};
+    row.dissipated = d->system->body.prony.dissipated;
     d->report->force_evaluations++;
     energy_balance_complete(&d->balance, is_first, &row);
     d->report->last_drift = fabs(row.error);

@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 enum { MATERIAL_NEO_HOOKEAN = 0 }; /* the number of the law that has kernels of its own */
+enum { PRONY_MOST_TERMS = 6 };
 
 struct material {
     int model;                /* number of the law in material_laws, see law.h */
@@ -25,6 +26,9 @@ struct material {
     double active;        /* second Piola-Kirchhoff stress along the fibres, Pa, times a load curve, which
                              the body adds: T/2 (|F a|^2 - 1); 0: none */
     int32_t active_curve; /* of body->load_factors */
+    const double *prony;  /* g and tau, s, of each term of a Prony series, sum g < 1; the caller's; the moduli
+                             above are then the instantaneous ones. The body relaxes: W and P here do not */
+    int prony_terms;      /* 0: elastic */
 };
 
 /* Moduli from Young's modulus (Pa, > 0) and Poisson's ratio (-1 < nu < .5). */

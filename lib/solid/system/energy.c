@@ -45,11 +45,11 @@ struct energy_balance energy_balance_begin(const struct solid_system *system)
 void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row)
 {
     double stored = row->kinetic + row->internal + row->contact;
-    if (first) {
-        balance->start = stored - balance->work;
-    }
     row->work = balance->work;
-    row->dissipated = balance->dissipated;
+    row->dissipated += balance->dissipated;
+    if (first) {
+        balance->start = stored + row->dissipated - balance->work;
+    }
     const double parts[] = {row->kinetic, row->internal, row->contact, row->work, row->dissipated};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         balance->largest = fmax(balance->largest, fabs(parts[i]));

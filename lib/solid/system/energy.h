@@ -11,7 +11,7 @@ struct energy {
     double internal;   /* elastic, of the body, its membranes and the constraint penalties */
     double contact;    /* of the contacts' penalties */
     double work;       /* of loads and prescribed motion, since the start */
-    double dissipated; /* by damping, since the start */
+    double dissipated; /* by damping and viscoelastic materials, since the start */
     double error;      /* of the balance, relative to the largest energy so far */
 };
 enum { ENERGY_COLUMNS = 7 };
@@ -38,7 +38,8 @@ struct energy_balance {
 
 struct energy_balance energy_balance_begin(const struct solid_system *system);
 
-/* Set work, dissipated and error of a row; `first`: it is the row of the start. */
+/* Set work and error of a row, and add to dissipated, which is set to that of the materials; `first`: it is
+ * the row of the start. */
 void energy_balance_complete(struct energy_balance *balance, bool first, struct energy *row);
 
 /* 1/2 v M w, J (2D: J/m). */

@@ -49,6 +49,7 @@ enum status system_state(struct solid_system *system, const struct state *state,
                                             {"left", STATE_NUMBERS, &system->stability.left, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
     RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 3, error));
+    RETURN_IF_ERROR(prony_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
         snprintf(prefix, sizeof prefix, "contact.%lld", (long long)c);

@@ -123,6 +123,8 @@ enum status model_materials(struct model *model, struct error *error)
         list->items[m] = scene->materials[m].material;
         list->items[m].parameters = scene->materials[m].parameters;
         list->items[m].fibre = has_fibres(&scene->materials[m]) ? scene->materials[m].directions : NULL;
+        list->items[m].prony = scene->materials[m].prony.values;
+        list->items[m].prony_terms = scene->materials[m].prony.terms;
         list->section[m] = (int32_t)m;
         if (list->items[m].active > 0.0) {
             RETURN_IF_ERROR(model_add_curve(model, &scene->materials[m].label, &scene->materials[m].curve,
