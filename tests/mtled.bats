@@ -194,7 +194,7 @@ near() {
     mv reversed.tsv begin.tsv
     refused 2 "begin.tsv:1: not the place of node 0" mtled thrown.scene small.mts
     { pressed_block; printf '[initial]\ntable = begin.tsv\nunit = mm\n'; } > edited.scene
-    refused 2 "a quasi-static scene has no time" mtled edited.scene square.mts
+    refused 2 "a quasi-static scene has duration, in [scene]" mtled edited.scene square.mts
 }
 
 @test "a quasi-static scene whose body is only held ends at rest, without a word" {

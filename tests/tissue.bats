@@ -91,3 +91,60 @@ norm() {
     mtled -c run.ckpt -o out.dat jump.scene table.mts
     cmp jump.dat out.dat
 }
+
+# A unit cube in a quasi-static scene. timed SECONDS STEPS 'LINES OF [material]' 'LINES' OF THE SIDE xmax
+timed() {
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\nduration = %s\n[material all]\nregion = body\n%b\n' "$1" "$3"
+    printf '[displacement %s]\nfacets = %s\nnormal = 0\n' x xmin y ymin z zmin
+    printf '%b\n[output]\nreactions = yes\nenergy = yes\n[solver]\ntolerance = 1e-8\ntime_steps = %s\n' "$4" "$2"
+}
+brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .365 50'
+
+@test "prony: a step held in a quasi-static scene fades as the closed form does, sheared or stretched" {
+    cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > cube.mts 2>> note
+    awk 'BEGIN { for (i = 0; i < 8; i++) print i % 2, int(i / 2) % 2, int(i / 4), 0.3 * int(i / 4), 0, 0 }' > shear.tsv
+    timed 500 1000 "$brain" '[displacement w]\nfacets = xmax\nnormal = 0.3\ncurve = step' | sed 's/^\[output\]/&\nframes = 1000\nstress = yes/' > step.scene
+    mtled step.scene cube.mts > stretched.dat
+    sed '/^\[displacement/,/^normal/d; s/^curve/[displacement all]\nfacets = *\ntable = shear.tsv\nunit = m\n&/' step.scene > shear.scene
+    mtled shear.scene cube.mts > sheared.dat
+    for f in 0 1 10 100 1000; do mts print stress.frame.$f sheared.dat | awk 'NR == 1 { print $5 }'; mts print stress.frame.$f stretched.dat | awk 'NR == 1 { print $1 }'; done |
+        awk 'BEGIN { split("1 .711914 .515286 .319276 .185017", want) } NR <= 2 { first[NR] = $1 }
+            { off = $1 / first[2 - NR % 2] - want[int((NR + 1) / 2)]; print off; bad += off^2 > (NR % 2 ? 1e-12 : 1e-11) } END { exit bad || NR != 10 }'
+    mts print energy.frames stretched.dat | awk '$4 < before - 1e-9 { bad = 1 } { before = $4 } END { exit bad || NR != 1001 }'
+}
+
+# The references are incompressible: of kappa = 1e5 mu, 1e-5 less. Twice as many steps: a quarter of the error.
+@test "prony: brain tissue at three rates, and the order of the update" {
+    cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > cube.mts 2>> note
+    force() { # RATE STEPS
+        timed "$(awk "BEGIN { print 0.3 / $1 }")" "$2" "$brain" '[displacement w]\nfacets = xmax\nnormal = -0.3\ncurve = linear' > ramp.scene
+        mtled ramp.scene cube.mts | mts print reactions | awk 'END { print $1 }'
+    }
+    for n in 10 20 40; do force .64 $n; done | awk '{ f[NR] = $1 } END { print r = (f[1] - f[2]) / (f[2] - f[3]); exit !(r > 3.8 && r < 4.2) || (f[3] + 2235.130)^2 > 0.04 }'
+    force .0064 100 | awk '{ print; exit ($1 + 1190.240)^2 > 0.04 }'
+    force 6.4e-6 50 | awk '{ print; exit ($1 + 467.963)^2 > 0.01 }'
+}
+
+# FEBio: u(t) to first order, which the strain of .2 % changes by .1 %. Its law relaxes as a whole: at nu = 0 this one has no U.
+@test "prony: FEBio's ma05 creeps; a bent block goes on after an interruption, in threads and processes, to the same bytes" {
+    cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> note | shapefn > table.mts 2>> note
+    timed .05 50 'model = neo-hookean-log\nE = 1.95\nnu = 0\nprony = .487179487 .01' '[traction f]\nfacets = xmax\ncomponents = 0.002, 0, 0\ncurve = step' |
+        sed 's/^\[output\]/&\nframes = 5/' > creep.scene
+    mtled creep.scene table.mts > creep.dat
+    for f in 0 1 2 5; do mts print u.frame.$f creep.dat | tail -n 1; done |
+        awk 'BEGIN { split(".0010256 .0014165 .0016506 .0019250", u) } { off = $1 / u[NR] - 1; print; bad += off^2 > 1.5e-6 } END { exit bad || NR != 4 }'
+    cloud -d 3 -k jittered -n 4 --box 0,0.1,0,0.1,0,0.1 --jitter 0.2 | shapefn > table.mts 2> note
+    timed 2 20 'mu = 1000\nnu = 0.4999\nprony = .45 .1, .365 1' '[traction f]\nfacets = xmax\ncomponents = 50, 0, 20\ncurve = step' |
+        sed 's/^\[output\]/&\nframes = 4\nstress = yes/' > bend.scene
+    mtled bend.scene table.mts > whole.dat
+    OMP_NUM_THREADS=2 mtled bend.scene table.mts | cmp whole.dat
+    begin_and_end TERM bend.scene state.frames
+    [ $status -eq 143 ]
+    mtled -c run.ckpt -o part.dat bend.scene table.mts
+    cmp whole.dat part.dat
+    if [ -x "$BUILD/bin/mtled-mpi" ]; then
+        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+        mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat bend.scene table.mts
+        cmp <(bare whole.dat) <(bare two.dat)
+    fi
+}

@@ -254,7 +254,12 @@ TEST(material_keys)
     fails(HEAD BODY "prony = .45 nan\n", 9, "prony: 'nan' is not a finite number");
     fails(HEAD BODY "prony = .45, .5\n", 9, "prony: '.45' is not a term: write g and tau in s");
     fails(HEAD BODY "prony = .1 1, .1 2, .1 3, .1 4, .1 5, .1 6, .1 7\n", 9, "prony: has more than 6 terms");
-    fails(HEAD BODY "prony = .45 .5\n", 9, "prony: not allowed: it belongs to dynamic scenes");
+    fails(HEAD BODY "prony = .45 .5\n", 9, "prony: the scene has no time: give duration in [scene], s");
+    fails(HEAD BODY "[solver]\ntime_steps = 5\n", 10, "time_steps: not allowed: the scene has no duration");
+    fails(HEAD "duration = nan\n" BODY, 4, "duration: 'nan' is not a finite number");
+    fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11, "method: a scene with duration takes newton");
+    fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4, "duration: not allowed: a dynamic scene");
+    fails(HEAD "duration = 1\n" BODY, 0, "[scene]: duration: of no use");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "active = 1\n", 9,
           "active: not allowed: it belongs to quasi");
     fails(HEAD GUCCIONE, 4, "fibre: missing: give the direction of the fibres");
@@ -343,7 +348,7 @@ TEST(solver_and_output)
 {
     fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
     fails(HEAD BODY "[solver]\ntolerance = 0\n", 10, "tolerance: 0 is not within (0, 1)");
-    fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has no time");
+    fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has duration, in [scene]");
     fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "not a whole number within [1,");
     fails(HEAD BODY "[solver]\nmax_steps = 1e3\n", 10, "'1e3' is not a whole number");
     fails(HEAD BODY "[output]\nframes = -1\n", 10, "not a whole number");

@@ -93,8 +93,22 @@ static enum status check_regions(const struct scene *scene, struct error *error)
     return STATUS_OK;
 }
 
+static bool has_prony(const struct scene *scene)
+{
+    int terms = 0;
+    for (int64_t m = 0; m < scene->material_count; m++) {
+        terms += scene->materials[m].prony.terms;
+    }
+    return terms > 0;
+}
+
 static enum status check_whole(const struct scene *scene, struct error *error)
 {
+    if (scene->duration > 0.0 && !has_prony(scene) && !scene->tabulated) {
+        return fail(error, STATUS_INPUT,
+                    "%s: [scene]: duration: of no use: no material has prony, and no curve a table in s",
+                    scene->path);
+    }
     if (scene->material_count == 0) {
         return fail(error, STATUS_INPUT, "%s: no section [material NAME]: give at least one", scene->path);
     }

@@ -158,7 +158,8 @@ struct scene_solver {
     double tolerance;        /* estimated remaining error relative to the displacement; default 1e-5 */
     int64_t max_steps;       /* 0: not given */
     int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
-    double end_time;         /* s, dynamic; 0 in quasi-static scenes, whose curves run from 0 to 1 */
+    int64_t time_steps;      /* of a quasi-static scene with duration; default 50 */
+    double end_time;         /* s, dynamic */
     double time_step_margin; /* share of the estimated critical step; default .9, dynamic .8 */
     double damping;          /* 1/s, dynamic; default 0 */
 };
@@ -169,6 +170,8 @@ struct scene {
     const char *title; /* "" when absent */
     int dim;           /* 2 or 3 */
     enum scene_analysis analysis;
+    double duration; /* s, of a quasi-static scene in time; 0: of loads alone, whose curves run from 0 to 1 */
+    bool tabulated;  /* a curve is a file */
     double gravity[3]; /* m/s2 */
     struct scene_material *materials;
     int64_t material_count; /* >= 1 */

@@ -7,13 +7,19 @@
 
 #define KEYS (const char *const[])
 
+static const int64_t usual_time_steps = 50;
+
 /* ---- checks of the keys of a section together, after all have been read ---- */
 
 static enum status check_scene(const struct place *place, struct scene *scene)
 {
-    (void)place;
     if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
         scene->solver.time_step_margin = 0.75;
+        return place_forbid(place, "duration", "a dynamic scene has end_time");
+    }
+    if (scene->duration > 0.0) {
+        scene->solver.method = SCENE_NEWTON;
+        scene->solver.time_steps = usual_time_steps;
     }
     return STATUS_OK;
 }
@@ -154,14 +160,21 @@ static enum status check_solver(const struct place *place, struct scene *scene)
     if (scene->analysis == SCENE_DYNAMIC) {
         RETURN_IF_ERROR(place_forbid(place, "method", "a dynamic scene is stepped in time"));
         RETURN_IF_ERROR(place_forbid(place, "ramp_steps", "a dynamic scene has end_time"));
+        RETURN_IF_ERROR(
+            place_forbid(place, "time_steps", "a dynamic scene chooses its own (time_step_margin)"));
         return place_forbid(place, "tolerance", "a dynamic scene ends at end_time");
+    }
+    if (!(scene->duration > 0.0)) {
+        RETURN_IF_ERROR(place_forbid(place, "time_steps", "the scene has no duration"));
+    } else if (scene->solver.method != SCENE_NEWTON) {
+        return place_fail(place, "method", "a scene with duration takes newton");
     }
     if (scene->solver.method == SCENE_NEWTON) {
         static const char why[] = "method = newton chooses its own increments of the load";
         RETURN_IF_ERROR(place_forbid(place, "ramp_steps", why));
         RETURN_IF_ERROR(place_forbid(place, "time_step_margin", why));
     }
-    RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has no time"));
+    RETURN_IF_ERROR(place_forbid(place, "end_time", "a quasi-static scene has duration, in [scene]"));
     return place_forbid(place, "damping", "a quasi-static scene chooses its own");
 }
 
@@ -181,6 +194,7 @@ static const struct scene_key scene_keys[] = {{"dim", VALUE_DIM, AT(scene, dim),
                                               {"analysis", VALUE_CHOICE, AT(scene, analysis),
                                                .missing = "give quasi-static or dynamic",
                                                WORDS("quasi-static", "dynamic")},
+                                              {"duration", VALUE_POSITIVE, AT(scene, duration)},
                                               {"title", VALUE_TEXT, AT(scene, title)},
                                               {"gravity", VALUE_VECTOR, AT(scene, gravity)},
                                               {NULL}};
@@ -299,6 +313,7 @@ static const struct scene_key solver_keys[] = {
     {"tolerance", VALUE_SHARE, AT(scene, solver.tolerance)},
     {"max_steps", VALUE_COUNT, AT(scene, solver.max_steps), .most = MOST_STEPS},
     {"ramp_steps", VALUE_COUNT, AT(scene, solver.ramp_steps), .most = MOST_STEPS},
+    {"time_steps", VALUE_COUNT, AT(scene, solver.time_steps), .most = 1000000},
     {"end_time", VALUE_POSITIVE, AT(scene, solver.end_time)},
     {"time_step_margin", VALUE_SHARE, AT(scene, solver.time_step_margin)},
     {"damping", VALUE_NOT_NEGATIVE, AT(scene, solver.damping)},

@@ -218,8 +218,8 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
     if (place_has(place, "active") && scene->analysis == SCENE_DYNAMIC) {
         return place_fail(place, "active", "not allowed: it belongs to quasi-static scenes");
     }
-    if (scene->analysis == SCENE_QUASI_STATIC) {
-        RETURN_IF_ERROR(place_forbid(place, "prony", "it belongs to dynamic scenes"));
+    if (scene->analysis == SCENE_QUASI_STATIC && section->prony.terms > 0 && !(scene->duration > 0.0)) {
+        return place_fail(place, "prony", "the scene has no time: give duration in [scene], s");
     }
     if (!place_has(place, "active")) {
         RETURN_IF_ERROR(place_forbid(place, "curve", "it is that of active, which is not given"));

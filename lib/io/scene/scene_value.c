@@ -339,6 +339,7 @@ static enum status read_curve(const struct place *place, const char *text, struc
         }
     }
     curve->kind = SCENE_CURVE_FILE;
+    place->scene->tabulated = true;
     return read_file(place, text, &curve->file);
 }
 

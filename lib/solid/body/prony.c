@@ -10,6 +10,9 @@ enum { STRESS = 0, STRAIN = 6, WORK = 12, TERMS = 13, COMPONENTS = 6 };
 
 static const int place[COMPONENTS] = {0, 4, 8, 1, 5, 2}; /* of the components in a matrix */
 
+/* By mu: below, W is hardly more than round-off. */
+static const double least_strained = 1e-9;
+
 int prony_row(const struct prony *prony)
 {
     return TERMS + COMPONENTS * prony->terms;
@@ -139,28 +142,34 @@ double prony_energy(const struct body *body, int64_t q, const double F[9], doubl
     }
     const struct prony_step *step = present_step(body, q);
     const double *history = history_of(body, q);
-    double P[9], S[COMPONENTS], h[COMPONENTS], share = 1.0, stored = 0.0;
+    double P[9], S[COMPONENTS], h[COMPONENTS], share = 1.0, stored = 0.0, mu = material->shear_modulus;
     material_isochoric_stress(material, F, P);
     second_stress(F, P, S);
+    double compliance = W > least_strained * mu ? W / contract(S, S) : 0.25 / mu;
     for (int k = 0; k < material->prony_terms; k++) {
         double g = material->prony[2 * k];
         for (int c = 0; c < COMPONENTS; c++) {
             h[c] = term(step, history, k, c, S[c]);
         }
         share -= g;
-        stored += contract(h, h) / (4.0 * material->shear_modulus * g);
+        stored += contract(h, h) / g * compliance;
     }
     *dissipated = history[WORK] - stored;
     return share * W + stored;
 }
 
-/* The step of point q becomes its history. The work of the terms is that of their mean. */
+/* The step of point q becomes its history. The work of the terms is that of their mean, and in a jump, which
+ * is from rest, their share of W. */
 static void accept_point(struct body *body, int64_t q)
 {
     const struct material *material = &body->materials[body->material[q]];
     const struct prony_step *step = present_step(body, q);
     const double *S = body->prony.stress + q * COMPONENTS;
     double *history = history_of(body, q), F[9], E[9], mean[COMPONENTS] = {0.0}, change[COMPONENTS];
+    double share = 0.0;
+    for (int k = 0; k < material->prony_terms; k++) {
+        share += material->prony[2 * k];
+    }
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     green_lagrange(F, E);
     for (int c = 0; c < COMPONENTS; c++) {
@@ -173,7 +182,8 @@ static void accept_point(struct body *body, int64_t q)
         history[STRAIN + c] = E[place[c]];
         history[STRESS + c] = S[c];
     }
-    history[WORK] += contract(mean, change);
+    history[WORK] +=
+        body->prony.step > 0.0 ? contract(mean, change) : share * material_isochoric_energy(material, F);
 }
 
 void body_accept(struct body *body)
@@ -202,15 +212,14 @@ void body_collect_history(struct body *body)
 enum status prony_state(struct body *body, const struct state *state, struct error *error)
 {
     struct prony *prony = &body->prony;
-    double step = prony->step;
     const struct state_value values[] = {
         {"history", STATE_NUMBERS, prony->history, body->point_count * prony_row(prony)},
-        {"step", STATE_NUMBERS, &step, 1},
+        {"step", STATE_NUMBERS, &prony->step, 1},
         {"accepted", STATE_FLAGS, &prony->accepted, 1}};
     if (prony->terms == 0) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(state_visit(state, "prony", values, 3, error));
-    set_steps(body, step);
+    set_steps(body, prony->step);
     return STATUS_OK;
 }

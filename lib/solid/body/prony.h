@@ -38,8 +38,9 @@ void prony_free(struct prony *prony);
 void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9]);
 
 /* Of point q: the stored energy at the end of the step, per volume, Pa, where that of the law but for its
- * volumetric part is W. The terms store about |h|^2 / (4 mu g), as they do at small strain. *dissipated: the
- * work of the terms up to the last accepted state, less what they store. */
+ * volumetric part is W. A term stores W |h|^2 / (g |S|^2), which is g W before it relaxes, 0 at last, and at
+ * small strain |h|^2 / (4 mu g). *dissipated: the work of the terms up to the last accepted state, less what
+ * they store. */
 double prony_energy(const struct body *body, int64_t q, const double F[9], double W, double *dissipated);
 
 /* Visit the histories, see base/state.h. */

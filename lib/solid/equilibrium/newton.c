@@ -338,11 +338,12 @@ static enum relaxation_outcome iterate(struct newton *n, struct error *error)
 static enum status begin(struct newton *n, struct error *error)
 {
     struct solid_system *system = n->system;
-    system_load_factors(system, 0.0);
+    n->load = n->options->in_time && system_begins_loaded(system) ? -1.0 : 0.0;
+    system_load_factors(system, n->load);
     system_measure_contacts(system, n->u, true);
     system_accept(system);
     (void)newton_evaluate(n, n->u, &n->at_u);
-    if (n->options->frame != NULL && n->options->frames > 0) {
+    if (n->options->frame != NULL && n->options->frames > 0 && !n->options->in_time) {
         n->options->frame(n->options->context, 0, 0.0, n->u);
     }
     RETURN_IF_ERROR(weigh(n, error));

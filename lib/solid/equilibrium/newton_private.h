@@ -39,7 +39,7 @@ struct newton {
     double best_error;     /* at this load, */
     int64_t best_step;     /* and when; the error has not halved since */
     int64_t corrections;   /* at this load */
-    int64_t frames;        /* reported so far, without frame 0 */
+    int64_t frames;        /* equilibria reported so far */
     enum status failure;
 };
 

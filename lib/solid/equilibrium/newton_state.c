@@ -63,7 +63,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
 
 double newton_load_share(const struct newton *n)
 {
-    return n->system->rows.start != NULL ? 1.0 : n->load;
+    return n->system->rows.start != NULL ? 1.0 : fmax(0.0, n->load);
 }
 
 bool newton_tell(struct newton *n)
@@ -83,9 +83,14 @@ static bool gives_frames(const struct newton *n)
     return n->options->frame != NULL && n->options->frames > 0;
 }
 
+static int64_t next_frame(const struct newton *n)
+{
+    return n->frames + (n->options->in_time ? 0 : 1);
+}
+
 double newton_load_to_hold(const struct newton *n)
 {
-    return gives_frames(n) ? fmin(1.0, (double)(n->frames + 1) / (double)n->options->frames) : 1.0;
+    return gives_frames(n) ? fmin(1.0, (double)next_frame(n) / (double)n->options->frames) : 1.0;
 }
 
 enum status newton_row_forces(struct newton *n, struct error *error)
@@ -104,8 +109,8 @@ enum status newton_give_frame(struct newton *n, struct error *error)
 {
     RETURN_IF_ERROR(newton_row_forces(n, error));
     if (gives_frames(n)) {
+        n->options->frame(n->options->context, next_frame(n), newton_load_share(n), n->u);
         n->frames++;
-        n->options->frame(n->options->context, n->frames, newton_load_share(n), n->u);
     }
     return STATUS_OK;
 }

@@ -22,8 +22,11 @@ struct relaxation_options {
     int64_t most_steps; /* 0: 1e6 */
     int64_t frames; /* equilibria to report, evenly over the ramp: at each the load is held until the error is
                        below the tolerance; the last one is the result */
-    frame_function *frame; /* NULL: none. Frame 0 is the initial u. In a call, the system's last evaluation is
-                              at the frame's u, and the caller's row_force holds the forces there */
+    bool in_time;   /* Newton's method: the body stands at time 0 already, under the loads there; frame 0 is
+                       that   equilibrium, and a frame may change the body, as a step of time does (body_step) */
+    frame_function
+        *frame; /* NULL: none. Frame 0 is otherwise the initial u. In a call, the system's last evaluation is
+                   at the frame's u, and the caller's row_force holds the forces there */
     progress_function *progress;
     void *context;                            /* of frame and progress */
     const volatile sig_atomic_t *interrupted; /* unless NULL: progress is called at the end of the step in

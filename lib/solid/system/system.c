@@ -148,13 +148,6 @@ enum status system_constrain(const struct solid_system *system, const double *ma
     return status;
 }
 
-void system_load_factors(struct solid_system *system, double s)
-{
-    for (int64_t i = 0; i < system->curve_count; i++) {
-        system->factor[i] = curve_value(&system->curves[i], s);
-    }
-}
-
 /* Deformed position of a corner: X + the average's displacement. */
 static void corner_position(const struct solid_system *system, const struct boundary_averages *averages,
                             int64_t a, const double *u, double *x)

@@ -102,8 +102,10 @@ MUST_CHECK enum status system_state(struct solid_system *system, const struct st
  * Call this before the first evaluation. STATUS_SYSTEM: memory. */
 MUST_CHECK enum status system_start(struct solid_system *system, const double *u, struct error *error);
 
-/* Values of all curves at s within [0, 1], into system->factor. */
+/* Values of all curves at s within [0, 1], into system->factor; for s from -1 to 0 they grow from 0 to those
+ * at 0. Whether any of these is not 0. */
 void system_load_factors(struct solid_system *system, double s);
+bool system_begins_loaded(const struct solid_system *system);
 
 /* constraint_build for the rows of the system; the constraint keeps the pointer to `mass`. Linearly dependent
  * rows are dropped. STATUS_VERDICT, naming sections, node and place, if they are inconsistent with the

@@ -42,15 +42,18 @@ enum status system_start(struct solid_system *system, const double *u, struct er
     return STATUS_OK;
 }
 
-double system_longest_change(const struct solid_system *system)
+void system_load_factors(struct solid_system *system, double s)
 {
-    const struct constraint_rows *rows = &system->rows;
-    double longest = 0.0;
-    if (rows->start == NULL) {
-        return system_longest_way(system);
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        system->factor[i] = fmin(1.0, 1.0 + s) * curve_value(&system->curves[i], s);
     }
-    for (int64_t r = 0; r < rows->count; r++) {
-        longest = fmax(longest, fabs(rows->start[r]));
+}
+
+bool system_begins_loaded(const struct solid_system *system)
+{
+    bool loaded = false;
+    for (int64_t i = 0; i < system->curve_count; i++) {
+        loaded = loaded || fabs(curve_value(&system->curves[i], 0.0)) > 0.0;
     }
-    return longest;
+    return loaded;
 }

@@ -22,7 +22,9 @@ enum status model_add_curve(struct model *model, const struct scene_label *label
     if (curve->kind != SCENE_CURVE_FILE) {
         *added = curve_of_kind(kinds[curve->kind]);
     } else {
-        double end = input->in_time ? model->scene->solver.end_time : 1.0;
+        double end = input->in_time                 ? model->scene->solver.end_time
+                     : model->scene->duration > 0.0 ? model->scene->duration
+                                                    : 1.0;
         RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
                                 "%s: curve: not smooth, linear or step, and as a file", label->where));
         RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error),
@@ -121,8 +123,9 @@ static enum status add_loads(struct model *model, struct error *error)
     } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
                  {scene->forces, scene->force_count, LOAD_FORCE},
                  {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
-    /* In dynamics gravity acts from the start; in a quasi-static scene it grows smoothly. */
-    const struct scene_curve curve = {.kind = input->in_time ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
+    /* In time gravity acts from the start; in other scenes it grows smoothly. */
+    bool from_start = input->in_time || scene->duration > 0.0;
+    const struct scene_curve curve = {.kind = from_start ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
     struct load *loads;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
                                 scene->traction_count + scene->force_count + scene->pressure_count, error));

@@ -104,7 +104,7 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
     size_t size;
     FILE *text = open_memstream(&attributes, &size);
     if (text != NULL) {
-        fprintf(text, "unit=%s", in_one_row ? "1" : unit);
+        fprintf(text, "unit=%s", !in_one_row ? unit : scene->duration > 0.0 ? "s" : "1");
         for (int64_t i = 0; in_one_row && i < rows * each; i++) {
             fprintf(text, ",%s", unit);
         }

@@ -82,16 +82,42 @@ static void put_error(const struct run *run)
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
+/* Steps of time: as many as asked for, or the next number that is a multiple of that of the frames. */
+static int64_t count_steps(const struct scene *scene)
+{
+    int64_t frames = scene->output.frames > 0 ? scene->output.frames : 1;
+    return (scene->solver.time_steps + frames - 1) / frames * frames;
+}
+
+/* A frame_function: an equilibrium in time ends a step, and the next one begins. */
+static void end_step(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    struct body *body = &run->model->system.body;
+    int64_t steps = count_steps(run->scene), frames = run->scene->output.frames;
+    body_accept(body);
+    body_collect_history(body);
+    if (frames > 0 && number % (steps / frames) == 0) {
+        run_put_equilibrium(run, number / (steps / frames), time, u);
+    }
+    if (number < steps) {
+        body_step(body, run->scene->duration / (double)steps);
+    }
+}
+
 void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     const struct body *body = &run->model->system.body;
+    bool in_time = run->scene->duration > 0.0;
     struct relaxation_options options = {.tolerance = solver->tolerance,
                                          .time_step_margin = solver->time_step_margin,
                                          .ramp_steps = solver->ramp_steps,
                                          .most_steps = solver->max_steps,
-                                         .frames = run->scene->output.frames,
-                                         .frame = run_put_equilibrium,
+                                         .frames =
+                                             in_time ? count_steps(run->scene) : run->scene->output.frames,
+                                         .in_time = in_time,
+                                         .frame = in_time ? end_step : run_put_equilibrium,
                                          .progress = run_progress,
                                          .context = run,
                                          .interrupted = run->checkpoint.interrupted,

@@ -225,16 +225,26 @@ static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
     bool is_plane = run->scene->dim == 2;
-    double *values = run_new_values(run, 2);
+    bool in_time = run->scene->duration > 0.0;
+    const char *unit = is_plane ? "J/m" : "J", *more = in_time ? "," : "";
+    int count = in_time ? 3 : 2;
+    char attributes[96];
+    double *values = run_new_values(run, count);
     values[0] = energy_internal(system, run->u);
     values[1] = energy_contact(system);
-    if (moment->frame == FRAME_NONE) {
-        run_put(run, "energy", 1, 2,
-                is_plane ? "unit=J/m,J/m cols=internal,contact" : "unit=J,J cols=internal,contact", values);
+    bool is_frame = moment->frame != FRAME_NONE;
+    if (in_time) {
+        values[2] = system->body.prony.dissipated;
+    }
+    snprintf(attributes, sizeof attributes, "unit=%s%s,%s%s%s cols=%sinternal,contact%s",
+             !is_frame ? ""
+             : in_time ? "s,"
+                       : "1,",
+             unit, unit, more, in_time ? unit : "", is_frame ? "time," : "", in_time ? ",dissipated" : "");
+    if (is_frame) {
+        run_append_row(run, "energy.frames", moment->time, values, count, attributes);
     } else {
-        run_append_row(run, "energy.frames", moment->time, values, 2,
-                       is_plane ? "unit=1,J/m,J/m cols=time,internal,contact"
-                                : "unit=1,J,J cols=time,internal,contact");
+        run_put(run, "energy", 1, count, attributes, values);
     }
 }
 
@@ -255,12 +265,14 @@ static void put_state(struct run *run, const struct moment *moment)
 void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
-    run_put_field(run, &(struct moment){number, time}, u);
+    const double duration = run->scene->duration;
+    const struct moment moment = {number, duration > 0.0 ? time * duration : time};
+    run_put_field(run, &moment, u);
     run_folds_check(run, u, time, true);
     run_stability_check(run, time);
     run_stability_elliptic(run, time, false);
     run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
-    put_state(run, &(struct moment){number, time});
+    put_state(run, &moment);
     run_frames_write(run, number);
 }
 

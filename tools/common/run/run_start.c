@@ -12,9 +12,9 @@ void run_start_read(struct run *run)
     if (file == NULL) {
         return;
     }
-    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0) {
+    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0 || scene->duration > 0.0) {
         tool_fail(run->tool, STATUS_INPUT,
-                  "--start: the run begins at the whole load: a scene that is dynamic, or asks for frames, "
+                  "--start: the run begins at the whole load: a scene in time, or that asks for frames, "
                   "has states before");
     }
     side_read(run->tool, file, "u", &run->start);
