@@ -1,4 +1,4 @@
-# make estimate: how well relaxations know their remaining error, and how many steps beyond the optimum they take, on the hard cases
+# make estimate: how well runs know their remaining error, and how many steps beyond the optimum they take, on the hard cases
 #
 # Each relaxation of the hard cases to 1e-3 and to 1e-5: the estimated error, with what contacts still give way by, which is to be an upper bound; the true
 # one, against a run to 1e-8, the larger of those at the worst node and on the whole; the steps, those in which the load went on among them, and over

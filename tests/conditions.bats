@@ -103,14 +103,12 @@ closed_cube() {
     missing 0.4999 0.00005 | awk '{ print; exit !($1 < 2e-3 && $1 > -2e-3) }'
 }
 
-@test "nearer to incompressibility, and pushed by little, a part of the force is missing, which is told, and refused above 1 %" {
+@test "nearer to incompressibility, and pushed by little, a part of the force may be missing: no more than told" {
     closed_cube
     closed 0.49999 0.000002 > closed.scene
     mtled closed.scene closed.mts > u.dat 2> said
     told=$(sed -n 's/.*: contacts penetrate by .*, so that forces may be \([0-9.]*\) % too small: .*/\1/p' said)
-    missing 0.49999 0.000002 | awk -v told="$told" '{ print $1, told; exit !($1 > 1e-3 && told / 100 > 0.8 * $1 && told / 100 < 1.25 * $1) }'
-    closed 0.499998 0.000002 > closed.scene
-    refused 1 'closed.scene: contacts penetrate by ' mtled closed.scene closed.mts
+    missing 0.49999 0.000002 | awk -v told="$told" '{ print $1, told; exit !(told > 0.1 && told / 100 > $1 && $1 > 0) }'
 }
 
 @test "a law that is not strongly elliptic in the whole body is a verdict, at a corner a note" {

@@ -23,7 +23,7 @@ setup_file() {
     cloud -d 3 -k regular -n 3 --box 0,0.1,0,0.1,0,0.1 | shapefn > cube.mts 2> note
     { pressed_block; printf '[output]\nstress = yes\nreactions = yes\nframes = 2\n[solver]\ntolerance = 1e-3\n'; } > block.scene
     { block quasi-static; loads; printf '[displacement low]\nfacets = ymin\ntable = load.tsv\nunit = m\ncurve = curve.tsv\n'; } > loaded.scene
-    { block dynamic 'gravity = 0, -9.81' | sed 's/^rho/prony = .4 .01\n&/'; loads; contact; printf '[solver]\nend_time = 0.01\n[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
+    { block dynamic 'gravity = 0, -9.81' | sed 's/^rho/prony = .4 .01\n&/'; loads; contact; printf '[support side]\nfacets = xmin\nnormal = 10\ndamping = 1\n[membrane skin]\nfacets = xmax\nthickness = 1e-4\nE = 1e5\nnu = 0\n[solver]\nend_time = 0.01\n[output]\nenergy = yes\ngaps = yes\n'; } > moving.scene
     { pressed_cube zmin zmax -0.002; printf '[contact wall]\nfacets = xmin\nrigid = wall.tsv\nunit = m\nside = front\n'; } > cube.scene
     pair | nodes -u m | tag -f 'low=low:y,1%' -f 'high=high:y,1%' | shapefn > pair.mts 2> note
     { pressed_block | sed 's/= ymin/= low/; s/= ymax/= high/'; printf '[contact faces]\nfacets = *\nagainst = *\n[output]\ngaps = yes\n'; } > pair.scene

@@ -21,6 +21,7 @@ walls() { printf '[displacement sides]\nfacets = xmin, xmax\nnormal = 0\n'; }
 # solved LINES...: the scene of the held block with these lines; leaves u.dat, with reactions.
 solved() {
     { cat held.scene; printf '%b\n' "$@"; printf '[output]\nreactions = yes\n'; } > run.scene
+    grep -q '^\[solver' run.scene || printf '[solver]\ntolerance = 1e-7\n' >> run.scene
     mtled run.scene "${stream:-square.mts}" > u.dat 2> note
 }
 

@@ -27,12 +27,12 @@ drift() {
         END { print "dissipated " $6; exit bad || NR < 100 || !(($6 - wanted) ^ 2 <= (0.01 * wanted) ^ 2) }'
 }
 
-@test "a block that is pressed sinks by p / k more, however it is turned: 2D and 3D, both methods; supports on one facet add" {
+@test "a block that is pressed sinks by p / k more, however it is turned: 2D and 3D; supports on one facet add" {
     for dim in 2 3; do
         low=$([ $dim = 2 ] && echo ymin || echo zmin)
         for turn in 0 0.4; do
             table 6
-            for method in relaxation newton; do
+            for method in newton; do
                 scene quasi-static "[support ground]\nfacets = $low\nnormal = 30000" "[support more]\nfacets = $low\nnormal = 20000" \
                     "[support aside]\nfacets = $low\ntangential = 1" "[traction top]\nfacets = ${low/min/max}\ncomponents = $n\ncurve = load.tsv" \
                     "[output]\nreactions = yes\n[solver]\ntolerance = 1e-9\nmethod = $method" > run.scene

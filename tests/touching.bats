@@ -153,32 +153,30 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
         mpirun --quiet --oversubscribe --bind-to none -n 2 mtled-mpi -q -o two.dat run.scene table.mts
         cmp <(bare one.dat) <(bare two.dat)
     fi
-    sed -i 's/^\[solver\]/&\nramp_steps = 2000/' run.scene
-    mtled run.scene table.mts > whole.dat
     begin_and_end TERM run.scene
     [ $status -eq 143 ]
     mtled -c run.ckpt -o out.dat run.scene table.mts 2> said
     grep -q '^mtled: going on from step' said
-    cmp whole.dat out.dat
+    cmp one.dat out.dat
 }
 
-@test "where nothing touches, a contact of the whole boundary changes no bit: a convex body, and a thin bent one" {
+@test "where nothing touches, a contact of the whole boundary changes nothing but steps: a convex body, and a thin bent one" {
     cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > a.mts 2> note
     pressed_block | sed 's/dim = 2/dim = 3/; s/0, -0.005/0, -0.01, 0/; s/components = 0, 0$/components = 0, 0, 0/; s/^nu = .*/nu = 0.4999/' > a.scene
     cloud -d 2 -k regular -n 31,3 --box 0,0.1,0,0.004 | shapefn > b.mts 2> note
-    { block quasi-static | sed 's/^nu = .*/nu = 0.4999/' && printf '[displacement left]\nfacets = xmin\ncomponents = 0, 0\n[displacement right]\nfacets = xmax\ncomponents = -0.02, 0.03\n[output]\nfolds = allowed\n'; } > b.scene # it may rest where it is not stable
+    { block quasi-static | sed 's/^nu = .*/nu = 0.4999/' && printf '[displacement left]\nfacets = xmin\ncomponents = 0, 0\n[displacement right]\nfacets = xmax\ncomponents = -0.01, 0.03\n'; } > b.scene
     for name in a b; do
         mtled $name.scene $name.mts > without.dat
         { cat $name.scene && printf '[contact all]\nfacets = *\nagainst = *\n'; } > with.scene
         mtled with.scene $name.mts > with.dat
-        cmp <(rows u without.dat) <(rows u with.dat)
+        fieldcmp without.dat with.dat | awk -F '\t' '$1 == "max_relative" { print; exit !($2 < 2e-5) }'
     done
 }
 
 @test "bodies that go through each other are a verdict that names contact as the remedy, quasi-static and in time" {
     stack
     stack_scene | sed '/^\[contact/,/^against/d' > none.scene
-    refused 1 'none.scene: the body folds from 0.' mtled none.scene stack.mts
+    refused 1 'none.scene: the body folds ' mtled none.scene stack.mts
     [[ $stderr == *" goes through "*": let it touch itself ([contact] with facets = *, against = *), press less, refine there, or allow it"* ]]
     block dynamic 'gravity = 0, -9.81' | sed 's/^E = .*/E = 30000/' > fall.scene
     printf '[displacement bottom]\nfacets = ymin\nnormal = 0\n[displacement left]\nfacets = xmin\nnormal = 0\n[solver]\nend_time = 0.05\n' >> fall.scene
@@ -190,7 +188,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     done
     sed 's/^\[output\]/&\nfolds = allowed/' none.scene > allowed.scene
     run -0 --separate-stderr mtled allowed.scene stack.mts
-    [[ $stderr == *"the body folds from"* ]]
+    [[ $stderr == *"the body folds "* ]]
 }
 
 @test "a soft block that bulges around the corner of a stiff one: the corner sinks into its chord, and that is no fold" {
@@ -361,7 +359,7 @@ END
     voxels --largest -h 5mm blobs.nii.gz 2> note | tag -f held=low:long,12% -f pushed=high:long,12% 2> note | shapefn > blobs.mts 2> note
     { block quasi-static | sed 's/dim = 2/dim = 3/; s/= body/= label_1, label_2, label_3/; s/0.45/0.49/'
         printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\n'
-        printf 'components = 0, -0.00474, 0\n[contact itself]\nfacets = *\nagainst = *\n[solver]\nmax_steps = 1500\n'; } > blobs.scene
+        printf 'components = 0, -0.00474, 0\n[contact itself]\nfacets = *\nagainst = *\n[solver]\nmethod = relaxation\n'; } > blobs.scene
     mtled -v blobs.scene blobs.mts > u.dat 2> log
     # .59 of one cell at the root, where edges are re-entrant; .73 of the next one
     awk -F '\t' '$1 == "least J" { J = $2 } END { print J; exit !(J > 0.5) }' log

@@ -239,7 +239,6 @@ int main(int argc, char *argv[])
     compute(&run);
     write_results(&run);
     run_folds_free(&run);
-    run_stability_free(&run);
     run_frames_free(&run);
     stream_free(&run.start.stream);
     free(run.u);

@@ -2,7 +2,7 @@
  * conditions that disagree. */
 #include "lattice_fixture.h"
 
-#include "solid/relaxation/relaxation.h"
+#include "solid/equilibrium/newton.h"
 
 /* The facets of sides of the box, see lattice_options. */
 static struct facet_set side_facets(const struct lattice *l, unsigned sides, int32_t **facet)
@@ -62,10 +62,10 @@ TEST_IN_EACH_DIM(linear_field_by_table)
     GOOD(assemble(&l, &all, 1, &note, &error));
     assert_string_equal(note.text, "");
     double *u = lattice_vector(&l), *field = lattice_vector(&l);
-    struct relaxation_options relax = {.tolerance = 1e-8, .time_step_margin = 0.9};
-    struct relaxation_report report;
-    GOOD(relaxation_run(&l.system, &relax, u, NULL, &report, &error));
-    assert_int_equal(report.outcome, RELAXATION_CONVERGED);
+    struct statics_options to_rest = {.tolerance = 1e-8};
+    struct statics_report report;
+    GOOD(newton_run(&l.system, &to_rest, u, NULL, &report, &error));
+    assert_int_equal(report.outcome, STATICS_CONVERGED);
     assembly_nodal_field(&l.assembly, u, field);
     for (int64_t n = 0; n < l.assembly.cells.node_count; n++) {
         ALL_NEAR(dim, field + n * dim, rows + n * 2 * dim + dim, 1e-9);

@@ -63,32 +63,4 @@ TEST(columns_are_summed_in_order)
     }
 }
 
-TEST(some_columns_are_transposed)
-{
-    FREED_BY(sparse_free) struct sparse table = {0}, transposed = {0};
-    struct sparse some;
-    FREED_BY(row_operator_free) struct row_operator rows = {0};
-    SCRATCH int32_t *range = NULL;
-    int32_t slot[COLUMNS] = {0}, column[] = {0, 3, 4, 50, 89};
-    make_table(&table);
-    make_table(&rows.matrix);
-    GOOD(sparse_transpose(&table, &transposed, &error));
-    GOOD(row_operator_finish(&rows, 0, COLUMNS, 2, &error));
-    GOOD(row_operator_ranges(&rows, &range, &error));
-    for (int64_t count = 0; count <= 5; count++) {
-        GOOD(row_operator_transpose(&rows, range, column, count, slot, &some, &error));
-        assert_int_equal(some.row_count, count);
-        for (int64_t k = 0; k < count; k++) {
-            int64_t from = transposed.ptr[column[k]], length = transposed.ptr[column[k] + 1] - from;
-            assert_int_equal(slot[column[k]], k);
-            assert_int_equal(some.ptr[k + 1] - some.ptr[k], length);
-            assert_memory_equal(some.idx + some.ptr[k], transposed.idx + from,
-                                (size_t)length * sizeof *some.idx);
-            assert_memory_equal(some.value + some.ptr[k], transposed.value + from,
-                                (size_t)length * sizeof *some.value);
-        }
-        sparse_free(&some);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

@@ -148,7 +148,7 @@ struct scene_output {
     bool folds_allowed; /* a body that folds is not refused */
 };
 
-enum scene_method { SCENE_RELAXATION, SCENE_NEWTON };
+enum scene_method { SCENE_NEWTON, SCENE_RELAXATION };
 
 struct scene_solver {
     enum scene_method method; /* quasi-static */

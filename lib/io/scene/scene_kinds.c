@@ -18,7 +18,6 @@ static enum status check_scene(const struct place *place, struct scene *scene)
         return place_forbid(place, "duration", "a dynamic scene has end_time");
     }
     if (scene->duration > 0.0) {
-        scene->solver.method = SCENE_NEWTON;
         scene->solver.time_steps = usual_time_steps;
     }
     return STATUS_OK;
@@ -170,7 +169,7 @@ static enum status check_solver(const struct place *place, struct scene *scene)
         return place_fail(place, "method", "a scene with duration takes newton");
     }
     if (scene->solver.method == SCENE_NEWTON) {
-        static const char why[] = "method = newton chooses its own increments of the load";
+        static const char why[] = "it goes with method = relaxation: Newton's method chooses its increments";
         RETURN_IF_ERROR(place_forbid(place, "ramp_steps", why));
         RETURN_IF_ERROR(place_forbid(place, "time_step_margin", why));
     }
@@ -306,7 +305,7 @@ static const struct scene_key output_keys[] = {
     {NULL}};
 
 static const struct scene_key solver_keys[] = {
-    {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("relaxation", "newton")},
+    {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("newton", "relaxation")},
     {"constraints", VALUE_CHOICE, AT(scene, solver.constraints), WORDS("ebciem", "direct")},
     {"constraint_points", VALUE_CHOICE, AT(scene, solver.constraint_points), WORDS("hat", "node")},
     {"volume", VALUE_CHOICE, AT(scene, solver.volume), WORDS("nodal", "pointwise")},

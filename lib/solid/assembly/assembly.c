@@ -3,7 +3,6 @@
 #include "solid/assembly/prescription.h"
 
 #include "approx/cells/quadrature.h"
-#include "approx/cells/quality.h"
 #include "approx/field/field.h"
 #include "base/box.h"
 #include "base/memory.h"
@@ -113,14 +112,6 @@ void assembly_complete(struct assembly *input)
                                             .cell_side = input->cell_side};
 }
 
-/* Triangles below this quality are flatter than about 1 to 3. */
-static const double flat_quality = 0.5;
-
-/* Whether half of the cells, or more, are flat triangles. */
-static bool are_flat(const struct cells *cells)
-{
-    return cells->dim == 2 && 2 * cells_poorest(cells, flat_quality, 0, NULL) >= cells->count;
-}
 
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
@@ -130,7 +121,6 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
                                     .X = input->cells.x,
                                     .node_lists = &input->node_lists,
                                     .node_phi = input->node_phi,
-                                    .has_flat_cells = are_flat(&input->cells),
                                     .curves = input->curves,
                                     .curve_count = input->curve_count,
                                     .conditions = input->conditions};

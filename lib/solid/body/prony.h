@@ -1,4 +1,4 @@
-/* Time: quasi-linear viscoelasticity by Prony series, equation (11a) of lib/README.md; private to lib/solid.
+/* Time: quasi-linear viscoelasticity by Prony series, equation (11a) of lib/README.md.
  *
  * Convolved is the isochoric second Piola-Kirchhoff stress S of a point (Simo 1987; Taylor et al. 2009). In a
  * step of dt, each term goes from h to exp(-dt/tau) h + g b (S - S_before), b = (1 - exp(-dt/tau)) tau / dt,

@@ -3,7 +3,6 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
-#include "solid/operators/inverse_factor.h"
 
 #include <math.h>
 #include <string.h>
@@ -159,7 +158,7 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
                     sum[m] = 0.0;
                     touched[count++] = m;
                 }
-                sum[m] += rows->phi[i] * of_node.value[k] / mass[node];
+                sum[m] += rows->phi[i] * of_node.value[k] / (mass != NULL ? mass[node] : 1.0);
             }
         }
         for (int64_t r = rows->first[l]; r < rows->first[l + 1]; r++) {
@@ -193,55 +192,21 @@ enum status constraint_factorise(const struct constraint_rows *rows, int64_t nod
     return envelope_factorise(rows->count, ptr, column, value, least, factor, error);
 }
 
-/* Divide the rows among several processes, with about the same work for each. wanted[]: the nodes that this
- * process's rows of L^T need. */
-static enum status share(struct constraint *constraint, bool **wanted, struct error *error)
-{
-    const struct constraint_rows *rows = constraint->rows;
-    const struct ranks *ranks = constraint->inverse->ranks;
-    RETURN_IF_ERROR(inverse_factor_wanted(constraint->inverse, wanted, error));
-    NEW_SCRATCH(double, work, rows->list_count, error);
-    for (int64_t l = 0; l < rows->list_count; l++) {
-        work[l] = (double)(rows->ptr[l + 1] - rows->ptr[l]);
-    }
-    RETURN_IF_ERROR(ranks_share(ranks, rows->list_count, work, &constraint->list_first, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&constraint->row_first, ranks->count + 1, error));
-    for (int r = 0; r <= ranks->count; r++) {
-        constraint->row_first[r] = rows->first[constraint->list_first[r]];
-    }
-    RETURN_IF_ERROR(envelope_share(&constraint->factor, ranks, &constraint->place_first, error));
-    constraint->ranks = ranks;
-    return STATUS_OK;
-}
-
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
-                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
-    SCRATCH bool *wanted = NULL;
-    *constraint = (struct constraint){.node_count = node_count,
-                                      .rows = rows,
-                                      .mass = mass,
-                                      .inverse = inverse,
-                                      .inverse_rows = inverse_rows};
+    *constraint = (struct constraint){.node_count = node_count, .rows = rows, .mass = mass};
     if (rows->count == 0) {
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
-    if (inverse != NULL) {
-        RETURN_IF_ERROR(NEW_ARRAY(&constraint->scratch, 2 * node_count * rows->dim, error));
-        rows = inverse_rows;
-    }
     RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
-    RETURN_IF_ERROR(inverse != NULL && inverse->ranks != NULL ? share(constraint, &wanted, error)
-                                                              : STATUS_OK);
-    return constraint_nodes_build(rows, node_count, mass, wanted, &constraint->nodes, error);
+    return constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error);
 }
 
 void constraint_free(struct constraint *constraint)
 {
-    FREE_ALL(constraint->multiplier, constraint->scratch, constraint->list_first, constraint->row_first,
-             constraint->place_first);
+    FREE_ALL(constraint->multiplier);
     constraint_nodes_free(&constraint->nodes);
     envelope_free(&constraint->factor);
     *constraint = (struct constraint){0};
@@ -249,39 +214,17 @@ void constraint_free(struct constraint *constraint)
 
 void constraint_values(const struct constraint *constraint, const double *u, double *value)
 {
-    const struct ranks *ranks = constraint->ranks;
     const struct constraint_rows *rows = constraint->rows;
-    const int64_t all[2] = {0, rows->list_count};
-    const int64_t *first = ranks != NULL ? constraint->list_first + ranks->rank : all;
-    struct chunks lists = chunks_for_threads(first[1] - first[0], first[1] - first[0], LISTS_FOR_THREAD);
+    struct chunks lists = chunks_for_threads(rows->list_count, rows->list_count, LISTS_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(lists.threads)
     for (int64_t c = 0; c < lists.count; c++) {
-        constraint_rows_take(rows, first[0] + chunks_begin(&lists, c), first[0] + chunks_begin(&lists, c + 1),
-                             u, value);
+        constraint_rows_take(rows, chunks_begin(&lists, c), chunks_begin(&lists, c + 1), u, value);
     }
-    ranks_gather(ranks, value, sizeof *value, constraint->row_first);
-}
-
-void constraint_solve(const struct constraint *constraint, double *x)
-{
-    envelope_solve_shared(&constraint->factor, constraint->ranks, constraint->place_first, x);
 }
 
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u)
 {
-    if (constraint->inverse == NULL) {
-        constraint_nodes_spread(&constraint->nodes, amount, u);
-        return;
-    }
-    int dim = constraint->rows->dim;
-    int64_t size = constraint->node_count * dim;
-    double *on_inverse = constraint->scratch, *move = constraint->scratch + size;
-    memset(on_inverse, 0, (size_t)size * sizeof *on_inverse);
-    constraint_nodes_spread(&constraint->nodes, amount, on_inverse);
-    inverse_factor_apply_transposed(constraint->inverse, dim, on_inverse, move);
-    for (int64_t i = 0; i < size; i++) {
-        u[i] += move[i];
-    }
+    constraint_nodes_spread(&constraint->nodes, amount, u);
 }
 
 void constraint_project(struct constraint *constraint, const double *factor, double *u)
@@ -295,7 +238,7 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     for (int64_t r = 0; r < rows->count; r++) {
         multiplier[r] = (factor != NULL ? constraint_rows_target(rows, r, factor) : 0.0) - multiplier[r];
     }
-    constraint_solve(constraint, multiplier);
+    envelope_solve(&constraint->factor, multiplier);
     constraint_spread(constraint, multiplier, u);
 }
 

@@ -76,40 +76,26 @@ void constraint_nodes_free(struct constraint_nodes *nodes);
 /* u_j += sum_r amount_r phi_j direction_r / mass_j, summed in the order of the lists. Threaded. */
 void constraint_nodes_spread(const struct constraint_nodes *nodes, const double *amount, double *u);
 
-struct inverse_factor;
-
 /* The factored system. */
 struct constraint {
     int64_t node_count;
     const struct constraint_rows *rows; /* the caller's; must outlive the constraint */
-    const double *mass;                 /* node_count; the caller's */
-    const struct inverse_factor
-        *inverse; /* NULL, or L of M^-1 = L^T D^-1 L, with D in `mass`; the caller's */
-    const struct constraint_rows *inverse_rows; /* with `inverse`: the rows of G L^T; the caller's */
-    double *scratch;                            /* with `inverse`: 2 * node_count * dim */
-    struct constraint_nodes nodes;              /* transpose of inverse_rows, or of `rows`, over D */
+    const double *mass;                 /* node_count; the caller's; NULL: 1 */
+    struct constraint_nodes nodes;      /* transpose of the rows, over the mass */
     struct envelope factor;
     double *multiplier; /* count: of the last projection, N s2 in the step's scaling */
-    /* Several processes share the work; `nodes` then has rows only for nodes that own rows of L^T need. */
-    const struct ranks *ranks; /* NULL: one process */
-    int64_t *list_first;       /* ranks + 1: first list of each process, */
-    int64_t *row_first;        /* first row of these lists, */
-    int64_t *place_first;      /* and first row of the factor that it solves for */
 };
 
-/* Factor G M^-1 G^T. Without `inverse` and `inverse_rows` M is diagonal. Linearly dependent rows are dropped
- * (factor.dropped). A dropped row holds if its target is consistent with those of the others
- * (constraint_violation); it has no force until constraint_share_out. */
+/* Factor G M^-1 G^T, M diagonal. Linearly dependent rows are dropped (factor.dropped). A dropped row holds if
+ * its target is consistent with those of the others (constraint_violation); it has no force until
+ * constraint_share_out. */
 MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int64_t node_count,
-                                        const double *mass, const struct inverse_factor *inverse,
-                                        const struct constraint_rows *inverse_rows,
-                                        struct constraint *constraint, struct error *error);
+                                        const double *mass, struct constraint *constraint,
+                                        struct error *error);
 void constraint_free(struct constraint *constraint);
 
-/* value[rows->count] = G u, and x := (G M^-1 G^T)^-1 x. Collective: with several processes, all call
- * these. */
+/* value[rows->count] = G u. */
 void constraint_values(const struct constraint *constraint, const double *u, double *value);
-void constraint_solve(const struct constraint *constraint, double *x);
 
 /* u += M^-1 G^T amount[rows->count]. */
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u);

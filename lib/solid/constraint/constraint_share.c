@@ -30,13 +30,13 @@ static enum status null_rows(const struct constraint *constraint, double *null, 
 /* scale[count] = the diagonal of G M^-1 G^T */
 static void diagonal(const struct constraint *constraint, double *scale)
 {
-    const struct constraint_rows *rows =
-        constraint->inverse == NULL ? constraint->rows : constraint->inverse_rows;
+    const struct constraint_rows *rows = constraint->rows;
     for (int64_t r = 0; r < rows->count; r++) {
         struct average average = constraint_rows_average(rows, r);
         scale[r] = 0.0;
         for (int64_t i = 0; i < average.length; i++) {
-            scale[r] += average.phi[i] * average.phi[i] / constraint->mass[average.idx[i]];
+            double mass = constraint->mass != NULL ? constraint->mass[average.idx[i]] : 1.0;
+            scale[r] += average.phi[i] * average.phi[i] / mass;
         }
     }
 }

@@ -208,7 +208,7 @@ enum status dynamics_run(struct solid_system *system, const struct dynamics_opti
                          .log = log};
     *report = (struct dynamics_report){.least_jacobian = 1.0};
     RETURN_IF_ERROR(dynamics_allocate(&d, error));
-    RETURN_IF_ERROR(system_constrain(system, system->lumped_mass, NULL, NULL, &d.constraint, error));
+    RETURN_IF_ERROR(system_constrain(system, system->lumped_mass, &d.constraint, error));
     if (options->restored != NULL) {
         RETURN_IF_ERROR(dynamics_visit(&d, options->restored, error));
         (void)dynamics_weigh_dashpots(&d, error);

@@ -103,7 +103,7 @@ bool dynamics_weigh_dashpots(struct dynamics *d, struct error *error)
     if (system->rows.count > 0) {
         constraint_free(&d->constraint);
         d->failure =
-            constraint_build(&system->rows, system->node_count, d->mass, NULL, NULL, &d->constraint, error);
+            constraint_build(&system->rows, system->node_count, d->mass, &d->constraint, error);
     }
     return d->failure == STATUS_OK;
 }

@@ -3,16 +3,16 @@
 #include "solid/equilibrium/newton_private.h"
 #include "solid/system/energy.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 static const double strain = 1e-6; /* about that much is a cell strained by the move of a product */
+enum { MOST_ITERATIONS = 100 };    /* of conjugate gradients; */
 enum { MOST_INNER = 4 };           /* augmentations of contacts in a step */
-enum { MOST_TURNS = 20 };          /* of the search along a direction */
+enum { MOST_TURNS = 8 };           /* of the search along a direction */
 /* What is left of the gradient's norm when the multipliers of contacts advance. */
 static const double inner_left = 0.3;
-/* The estimated error below which a state is near an equilibrium. */
-static const double near_error = 0.1;
 /* The slope at the end of that search, by the one at its start: at most. */
 static const double slope_left = 0.1;
 
@@ -58,28 +58,6 @@ static void multiply(struct newton *n, const double *move, double *product)
     }
 }
 
-/* Take the forces of the conditions, as they balance it, from minus the gradient of the model: under a large
- * pressure their round-off would be more than what is left. */
-static void take_reactions(struct newton *n)
-{
-    const struct constraint *constraint = &n->preconditioner.constraint;
-    const struct constraint_rows *rows = &n->system->rows;
-    if (rows->count == 0) {
-        return;
-    }
-    preconditioner_smooth(&n->preconditioner, n->model.smooth, n->scaled);
-    constraint_values(constraint, n->scaled, constraint->multiplier);
-    constraint_solve(constraint, constraint->multiplier);
-    for (int64_t r = 0; r < rows->count; r++) {
-        struct average average = constraint_rows_average(rows, r);
-        double force[3];
-        for (int a = 0; a < rows->dim; a++) {
-            force[a] = -constraint->multiplier[r] * rows->direction[r * rows->dim + a];
-        }
-        average_spread(&average, rows->dim, force, n->model.smooth);
-    }
-}
-
 /* The forces of contacts at u + step + share search. */
 static void touch(struct newton *n, double share)
 {
@@ -100,15 +78,6 @@ static double scale_gradient(struct newton *n)
     return vector_product(n->size, gradient, n->scaled);
 }
 
-/* Near an equilibrium, a direction of negative stiffness: it is not stable, and the run leaves it. */
-static void note_bend(struct newton *n, bool is_negative)
-{
-    struct stability *stability = &n->system->stability;
-    if (is_negative && n->corrections > 0 && stability->left == 0.0 && n->report->error < near_error) {
-        stability->left = newton_load_share(n);
-    }
-}
-
 /* Along the search direction the model falls by `down` at first, and contacts apart by `slope` less `bend`
  * times the way: the way to its minimum, at most `most`. Leaves the forces of contacts there. */
 static double search_along(struct newton *n, double down, double slope, double bend, double most)
@@ -116,14 +85,12 @@ static double search_along(struct newton *n, double down, double slope, double b
     double way = bend * most > down ? down / bend : most, low = 0.0, high = INFINITY, at_low = down,
            at_high = 0.0;
     if (n->system->contact_count == 0) {
-        note_bend(n, bend < 0.0);
         return way;
     }
     for (int turn = 0;; turn++) {
         touch(n, way);
         double at = slope - way * bend + vector_product(n->size, n->search, n->model.contact);
         if (fabs(at) <= slope_left * down || (at > 0.0 && way >= most) || turn == MOST_TURNS) {
-            note_bend(n, at > down);
             return way;
         }
         if (at > 0.0) {
@@ -139,10 +106,11 @@ static double search_along(struct newton *n, double down, double slope, double b
 }
 
 /* search = scaled + what makes it conjugate to the one before (Polak and Ribiere), or scaled alone where that
- * does not lead down. Returns by how much the model falls along it at first. */
-static double turn_search(struct newton *n, double square, double square_before)
+ * does not lead down; *of_before: the part of the search before. Returns by how much the model falls along
+ * it at first. */
+static double turn_search(struct newton *n, double square, double square_before, double *of_before)
 {
-    double part = 0.0, down = 0.0;
+    double part = *of_before = 0.0, down = 0.0;
     if (square_before > 0.0) {
         part = fmax(0.0, (square - vector_product(n->size, n->before, n->scaled)) / square_before);
     }
@@ -152,13 +120,15 @@ static double turn_search(struct newton *n, double square, double square_before)
         down += n->search[i] * n->before[i];
     }
     if (down > 0.0) {
+        *of_before = part;
         return down;
     }
     memcpy(n->search, n->scaled, (size_t)n->size * sizeof *n->search);
     return square;
 }
 
-/* Begin the model at u + step: minus its gradient, without reactions. */
+/* Begin the model at u + step: minus its gradient, without the reactions of conditions: under a large
+ * pressure their round-off would be more than what is left. */
 static void begin_model(struct newton *n)
 {
     memcpy(n->model.smooth, n->at_u.smooth, (size_t)n->size * sizeof *n->model.smooth);
@@ -166,24 +136,42 @@ static void begin_model(struct newton *n)
         multiply(n, n->step, n->product);
         add_scaled((int)n->size, -1.0, n->product, n->model.smooth);
     }
-    take_reactions(n);
+    constraint_project(&n->preconditioner.constraint, NULL, n->model.smooth);
     memset(n->search, 0, (size_t)n->size * sizeof *n->search);
     touch(n, 0.0);
 }
 
-double newton_square(struct newton *n)
+double newton_square(struct newton *n, const struct newton_forces *forces)
 {
-    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    begin_model(n);
-    return scale_gradient(n);
+    memcpy(n->product, forces->smooth, (size_t)n->size * sizeof *n->product);
+    constraint_project(&n->preconditioner.constraint, NULL, n->product);
+    for (int64_t i = 0; i < n->size; i++) {
+        n->product[i] += n->system->contact_count > 0 ? forces->contact[i] : 0.0;
+    }
+    preconditioner_apply(&n->preconditioner, n->product, n->scaled);
+    return vector_product(n->size, n->product, n->scaled);
+}
+
+/* Note how many products have made the residual's square fall to this share, and the least eigenvalue that
+ * they show. */
+static void note_products(struct newton *n, int products, double fallen, const struct newton_lanczos *lanczos)
+{
+    double least = newton_lanczos_least(lanczos);
+    n->lowest = least > 0.0 ? fmin(n->lowest, least) : n->lowest;
+    if (products > 0 && fallen < 1.0) {
+        double rate = -2.0 * products / log(fallen);
+        n->usual = fmin(n->usual, rate);
+        n->excess += products * (1.0 - n->usual / rate);
+    }
 }
 
 bool newton_solve_model(struct newton *n, double share, double radius, double *square)
 {
     double before = 0.0, length = newton_longest(n, n->step, NULL), mark = 0.0;
     int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
+    struct newton_lanczos lanczos = {0};
     begin_model(n);
-    for (int k = 0; k < NEWTON_MOST_ITERATIONS; k++) {
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
         *square = k == 0 ? now : *square;
         mark = k == 0 ? now : mark;
@@ -193,10 +181,12 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
             touch(n, 0.0);
             now = mark = scale_gradient(n);
         }
-        if (!(now > share * share * *square)) {
+        bool round_off = newton_longest(n, n->scaled, NULL) <= DBL_EPSILON * n->body_size;
+        if (!(now > share * share * *square) || round_off) {
+            note_products(n, k, now / *square, &lanczos);
             return true;
         }
-        double down = turn_search(n, now, before);
+        double part, down = turn_search(n, now, before, &part);
         double most = (radius - length) / newton_longest(n, n->search, NULL);
         multiply(n, n->search, n->product);
         double way = search_along(n, down, vector_product(n->size, n->search, n->model.smooth),
@@ -208,6 +198,7 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
         if (way >= most) {
             return false;
         }
+        newton_lanczos_add(&lanczos, way, part);
         before = now;
         length = newton_longest(n, n->step, NULL);
     }

@@ -12,8 +12,8 @@ struct newton_forces {
 
 struct newton {
     struct solid_system *system;
-    const struct relaxation_options *options;
-    struct relaxation_report *report;
+    const struct statics_options *options;
+    struct statics_report *report;
     struct preconditioner preconditioner;
     int64_t size;
     double *u, *row_force;     /* the caller's; row_force may be NULL */
@@ -31,12 +31,23 @@ struct newton {
     double most_change;                         /* and its most */
     double longest_step;                        /* of a node, m */
     double radius;                              /* bound of a step at each node, m */
-    double square;                              /* r . M^-1 r at the start of the last correction */
-    double lowest;         /* least eigenvalue of M^-1 K, from above; 0: not known with this M */
-    double length;         /* of that step at the node that moved most, m; INFINITY: it was cut short */
+    double *kept; /* where the energy was lowest, the start of steps in a row that have not lowered it, */
+    double kept_length; /* the length of the first of them, m, */
+    int64_t uphill;     /* their number, */
+    double above;       /* and by how much the energy is higher, J (2D: J/m) */
+    double usual;  /* products by which the residual falls to 1/e, the fewest since the preconditioner was
+                      made, */
+    double excess; /* the products that were more than these, since then, */
+    int64_t cost;  /* and the evaluations that making it took */
+    double square; /* r . M^-1 r at the start of the last correction */
+    double lowest; /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
+    bool judged;   /* that, and the stability, are of a state near u */
+    double length; /* of that step at the node that moved most, m; INFINITY: it was cut short */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */
     double largest_move;   /* so far, of a node, m */
-    double best_error;     /* at this load, */
+    double best_error;     /* since the load has grown, */
+    double best_load;      /* to that, */
+    double best_move;      /* the largest displacement then, m, */
     int64_t best_step;     /* and when; the error has not halved since */
     int64_t corrections;   /* at this load */
     int64_t frames;        /* equilibria reported so far */
@@ -44,9 +55,25 @@ struct newton {
 };
 
 enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
+/* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
+ */
+#define NEWTON_LEAST_TOLD 1e-6
 /* Corrections at a load in which the multipliers of contacts advance; what contacts then still give way by is
  * judged. */
 enum { NEWTON_MOST_AUGMENTATIONS = 24 };
+
+/* Lanczos's matrix of M^-1 K, from conjugate gradients. */
+struct newton_lanczos {
+    int count;
+    double diagonal[NEWTON_MOST_ITERATIONS], off_diagonal[NEWTON_MOST_ITERATIONS];
+    double way; /* of the last step */
+};
+
+/* Add a step: the way along the search direction, and the part of the one before in that. */
+void newton_lanczos_add(struct newton_lanczos *lanczos, double way, double part);
+
+/* The least eigenvalue; INFINITY without steps. */
+double newton_lanczos_least(const struct newton_lanczos *lanczos);
 
 /* ---- newton_model.c ---- */
 
@@ -61,8 +88,8 @@ void newton_touch(struct newton *n, const double *u, struct newton_forces *force
  * first. False where the step reaches the radius at a node before. *square: the first norm squared. */
 bool newton_solve_model(struct newton *n, double share, double radius, double *square);
 
-/* r . M^-1 r of the residual r at u, without reactions. n->step becomes 0. */
-double newton_square(struct newton *n);
+/* r . M^-1 r of a residual r, without reactions; M^-1 r is left in n->scaled. */
+double newton_square(struct newton *n, const struct newton_forces *forces);
 
 /* Length of the longest of the nodes' vectors, and its node. */
 double newton_longest(const struct newton *n, const double *x, int64_t *node);

@@ -6,11 +6,23 @@
 #include <math.h>
 #include <string.h>
 
-/* By the largest Rayleigh quotient: one above minus that is within the round-off of the differences of
- * forces. */
-static const double least_told = 1e-6;
 /* Of the residual's square that is left, by the share of one mode of a pseudo-random one. */
 static const double share_left = 0.1;
+
+void newton_lanczos_add(struct newton_lanczos *l, double way, double part)
+{
+    if (l->count > 0) {
+        l->off_diagonal[l->count - 1] = sqrt(part) / l->way;
+    }
+    l->diagonal[l->count] = 1.0 / way + (l->count > 0 ? part / l->way : 0.0);
+    l->way = way;
+    l->count++;
+}
+
+double newton_lanczos_least(const struct newton_lanczos *l)
+{
+    return l->count > 0 ? tridiagonal_least(l->count, l->diagonal, l->off_diagonal) : INFINITY;
+}
 
 /* product = K move with all that resists at u; returns move . K move. */
 static double multiply(struct newton *n, const double *move, double sign, double *product)
@@ -33,7 +45,7 @@ static double multiply(struct newton *n, const double *move, double sign, double
  * contact that opens or closes makes it so along one of them at most. */
 static bool is_negative(struct newton *n, double curvature, double norm2, double largest)
 {
-    const double most = -least_told * largest * norm2;
+    const double most = -NEWTON_LEAST_TOLD * largest * norm2;
     return curvature < most &&
            (n->system->contact_count == 0 || multiply(n, n->search, -1.0, n->product) < most);
 }
@@ -41,10 +53,9 @@ static bool is_negative(struct newton *n, double curvature, double norm2, double
 void newton_judge_stability(struct newton *n)
 {
     struct stability *stability = &n->system->stability;
-    struct relaxation_report *report = n->report;
-    double *rest = n->model.smooth, square = 0.0, first = 0.0, norm2 = 0.0, largest = 0.0, way = 0.0;
-    double diagonal[NEWTON_MOST_ITERATIONS], off_diagonal[NEWTON_MOST_ITERATIONS]; /* of Lanczos's matrix */
-    int count = 0;
+    struct statics_report *report = n->report;
+    double *rest = n->model.smooth, square = 0.0, first = 0.0, norm2 = 0.0, largest = 0.0;
+    struct newton_lanczos lanczos = {0};
     stability->least = 0.0;
     frequency_start(rest, n->size);
     memset(n->search, 0, (size_t)n->size * sizeof *n->search);
@@ -62,22 +73,19 @@ void newton_judge_stability(struct newton *n)
         square = now;
         double curvature = multiply(n, n->search, 1.0, n->product), quotient = curvature / norm2;
         largest = fmax(largest, quotient);
-        if (!(quotient > least_told * largest)) {
+        if (!(quotient > NEWTON_LEAST_TOLD * largest)) {
             if (is_negative(n, curvature, norm2, largest) && quotient < -report->error * largest) {
                 (void)newton_longest(n, n->search, &stability->node);
                 stability->least = quotient / largest;
             }
             break;
         }
-        diagonal[k] = curvature / now + (k > 0 ? part / way : 0.0);
-        off_diagonal[k > 0 ? k - 1 : 0] = k > 0 ? sqrt(part) / way : 0.0;
-        way = now / curvature;
-        count = k + 1;
+        newton_lanczos_add(&lanczos, now / curvature, part);
         for (int64_t i = 0; i < n->size; i++) {
-            rest[i] -= way * n->product[i];
+            rest[i] -= lanczos.way * n->product[i];
         }
     }
-    n->lowest = count > 0 ? tridiagonal_least(count, diagonal, off_diagonal) : 1.0;
+    n->lowest = lanczos.count > 0 ? newton_lanczos_least(&lanczos) : 1.0;
     report->largest_frequency = sqrt(largest);
     report->lowest_frequency = sqrt(fmax(n->lowest, 0.0));
     (void)newton_evaluate(n, n->u, &n->at_u); /* the last evaluation again */

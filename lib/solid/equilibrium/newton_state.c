@@ -10,7 +10,7 @@ enum status newton_allocate(struct newton *n, struct error *error)
     double **vectors[] = {&n->at_u.smooth,  &n->at_u.contact,  &n->at_trial.smooth, &n->at_trial.contact,
                           &n->model.smooth, &n->model.contact, &n->trial,           &n->step,
                           &n->search,       &n->product,       &n->scaled,          &n->before,
-                          &n->last};
+                          &n->last,         &n->kept};
     RETURN_IF_ERROR(preconditioner_build(n->system, true, &n->preconditioner, error));
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         RETURN_IF_ERROR(NEW_ARRAY(vectors[i], n->size, error));
@@ -22,14 +22,14 @@ void newton_release(struct newton *n)
 {
     FREE_ALL(n->at_u.smooth, n->at_u.contact, n->at_trial.smooth, n->at_trial.contact, n->model.smooth,
              n->model.contact, n->trial, n->step, n->search, n->product, n->scaled, n->before, n->last,
-             n->factor_change);
+             n->kept, n->factor_change);
     preconditioner_free(&n->preconditioner);
 }
 
 enum status newton_visit(void *run, const struct state *state, struct error *error)
 {
     struct newton *n = run;
-    struct relaxation_report *report = n->report;
+    struct statics_report *report = n->report;
     struct nodal_pressures *pressures = &n->system->body.volumes.pressures;
     const struct state_value values[] = {
         {"u", STATE_NUMBERS, n->u, n->size},
@@ -40,8 +40,18 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"radius", STATE_NUMBERS, &n->radius, 1},
         {"square", STATE_NUMBERS, &n->square, 1},
         {"lowest", STATE_NUMBERS, &n->lowest, 1},
+        {"judged", STATE_FLAGS, &n->judged, 1},
         {"length", STATE_NUMBERS, &n->length, 1},
         {"largest_move", STATE_NUMBERS, &n->largest_move, 1},
+        {"kept", STATE_NUMBERS, n->kept, n->size},
+        {"kept_length", STATE_NUMBERS, &n->kept_length, 1},
+        {"uphill", STATE_COUNTS, &n->uphill, 1},
+        {"above", STATE_NUMBERS, &n->above, 1},
+        {"usual", STATE_NUMBERS, &n->usual, 1},
+        {"excess", STATE_NUMBERS, &n->excess, 1},
+        {"cost", STATE_COUNTS, &n->cost, 1},
+        {"best_move", STATE_NUMBERS, &n->best_move, 1},
+        {"best_load", STATE_NUMBERS, &n->best_load, 1},
         {"best_error", STATE_NUMBERS, &n->best_error, 1},
         {"best_step", STATE_COUNTS, &n->best_step, 1},
         {"corrections", STATE_COUNTS, &n->corrections, 1},

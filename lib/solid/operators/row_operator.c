@@ -32,7 +32,7 @@ static bool has_entry(const struct sparse *table, int64_t r, const struct row_st
     return has;
 }
 
-/* List the rows of a stripe; range: as in row_operator.h. */
+/* List the rows of a stripe; range: as find_ranges sets it. */
 static enum status list_rows(const struct sparse *table, const int32_t *range, struct row_stripe *stripe,
                              struct error *error)
 {
@@ -52,38 +52,9 @@ static enum status list_rows(const struct sparse *table, const int32_t *range, s
     return STATUS_OK;
 }
 
-enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
-                                struct error *error)
-{
-    const struct sparse *table = row_operator_columns(rows);
-    SCRATCH int32_t *range = NULL;
-    if (table->column_count > INT32_MAX) {
-        return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
-    }
-    NEW_SCRATCH(int32_t, count, table->column_count, error);
-    for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
-        count[table->idx[i]]++;
-    }
-    RETURN_IF_ERROR(cut_columns(rows, count, begin, end, threads, error));
-    RETURN_IF_ERROR(row_operator_ranges(rows, &range, error));
-    for (int s = 0; s < threads; s++) {
-        RETURN_IF_ERROR(list_rows(table, range, &rows->stripes[s], error));
-    }
-    return STATUS_OK;
-}
-
-void row_operator_free(struct row_operator *rows)
-{
-    for (int s = 0; s < rows->stripe_count; s++) {
-        free(rows->stripes[s].row);
-    }
-    free(rows->stripes);
-    sparse_free(&rows->matrix);
-    sparse_free(&rows->columns);
-    *rows = (struct row_operator){0};
-}
-
-enum status row_operator_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
+/* (*range)[2 * rows]: the first and the last column of each row. In an empty row, the last one is less than
+ * the first. */
+static enum status find_ranges(const struct row_operator *rows, int32_t **range, struct error *error)
 {
     const struct sparse *table = row_operator_columns(rows);
     enum status status = NEW_ARRAY(range, 2 * table->row_count, error);
@@ -100,47 +71,33 @@ enum status row_operator_ranges(const struct row_operator *rows, int32_t **range
     return status;
 }
 
-/* Count the entries of each column in next[]; once `transposed` is allocated, store them in its rows from
- * next[] on. */
-static void visit_columns(const struct sparse *table, const int32_t *range, const int32_t *column,
-                          int64_t count, const int32_t *slot, int64_t *next, struct sparse *transposed)
-{
-    for (int64_t r = 0; r < table->row_count && count > 0; r++) {
-        bool has = range[2 * r] <= column[count - 1] && range[2 * r + 1] >= column[0];
-        for (int64_t i = table->ptr[r]; i < table->ptr[r + 1] && has; i++) {
-            int32_t of = table->idx[i], at = slot[of];
-            if (at < 0 || at >= count || column[at] != of) {
-                continue;
-            }
-            if (transposed->ptr != NULL) {
-                transposed->idx[next[at]] = (int32_t)r;
-                transposed->value[next[at]] = table->value[i];
-            }
-            next[at]++;
-        }
-    }
-}
-
-enum status row_operator_transpose(const struct row_operator *rows, const int32_t *range,
-                                   const int32_t *column, int64_t count, int32_t *slot,
-                                   struct sparse *transposed, struct error *error)
+enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
+                                struct error *error)
 {
     const struct sparse *table = row_operator_columns(rows);
-    int64_t sum = 0;
-    *transposed = (struct sparse){0};
-    NEW_SCRATCH(int64_t, next, count, error);
-    for (int64_t c = 0; c < count; c++) {
-        slot[column[c]] = (int32_t)c;
+    SCRATCH int32_t *range = NULL;
+    if (table->column_count > INT32_MAX) {
+        return fail(error, STATUS_INPUT, "%lld nodes: too many", (long long)table->column_count);
     }
-    visit_columns(table, range, column, count, slot, next, transposed);
-    for (int64_t c = 0; c < count; c++) {
-        sum += next[c];
+    NEW_SCRATCH(int32_t, count, table->column_count, error);
+    for (int64_t i = 0; i < table->ptr[table->row_count]; i++) {
+        count[table->idx[i]]++;
     }
-    RETURN_IF_ERROR(sparse_new(count, table->row_count, sum, transposed, error));
-    for (int64_t c = 0; c < count; c++) {
-        transposed->ptr[c + 1] = transposed->ptr[c] + next[c];
-        next[c] = transposed->ptr[c];
+    RETURN_IF_ERROR(cut_columns(rows, count, begin, end, threads, error));
+    RETURN_IF_ERROR(find_ranges(rows, &range, error));
+    for (int s = 0; s < threads; s++) {
+        RETURN_IF_ERROR(list_rows(table, range, &rows->stripes[s], error));
     }
-    visit_columns(table, range, column, count, slot, next, transposed);
     return STATUS_OK;
+}
+
+void row_operator_free(struct row_operator *rows)
+{
+    for (int s = 0; s < rows->stripe_count; s++) {
+        free(rows->stripes[s].row);
+    }
+    free(rows->stripes);
+    sparse_free(&rows->matrix);
+    sparse_free(&rows->columns);
+    *rows = (struct row_operator){0};
 }

@@ -32,14 +32,3 @@ static inline const struct sparse *row_operator_columns(const struct row_operato
 MUST_CHECK enum status row_operator_finish(struct row_operator *rows, int64_t begin, int64_t end, int threads,
                                            struct error *error);
 void row_operator_free(struct row_operator *rows);
-
-/* Transpose some columns of B: row c of `transposed` is column[c], in ascending order. range[2 * rows] comes
- * from row_operator_ranges. slot[columns of B] is scratch; it receives slot[column[c]] = c. */
-MUST_CHECK enum status row_operator_transpose(const struct row_operator *rows, const int32_t *range,
-                                              const int32_t *column, int64_t count, int32_t *slot,
-                                              struct sparse *transposed, struct error *error);
-
-/* (*range)[2 * rows], to be freed: the first and the last column of each row. In an empty row, the last one
- * is less than the first. */
-MUST_CHECK enum status row_operator_ranges(const struct row_operator *rows, int32_t **range,
-                                           struct error *error);

@@ -98,34 +98,9 @@ enum status preconditioner_build_coarse_constraints(const struct solid_system *s
                                                     struct preconditioner *p, struct error *error)
 {
     const struct constraint_rows *rows = &system->rows;
-    RETURN_IF_ERROR(NEW_ARRAY(&p->on_list, rows->list_count * p->dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&p->value, rows->count, error));
     RETURN_IF_ERROR(coarse_mean_table(&p->coarse, rows->list_count, list_at, rows, NULL, &p->mean,
                                       &p->conditions, error));
     return sparse_transpose(&p->conditions, &p->of_field, error);
-}
-
-void preconditioner_coarse_constraint_values(const struct preconditioner *p, const double *amount,
-                                             double *value)
-{
-    const struct constraint_rows *rows = p->constraint.rows;
-    int dim = p->dim;
-    sparse_apply_rows(&p->conditions, 0, rows->list_count, dim, amount, p->on_list);
-    for (int64_t r = 0; r < rows->count; r++) {
-        value[r] = vector_dot(dim, rows->direction + r * dim, p->on_list + rows->list[r] * dim);
-    }
-}
-
-void preconditioner_subtract_constraint_forces(const struct preconditioner *p, const double *value,
-                                               double *amount)
-{
-    const struct constraint_rows *rows = p->constraint.rows;
-    int dim = p->dim;
-    memset(p->on_list, 0, (size_t)(rows->list_count * dim) * sizeof *p->on_list);
-    for (int64_t r = 0; r < rows->count; r++) {
-        add_scaled(dim, -value[r], rows->direction + r * dim, p->on_list + rows->list[r] * dim);
-    }
-    sparse_add_rows(&p->of_field, 0, p->coarse.count, dim, p->on_list, amount);
 }
 
 bool preconditioner_constrain_field(const struct preconditioner *p, int64_t k, double *column)

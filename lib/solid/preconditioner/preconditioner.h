@@ -4,29 +4,21 @@
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
  * step, and the modes of the lowest frequencies determine the number of steps. On a few smooth fields Z
  * (coarse_space.h) the mass is therefore the stiffness itself: with the projection P onto motions that
- * satisfy the homogeneous conditions, and A made of the stiffness Z^T P^T K P Z (below equation (25)),
+ * satisfy the homogeneous conditions, and A made of the stiffness Z^T P K P Z (below equation (25)),
  *
- *   M^-1 = P (B + Z A^-1 Z^T) P^T
+ *   M^-1 = P (B + Z A^-1 Z^T) P
  *
- * where, with the constraint rows G and S = G B G^T, P^T f = f - G^T S^-1 G B f: one product G B f gives both
- * the amounts of the coarse fields and the constraint forces. By the Woodbury formula
- *
- *   x . M y = x . B^-1 y - (Z^T B^-1 x) . (A + Z^T B^-1 P Z)^-1 (Z^T B^-1 y)
- *
- * for x and y that satisfy the homogeneous conditions (P is Pi of equation (23)). With smoothed cells and
- * an inverse factor, B = L^T D^-1 L, with the factor L of inverse_stiffness.h and D by how much the stiffness
- * around each node has changed since rest; otherwise B = D^-1. The slowest modes left are those that the
- * coarse fields do not resolve; those that a run meets are added (slow_modes.h). For linear systems this is
- * a two-level additive preconditioner with deflated constraints. Any positive definite A is admissible. Its
- * contact part must be updated as contacts close, because a mode that suddenly becomes stiffer than A would
- * be unstable.
+ * with the orthogonal projection P onto motions that meet the homogeneous conditions: P f = f - G^T (G
+ * G^T)^-1 G f with the rows G. With smoothed cells B = L^T D^-1 L, with the factor L of inverse_stiffness.h
+ * and D by how much the stiffness around each node has changed since rest; otherwise B = D^-1. For linear
+ * systems this is a two-level additive preconditioner with deflated constraints. Any positive definite A is
+ * admissible.
  */
 #pragma once
 
 #include "base/state.h"
 #include "solid/preconditioner/coarse_space.h"
 #include "solid/preconditioner/inverse_stiffness.h"
-#include "solid/preconditioner/slow_modes.h"
 #include "solid/system/system.h"
 
 /* Means of the coarse fields, which are not zero for a few centres. */
@@ -40,27 +32,20 @@ struct coarse_mean {
 struct preconditioner {
     int dim;
     int64_t node_count;
-    double *stiffness;                  /* node_count: that D was set from, N/m (2D: N/m2), */
-    double *at_rest;                    /* and with an inverse factor what it is at rest */
-    double *mass;                       /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
-    struct inverse_factor factor;       /* node_count 0: none */
-    struct constraint_rows factor_rows; /* G L^T */
-    int64_t *column_first;              /* of several processes: the columns of matrices that each computes */
-    double *vector;                     /* node_count * dim: scratch */
-    struct constraint constraint;       /* with D */
-    struct coarse_space coarse;         /* count 0: none, M = B^-1 */
-    int64_t size;                       /* coarse.count * dim: rows and columns of the coarse matrices */
-    double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
-                     N/m2) */
-    double measured_mass; /* sum of D when it was measured */
-    bool has_rigid_mode;  /* the conditions leave the body free to move as a whole */
-    bool *active;         /* contact nodes of all contacts: those that A counts in (NULL: none), */
-    double *normal;       /* contact_node_count * dim: and the surface's normals there */
-    bool *creased; /* contact_node_count: held in all directions, as it lies in a crease of the surface */
-    bool *turned;  /* contact_node_count: it has turned (contact.h) since A last left nodes out */
-    int64_t *idle; /* contact_node_count, as active nodes, and as many, as creased ones: checks in a row in
-                      which the node could have been left out, */
-    int64_t *patience; /* and how many of them it stays counted in */
+    double *stiffness;            /* node_count: that D was set from, N/m (2D: N/m2), */
+    double *at_rest;              /* and with an inverse factor what it is at rest */
+    double *mass;                 /* node_count: D, N/m (2D: N/m2); with an inverse factor a number */
+    struct inverse_factor factor; /* node_count 0: none */
+    double *vector, *force;       /* node_count * dim: scratch */
+    struct constraint constraint; /* P */
+    struct coarse_space coarse;   /* count 0: none, M = B^-1 */
+    int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
+    double *body;     /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
+                         N/m2) */
+    bool is_measured; /* `body` is known */
+    bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
+    bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
+    double *normal;      /* contact_node_count * dim: and the surface's normals there */
     int64_t contact_node_count;
     bool *held; /* node_count, where there are contacts: nodes that the conditions hold in all directions. P
                    takes what the coarse fields move them by, so that contacts see the fields without it */
@@ -69,18 +54,13 @@ struct preconditioner {
     struct sparse conditions, of_field; /* a row for each list of the conditions' rows: the coarse fields'
                                            means there, G Z but for the rows' directions; and the transpose */
     struct coarse_mean mean;            /* scratch */
-    double *on_list, *value;            /* of the conditions' lists times dim, and of their rows: scratch */
-    double *weight;      /* coarse.count * coarse.count: Z^T B^-1 Z, the same in each direction */
-    double *free_weight; /* Z^T B^-1 P Z */
+    double
+        *weight; /* coarse.count * coarse.count: Z^T D Z with D = `stiffness`, the same in each direction */
     double *contacts; /* stiffness along the coarse fields of the contact nodes that A counts in (NULL without
                          contacts); of this and the factors' matrices the lower triangle */
-    bool *pushed;     /* contact_node_count: those that A counts in anew; scratch */
-    double *stiffness_factor;   /* Cholesky factor of A, */
-    double *capacitance_factor; /* and of A + Z^T B^-1 P Z, the capacitance matrix of the Woodbury formula */
-    bool uses_coarse;           /* they exist; else M = B^-1 */
-    double *amount;             /* 4 * size: scratch */
-    struct slow_modes slow; /* slow modes, of which M includes the correction (26a); they are dropped when D
-                               or A changes */
+    double *stiffness_factor; /* Cholesky factor of A */
+    bool uses_coarse;         /* it exists; else M = B^-1 */
+    double *amount;           /* size: scratch */
 };
 
 /* Allocate; build the coarse fields and the inverse factor for a system. `coarse` false: neither, M = D. */
@@ -100,39 +80,20 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
                                               struct solid_system *system, const double *u,
                                               int64_t *evaluations, struct error *error);
 
-/* Whether D has changed so much that the coarse fields should be measured again. */
-bool preconditioner_is_stale(const struct preconditioner *preconditioner);
-
 /* force += K_c move, with the stiffness K_c that the contact nodes counted in A may add to K at the last
- * evaluation: that of the nodes that are open and may close, and that along the surface of nodes in a crease.
- * move, force: node_count * dim. */
+ * evaluation: that of the nodes that are open and may close. move, force: node_count * dim. */
 void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
 /* Let A have the contacts' penalties as they are now; see system_stiffen_contacts. M changes. */
 void preconditioner_take_penalties(struct preconditioner *preconditioner, const struct solid_system *system);
 
-/* Let A follow the contacts' last evaluation: contact nodes that begin to touch are counted in at once, those
- * that are no longer near are left out when `leave`. True when M has changed.
- *
- * Where nodes are counted in, `velocity` keeps its momentum along the coarse fields, as in a plastic impact;
- * where they are left out it keeps its value. So the kinetic energy does not rise: a body that arrived with
- * the mass of a free one and kept its velocity would go on with the mass of one that is held, which may be
- * hundreds of times as large. NULL: a body at rest. field[node_count * dim]: scratch, or NULL with it. */
-bool preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system,
-                           bool leave, double *velocity, double *field);
-
-/* Add a slow mode, a move that satisfies the homogeneous conditions. If SLOW_MODES_MOST modes are stored, the
- * earliest is dropped first. */
-MUST_CHECK enum status preconditioner_add_slow_mode(struct preconditioner *preconditioner, const double *mode,
-                                                    struct error *error);
-void preconditioner_drop_slow_modes(struct preconditioner *preconditioner);
+/* Let A follow the contacts' last evaluation: nodes that are pressed count in; of a body with free rigid-body
+ * modes all do, as it may come to rest on any. */
+void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);
 
 /* acceleration = M^-1 force. */
 void preconditioner_apply(struct preconditioner *preconditioner, const double *force, double *acceleration);
-
-/* result = B force */
-void preconditioner_smooth(struct preconditioner *preconditioner, const double *force, double *result);
 
 /* row_force[rows of the conditions] = their forces, which balance a residual along them, N (2D: N/m).
  * scratch: node_count * dim. */
@@ -140,14 +101,8 @@ MUST_CHECK enum status preconditioner_row_forces(struct preconditioner *precondi
                                                  const double *residual, double *scratch, double *row_force,
                                                  struct error *error);
 
-/* x . B^-1 x */
+/* x . D x with D = `stiffness` */
 double preconditioner_square_diagonal(struct preconditioner *preconditioner, const double *x);
-
-/* x . M x for a move x that satisfies the homogeneous conditions. */
-double preconditioner_square(struct preconditioner *preconditioner, const double *x);
-
-/* force = M move, but for forces of the conditions, for a move that satisfies the homogeneous conditions. */
-void preconditioner_multiply(struct preconditioner *preconditioner, const double *move, double *force);
 
 /* The state for checkpoints, see base/state.h. Afterwards, in a run that was restored,
  * preconditioner_restore.

@@ -1,4 +1,4 @@
-/* The stiffness of the coarse space: that of the body, by differences; and the factors. */
+/* The stiffness of the coarse space: that of the body, by differences; and its factor. */
 #include "solid/preconditioner/preconditioner_private.h"
 
 #include "base/chunks.h"
@@ -8,43 +8,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Eigenvalues of the coarse space by the largest, which is about 1: a margin for stiffening until the
- * stiffness is measured again. */
-static const double share = 0.25;
 /* Part of D that is added to the stiffness of the coarse space, so that modes without stiffness have a mass.
  */
-static const double kept = 1e-4;
+static const double kept = 1e-6;
 enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
-/* Share of the mass of the coarse space that the conditions must leave free for it to be used. */
-static const double least_free = 0.01;
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 static const double strain = 1e-6;   /* of the differences that stiffness is measured with */
-
-/* Part of the coarse fields' mass that the conditions leave free. */
-static double free_part(const struct preconditioner *p)
-{
-    double all = 0.0, part = 0.0;
-    for (int64_t k = 0; k < p->size; k++) {
-        all += p->weight[k / p->dim * (p->coarse.count + 1)];
-        part += p->free_weight[k * (p->size + 1)];
-    }
-    return part / all;
-}
 
 static int threads_for(int64_t size)
 {
     return chunks_of(size * size, ENTRIES_FOR_THREAD).threads;
 }
 
-/* The lower triangle of matrix = (body + contacts) / share + keep weight, and `more`, or NULL. */
-static void sum_stiffness(const struct preconditioner *p, double keep, const double *more, double *matrix)
+/* The lower triangle of matrix = body + contacts + keep weight. */
+static void sum_stiffness(const struct preconditioner *p, double keep, double *matrix)
 {
     int64_t size = p->size, dim = p->dim;
 #pragma omp parallel for schedule(static, 16) num_threads(threads_for(size))
     for (int64_t i = 0; i < size; i++) {
         for (int64_t k = i * size; k <= i * size + i; k++) {
-            double contacts = p->contacts != NULL ? p->contacts[k] : 0.0;
-            matrix[k] = (p->body[k] + contacts) / share + (more != NULL ? more[k] : 0.0);
+            matrix[k] = p->body[k] + (p->contacts != NULL ? p->contacts[k] : 0.0);
         }
         for (int64_t k = i % dim; k <= i; k += dim) {
             matrix[i * size + k] += keep * p->weight[i / dim * p->coarse.count + k / dim];
@@ -57,7 +40,7 @@ double preconditioner_factorise(const struct preconditioner *p, double *matrix)
     double keep = kept;
     /* Of an unstable body the stiffness is indefinite. */
     for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
-        sum_stiffness(p, keep, NULL, matrix);
+        sum_stiffness(p, keep, matrix);
         if (dense_factorise(p->size, matrix)) {
             return keep;
         }
@@ -70,13 +53,9 @@ void preconditioner_factorise_both(struct preconditioner *p, const struct solid_
 {
     if (p->contacts != NULL) {
         memset(p->contacts, 0, (size_t)(p->size * p->size) * sizeof *p->contacts);
-        preconditioner_add_contacts(p, system, NULL, p->contacts);
+        preconditioner_add_contacts(p, system, p->contacts);
     }
-    double keep = free_part(p) > least_free ? preconditioner_factorise(p, p->stiffness_factor) : 0.0;
-    if (keep > 0.0) {
-        sum_stiffness(p, keep, p->free_weight, p->capacitance_factor);
-    }
-    p->uses_coarse = keep > 0.0 && dense_factorise(p->size, p->capacitance_factor);
+    p->uses_coarse = preconditioner_factorise(p, p->stiffness_factor) > 0.0;
 }
 
 static void make_symmetric(int64_t n, double *matrix)
@@ -99,7 +78,9 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
     for (int64_t k = 0; k < p->size; k++) {
         memset(one, 0, (size_t)p->size * sizeof *one);
         one[k] = 1.0;
-        preconditioner_prolongate(p, one, moved);
+        memset(moved, 0, (size_t)values * sizeof *moved);
+        coarse_space_prolongate(&p->coarse, one, moved);
+        preconditioner_project(p, moved);
         for (int64_t i = 0; i < values; i++) {
             moved[i] = u[i] + epsilon * moved[i];
         }
@@ -107,7 +88,8 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
         for (int64_t i = 0; i < values; i++) {
             force[i] = (force[i] - at_u[i]) / epsilon;
         }
-        preconditioner_restrict_force(p, force, moved, p->body + k * p->size);
+        preconditioner_project(p, force);
+        coarse_space_restrict(&p->coarse, force, p->body + k * p->size);
     }
     return STATUS_OK;
 }
@@ -115,7 +97,6 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
 enum status preconditioner_measure(struct preconditioner *p, struct solid_system *system, const double *u,
                                    int64_t *evaluations, struct error *error)
 {
-    preconditioner_drop_slow_modes(p);
     if (p->size == 0) {
         return STATUS_OK;
     }
@@ -129,7 +110,7 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
         make_symmetric(p->size, p->body);
         *evaluations += p->size;
     }
-    p->measured_mass = preconditioner_sum_of_mass(p);
+    p->is_measured = true;
     preconditioner_factorise_both(p, system);
     return STATUS_OK;
 }

@@ -5,13 +5,9 @@
 
 struct progress {
     int64_t step;
-    double time; /* s; 0..1 of the load in relaxation */
-    double move; /* relaxation: largest displacement of a node between the last two checks, m; INFINITY if the
-                    run returned to an earlier state in between */
-    double raised; /* relaxation: by what factor moves may be larger from this check on, as a slow mode was
-                      added; else 1 */
-    double error;  /* relaxation: estimated remaining error relative to the displacement; dynamics: error of
-                      the energy balance relative to the largest energy */
+    double time;      /* s; 0..1 of the load at rest */
+    double error;     /* at rest: estimated remaining error relative to the displacement; dynamics: error of
+                         the energy balance relative to the largest energy */
     double remaining; /* estimated share of the steps that remain, 0..1; negative: unknown */
     const double *u;  /* parameters */
     /* state(run, ...) visits the run's state at this step. A run of the same system and options that is

@@ -45,10 +45,9 @@ enum status system_state(struct solid_system *system, const struct state *state,
 {
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
-                                            {"node", STATE_COUNTS, &system->stability.node, 1},
-                                            {"left", STATE_NUMBERS, &system->stability.left, 1}};
+                                            {"node", STATE_COUNTS, &system->stability.node, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
-    RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 3, error));
+    RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 2, error));
     RETURN_IF_ERROR(prony_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         char prefix[32];
@@ -137,11 +136,9 @@ static enum status check_dropped(const struct solid_system *system, struct const
 }
 
 enum status system_constrain(const struct solid_system *system, const double *mass,
-                             const struct inverse_factor *inverse, const struct constraint_rows *inverse_rows,
                              struct constraint *constraint, struct error *error)
 {
-    enum status status =
-        constraint_build(&system->rows, system->node_count, mass, inverse, inverse_rows, constraint, error);
+    enum status status = constraint_build(&system->rows, system->node_count, mass, constraint, error);
     if (status == STATUS_OK && constraint->factor.dropped > 0) {
         status = check_dropped(system, constraint, error);
     }
@@ -333,8 +330,7 @@ double system_longest_way(const struct solid_system *system)
 
 bool system_has_inverse(const struct solid_system *system)
 {
-    return (system->dim == 3 || system->has_flat_cells) && system->body.smoothed &&
-           system->node_lists != NULL;
+    return system->body.smoothed && system->node_lists != NULL;
 }
 
 /* The stiffness that a constraint penalty on an average adds to its nodes. */

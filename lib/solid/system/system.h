@@ -41,12 +41,10 @@ struct cost {
     double force, loads, contact, constraints;
 };
 
-/* The least eigenvalue of M^-1 K at the last equilibrium, see solid/preconditioner/frequency.h. */
+/* The least eigenvalue of M^-1 K at the last equilibrium, see newton_judge_stability. */
 struct stability {
     double least; /* relative to the largest; negative: unstable; 0: not computed, or below round-off */
     int64_t node; /* of an unstable state: where its mode is largest */
-    double left;  /* Newton's method: share of the load at which it first left an equilibrium that is not
-                     stable;  0: it has not */
 };
 
 struct condition;
@@ -58,7 +56,6 @@ struct solid_system {
     struct body body;
     const struct neighbours *node_lists; /* shape functions at the nodes, the caller's; NULL: not known */
     const double *node_phi;
-    bool has_flat_cells; /* 2D: half of the cells or more, see assembly.c */
     struct dead_load *loads;
     int64_t load_count;
     struct pressure_load *pressures;
@@ -111,8 +108,6 @@ bool system_begins_loaded(const struct solid_system *system);
  * rows are dropped. STATUS_VERDICT, naming sections, node and place, if they are inconsistent with the
  * others. */
 MUST_CHECK enum status system_constrain(const struct solid_system *system, const double *mass,
-                                        const struct inverse_factor *inverse,
-                                        const struct constraint_rows *inverse_rows,
                                         struct constraint *constraint, struct error *error);
 
 /* force[node_count * dim] += dead loads and pressures at system->factor, at parameters u. */

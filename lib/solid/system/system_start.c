@@ -42,6 +42,19 @@ enum status system_start(struct solid_system *system, const double *u, struct er
     return STATUS_OK;
 }
 
+double system_longest_change(const struct solid_system *system)
+{
+    const struct constraint_rows *rows = &system->rows;
+    double longest = 0.0;
+    if (rows->start == NULL) {
+        return system_longest_way(system);
+    }
+    for (int64_t r = 0; r < rows->count; r++) {
+        longest = fmax(longest, fabs(rows->start[r]));
+    }
+    return longest;
+}
+
 void system_load_factors(struct solid_system *system, double s)
 {
     for (int64_t i = 0; i < system->curve_count; i++) {

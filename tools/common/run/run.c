@@ -22,7 +22,6 @@ bool run_progress(void *context, const struct progress *progress)
     struct run *run = context;
     show_progress(&run->display, progress);
     run_folds_check(run, progress->u, progress->time, false);
-    run_stability_follow(run, progress);
     return run_checkpoint_step(run, progress);
 }
 

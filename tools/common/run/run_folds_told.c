@@ -105,16 +105,12 @@ void run_folds_describe(const struct run *run, char *text, size_t size)
 void run_folds_judge(struct run *run)
 {
     char text[500];
-    bool stands = false, folds = run->folds.seen;
-    if (folds) {
-        run_folds_describe(run, text, sizeof text);
-    } else {
-        stands = run_stability_describe(run, text, sizeof text);
-    }
+    bool folds = run->folds.seen;
+    (folds ? run_folds_describe : run_stability_describe)(run, text, sizeof text);
     if (text[0] == '\0') {
         return;
     }
-    if (stands || run->scene->output.folds_allowed) {
+    if (run->scene->output.folds_allowed) {
         tool_note(run->tool, "%s: %s", run->scene->path, text);
         return;
     }

@@ -1,20 +1,21 @@
 #include "run/run.h"
 
 #include "solid/equilibrium/newton.h"
+#include "solid/equilibrium/relaxation.h"
 
 static const char beyond_limit[] =
     "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
     "a dynamic scene, or refine there; frames show up to which load it stands";
 
 /* End the run if it has not converged: no incomplete result is given. */
-static void judge(struct run *run, const struct relaxation_report *report)
+static void judge(struct run *run, const struct statics_report *report)
 {
     const struct scene *scene = run->scene;
     char place[96] = "", load[48] = "";
     if (report->load < 1.0) {
         snprintf(load, sizeof load, " (at %.3g of the load)", report->load);
     }
-    if (report->outcome == RELAXATION_CONVERGED) {
+    if (report->outcome == STATICS_CONVERGED) {
         if (report->error > scene->solver.tolerance) {
             tool_note(run->tool, "%s: estimated error %.2g, not %.2g: %s less", scene->path, report->error,
                       scene->solver.tolerance,
@@ -30,7 +31,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
         return;
     }
     point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
-    if (report->outcome == RELAXATION_STALLED) {
+    if (report->outcome == STATICS_STALLED) {
         const char *remedy =
             run->folds.seen ? "" /* it is named with the fold */
             : run->model->system.contact_count > 0
@@ -43,13 +44,12 @@ static void judge(struct run *run, const struct relaxation_report *report)
             "%s: step %lld%s: the estimated error stays at %.2g of the displacement, most of all at %s%s",
             scene->path, (long long)report->steps, load, report->error, place, remedy);
     }
-    if (report->outcome == RELAXATION_STOPPED) {
+    if (report->outcome == STATICS_STOPPED) {
         run_checkpoint_stop(run, report->steps);
     }
-    if (report->outcome == RELAXATION_INVERTED) {
+    if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
-        /* The relaxation has gone back several times, with a slower load each time. */
         run_fail(
             run, STATUS_VERDICT,
             "%s: step %lld%s: integration point %lld at %s is inverted (J = %.3g), however slowly the load "
@@ -57,7 +57,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
             scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
             report->least_jacobian, beyond_limit);
     }
-    if (report->outcome == RELAXATION_AWAY) {
+    if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
                  scene->path, (long long)report->steps, load, report->move, beyond_limit);
@@ -70,7 +70,7 @@ static void judge(struct run *run, const struct relaxation_report *report)
 
 /* The estimated error of the iteration, m: of the relaxation, and of the remaining penetration of
  * contacts. */
-static double error_left(const struct relaxation_report *report)
+static double error_left(const struct statics_report *report)
 {
     return report->error * report->move + report->penetration;
 }
@@ -110,20 +110,17 @@ void run_quasi_static(struct run *run)
     const struct scene_solver *solver = &run->scene->solver;
     const struct body *body = &run->model->system.body;
     bool in_time = run->scene->duration > 0.0;
-    struct relaxation_options options = {.tolerance = solver->tolerance,
-                                         .time_step_margin = solver->time_step_margin,
-                                         .ramp_steps = solver->ramp_steps,
-                                         .most_steps = solver->max_steps,
-                                         .frames =
-                                             in_time ? count_steps(run->scene) : run->scene->output.frames,
-                                         .in_time = in_time,
-                                         .frame = in_time ? end_step : run_put_equilibrium,
-                                         .progress = run_progress,
-                                         .context = run,
-                                         .interrupted = run->checkpoint.interrupted,
-                                         .folded = run->scene->output.folds_allowed ? NULL : &run->folds.seen,
-                                         .restored = run_checkpoint_state(run)};
-    struct relaxation_report report;
+    struct statics_options options = {.tolerance = solver->tolerance,
+                                      .time_step_margin = solver->time_step_margin,
+                                      .ramp_steps = solver->ramp_steps,
+                                      .most_steps = solver->max_steps,
+                                      .frames = in_time ? count_steps(run->scene) : run->scene->output.frames,
+                                      .in_time = in_time,
+                                      .frame = in_time ? end_step : run_put_equilibrium,
+                                      .progress = run_progress,
+                                      .context = run,
+                                      .restored = run_checkpoint_state(run)};
+    struct statics_report report;
     struct error error;
     run_check_rigid_modes(run);
     double started = clock_seconds();
