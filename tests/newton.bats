@@ -79,3 +79,13 @@ clamped() { # clamped DIM NU MOVE: a block between clamped ends
     sed -i 's/max_steps = 3/ramp_steps = 3/' few.scene
     refused 2 "few.scene:15: [solver]: ramp_steps: not allowed: it goes with method = relaxation: Newton's method chooses its increments" mtled few.scene 2.mts
 }
+
+@test "a curve that begins with the whole of its load, or a half, ends where a smooth one does" {
+    cloud -d 2 -k jittered -n 7 --box 0,0.1,0,0.1 --jitter 0.2 | shapefn > 2.mts 2> note
+    printf '0 .5\n1 1\n' > half.tsv
+    for curve in smooth step half.tsv; do
+        { clamped 2 0.45 '0, -0.01' && printf 'curve = %s\n[traction side]\nfacets = xmax\ncomponents = 50, 0\ncurve = %s\n' $curve $curve; } > $curve.scene
+        mtled $curve.scene 2.mts > $curve.dat
+        fieldcmp smooth.dat $curve.dat | awk -F '\t' '$1 == "max_relative" { print; exit !($2 < 2e-5) }' # two tolerances
+    done
+}

@@ -69,7 +69,7 @@ static enum status measure(struct newton *n, struct error *error)
     struct preconditioner *p = &n->preconditioner;
     int64_t before = n->report->force_evaluations;
     system_relaxation_mass(n->system, false, n->scaled);
-    RETURN_IF_ERROR(preconditioner_set_mass(p, n->system, n->scaled, error));
+    preconditioner_set_mass(p, n->scaled);
     RETURN_IF_ERROR(preconditioner_measure(p, n->system, n->u, &n->report->force_evaluations, error));
     n->cost = n->report->force_evaluations - before;
     n->excess = 0.0;
@@ -164,8 +164,7 @@ static bool begin_increment(struct newton *n, double from, double change)
     set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
     (void)newton_evaluate(n, n->u, &n->at_u);
-    bool whole =
-        newton_solve_model(n, n->last_change != 0.0 ? left : left_at_first, far * n->body_size, &n->square);
+    bool whole = newton_solve_model(n, n->last_change != 0.0 ? left : left_at_first, far * n->body_size);
     n->length = newton_longest(n, n->step, NULL);
     take_multipliers(n);
     return whole;
@@ -253,9 +252,7 @@ static void augment(struct newton *n)
     if (contacts) {
         system_augment_contacts(n->system, false);
     }
-    if (system_stiffen_contacts(n->system)) {
-        preconditioner_take_penalties(&n->preconditioner, n->system);
-    }
+    (void)system_stiffen_contacts(n->system); /* followed below */
     if (pressures || n->system->contact_count > 0) {
         (void)newton_evaluate(n, n->u, &n->at_u);
         preconditioner_follow(&n->preconditioner, n->system);
@@ -278,7 +275,7 @@ static void go_back(struct newton *n)
 static bool correct(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, left, n->radius, &n->square);
+    bool whole = newton_solve_model(n, left, n->radius);
     n->length = newton_longest(n, n->step, &n->report->worst_node);
     if (n->length == 0.0) {
         return true;
@@ -400,7 +397,7 @@ static bool loads(const struct newton *n)
  * stiffness, twice as far each time while the energy falls. False where cells invert at once. */
 static bool leave(struct newton *n)
 {
-    double lowest = 0.0, now = 0.0;
+    double lowest = 0.0, now;
     memcpy(n->step, n->search, (size_t)n->size * sizeof *n->step);
     n->length = newton_longest(n, n->step, NULL);
     shorten(n, leaving * n->spacing / n->length);
@@ -468,12 +465,12 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
     return STATICS_TOO_MANY_STEPS;
 }
 
-/* Start at rest from u, projected onto the conditions, without load or with that of a given start
- * (system_start). */
+/* Start at rest from u: that of a given start (system_start), or zeros. Loads and motions that curves have at
+ * the beginning grow first. */
 static enum status begin(struct newton *n, struct error *error)
 {
     struct solid_system *system = n->system;
-    n->load = n->options->in_time && system_begins_loaded(system) ? -1.0 : 0.0;
+    n->load = system->rows.start == NULL && system_begins_loaded(system) ? -1.0 : 0.0;
     system_load_factors(system, n->load);
     system_measure_contacts(system, n->u, true);
     system_accept(system);
@@ -491,7 +488,7 @@ static enum status begin(struct newton *n, struct error *error)
 static enum status resume(struct newton *n, struct error *error)
 {
     RETURN_IF_ERROR(newton_visit(n, n->options->restored, error));
-    RETURN_IF_ERROR(preconditioner_restore(&n->preconditioner, n->system, error));
+    preconditioner_restore(&n->preconditioner, n->system);
     (void)newton_evaluate(n, n->u, &n->at_u);
     n->report->force_evaluations--; /* it counted before */
     return STATUS_OK;

@@ -165,7 +165,7 @@ static void note_products(struct newton *n, int products, double fallen, const s
     }
 }
 
-bool newton_solve_model(struct newton *n, double share, double radius, double *square)
+bool newton_solve_model(struct newton *n, double share, double radius)
 {
     double before = 0.0, length = newton_longest(n, n->step, NULL), mark = 0.0;
     int augmentations = n->corrections < NEWTON_MOST_AUGMENTATIONS ? MOST_INNER : 0;
@@ -173,7 +173,7 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
     begin_model(n);
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         double now = scale_gradient(n);
-        *square = k == 0 ? now : *square;
+        n->square = k == 0 ? now : n->square;
         mark = k == 0 ? now : mark;
         if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
             augmentations--;
@@ -182,8 +182,8 @@ bool newton_solve_model(struct newton *n, double share, double radius, double *s
             now = mark = scale_gradient(n);
         }
         bool round_off = newton_longest(n, n->scaled, NULL) <= DBL_EPSILON * n->body_size;
-        if (!(now > share * share * *square) || round_off) {
-            note_products(n, k, now / *square, &lanczos);
+        if (!(now > share * share * n->square) || round_off) {
+            note_products(n, k, now / n->square, &lanczos);
             return true;
         }
         double part, down = turn_search(n, now, before, &part);

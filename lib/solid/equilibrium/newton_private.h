@@ -85,8 +85,8 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
 void newton_touch(struct newton *n, const double *u, struct newton_forces *forces);
 
 /* Lower the model at u, from n->step, until the norm of its gradient is below `share` of what it was at
- * first. False where the step reaches the radius at a node before. *square: the first norm squared. */
-bool newton_solve_model(struct newton *n, double share, double radius, double *square);
+ * first. False where the step reaches the radius at a node before. n->square: the first norm squared. */
+bool newton_solve_model(struct newton *n, double share, double radius);
 
 /* r . M^-1 r of a residual r, without reactions; M^-1 r is left in n->scaled. */
 double newton_square(struct newton *n, const struct newton_forces *forces);

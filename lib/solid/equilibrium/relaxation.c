@@ -242,17 +242,16 @@ static bool step(struct relaxation *r)
 /* ---- checks ---- */
 
 /* Set the mass and the time step at `before`, where the residual is known. */
-static enum status weigh(struct relaxation *r, const double *u, int turns, struct error *error)
+static void weigh(struct relaxation *r, const double *u, int turns)
 {
     system_relaxation_mass(r->system, false, r->scratch);
-    RETURN_IF_ERROR(preconditioner_set_mass(&r->mass, r->system, r->scratch, error));
+    preconditioner_set_mass(&r->mass, r->scratch);
     double frequency =
         system_largest_frequency(r->system, &r->mass, u, r->residual, turns, r->mode, r->scratch);
     r->report->force_evaluations += turns;
     /* The power iteration estimates from below and fluctuates: follow a rise at once, a fall slowly. */
     r->frequency = frequency > r->frequency ? frequency : 0.98 * r->frequency + 0.02 * frequency;
     r->time_step = r->options->time_step_margin * 2.0 / r->frequency;
-    return STATUS_OK;
 }
 
 static void estimate(struct relaxation *r)
@@ -332,9 +331,9 @@ static bool check(struct relaxation *r, enum statics_outcome *outcome, struct er
     if (ends(r, outcome) && (*outcome != STATICS_CONVERGED || !goes_on(r, error))) {
         return true;
     }
-    r->failure = weigh(r, r->before, iterations, error);
+    weigh(r, r->before, iterations);
     *outcome = STATICS_STOPPED;
-    return r->failure != STATUS_OK || !tell(r);
+    return !tell(r);
 }
 
 static enum statics_outcome iterate(struct relaxation *r, struct error *error)
@@ -358,7 +357,7 @@ static enum statics_outcome iterate(struct relaxation *r, struct error *error)
 }
 
 /* Start at rest from u, projected onto the conditions. */
-static enum status begin(struct relaxation *r, struct error *error)
+static void begin(struct relaxation *r)
 {
     struct solid_system *system = r->system;
     double longest = system_longest_change(system);
@@ -371,7 +370,7 @@ static enum status begin(struct relaxation *r, struct error *error)
     if (gives_frames(r)) {
         r->options->frame(r->options->context, 0, 0.0, r->u);
     }
-    RETURN_IF_ERROR(weigh(r, r->u, first_iterations, error));
+    weigh(r, r->u, first_iterations);
     constraint_project(&r->mass.constraint, system->factor, r->u);
     memcpy(r->last_u, r->u, (size_t)r->size * sizeof *r->u);
     r->pressures_lack = INFINITY;
@@ -380,13 +379,13 @@ static enum status begin(struct relaxation *r, struct error *error)
     for (int i = 0; i < WINDOWS; i++) {
         r->window[i] = r->lowest;
     }
-    return STATUS_OK;
 }
 
 static enum status resume(struct relaxation *r, struct error *error)
 {
     RETURN_IF_ERROR(visit(r, r->options->restored, error));
-    return preconditioner_restore(&r->mass, r->system, error);
+    preconditioner_restore(&r->mass, r->system);
+    return STATUS_OK;
 }
 
 enum status relaxation_run(struct solid_system *system, const struct statics_options *options, double *u,
@@ -404,7 +403,11 @@ enum status relaxation_run(struct solid_system *system, const struct statics_opt
     r.body_size = box_diagonal(&box);
     body_limit_bulk(&system->body, STATICS_BULK_LIMIT);
     RETURN_IF_ERROR(allocate(&r, error));
-    RETURN_IF_ERROR(options->restored != NULL ? resume(&r, error) : begin(&r, error));
+    if (options->restored != NULL) {
+        RETURN_IF_ERROR(resume(&r, error));
+    } else {
+        begin(&r);
+    }
     report->outcome = iterate(&r, error);
     RETURN_IF_ERROR(r.failure);
     report->load = load_share(&r);

@@ -84,6 +84,7 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
 {
     int64_t cells;
     *p = (struct preconditioner){.dim = system->dim, .node_count = system->node_count};
+    RETURN_IF_ERROR(system_constrain(system, NULL, &p->constraint, error));
     RETURN_IF_ERROR(system_has_rigid_mode(system, &p->has_rigid_mode, error));
     for (int64_t c = 0; c < system->contact_count; c++) {
         p->contact_node_count += contact_nodes(&system->contacts[c])->count;
@@ -196,7 +197,6 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"mass", STATE_NUMBERS, p->mass, p->node_count},
         {"stiffness", STATE_NUMBERS, p->stiffness, p->node_count},
         {"body", STATE_NUMBERS, p->body, p->size * p->size},
-        {"measured", STATE_FLAGS, &p->is_measured, 1},
         {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };

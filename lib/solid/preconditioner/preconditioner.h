@@ -1,5 +1,4 @@
-/* The fictitious mass of a relaxation: a preconditioner, since a state at rest does not depend on the mass
- * (dynamic relaxation: Underwood 1983; equation (23) of lib/README.md).
+/* The preconditioner M of a search for equilibrium, equation (23) of lib/README.md.
  *
  * With a diagonal mass D that bounds the stiffness of each node, a load spreads by about one support in a
  * step, and the modes of the lowest frequencies determine the number of steps. On a few smooth fields Z
@@ -40,9 +39,8 @@ struct preconditioner {
     struct constraint constraint; /* P */
     struct coarse_space coarse;   /* count 0: none, M = B^-1 */
     int64_t size;                 /* coarse.count * dim: rows and columns of the coarse matrices */
-    double *body;     /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
-                         N/m2) */
-    bool is_measured; /* `body` is known */
+    double *body; /* stiffness of body and constraint penalties along the coarse fields, P Z e_k, N/m (2D:
+                     N/m2) */
     bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
     bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
     double *normal;      /* contact_node_count * dim: and the surface's normals there */
@@ -68,10 +66,9 @@ MUST_CHECK enum status preconditioner_build(struct solid_system *system, bool co
                                             struct preconditioner *preconditioner, struct error *error);
 void preconditioner_free(struct preconditioner *preconditioner);
 
-/* Set D from system_relaxation_mass at the system's last evaluation, and what depends on it. */
-MUST_CHECK enum status preconditioner_set_mass(struct preconditioner *preconditioner,
-                                               const struct solid_system *system, const double *stiffness,
-                                               struct error *error);
+/* Set D from system_relaxation_mass at the system's last evaluation. With coarse fields
+ * preconditioner_measure comes next. */
+void preconditioner_set_mass(struct preconditioner *preconditioner, const double *stiffness);
 
 /* Take the stiffness along the coarse fields at u: of smoothed cells it is assembled, from one evaluation of
  * the body; else it is measured by differences, from size + 1. Their number is added to *evaluations, and the
@@ -85,11 +82,8 @@ MUST_CHECK enum status preconditioner_measure(struct preconditioner *preconditio
 void preconditioner_resist_open(const struct preconditioner *preconditioner,
                                 const struct solid_system *system, const double *move, double *force);
 
-/* Let A have the contacts' penalties as they are now; see system_stiffen_contacts. M changes. */
-void preconditioner_take_penalties(struct preconditioner *preconditioner, const struct solid_system *system);
-
-/* Let A follow the contacts' last evaluation: nodes that are pressed count in; of a body with free rigid-body
- * modes all do, as it may come to rest on any. */
+/* Let A follow the contacts' last evaluation and penalties: nodes that are pressed count in; of a body with
+ * free rigid-body modes all do, as it may come to rest on any. */
 void preconditioner_follow(struct preconditioner *preconditioner, const struct solid_system *system);
 
 /* acceleration = M^-1 force. */
@@ -109,5 +103,4 @@ double preconditioner_square_diagonal(struct preconditioner *preconditioner, con
  */
 MUST_CHECK enum status preconditioner_state(struct preconditioner *preconditioner, const struct state *state,
                                             struct error *error);
-MUST_CHECK enum status preconditioner_restore(struct preconditioner *preconditioner,
-                                              const struct solid_system *system, struct error *error);
+void preconditioner_restore(struct preconditioner *preconditioner, const struct solid_system *system);

@@ -153,10 +153,3 @@ void preconditioner_follow(struct preconditioner *p, const struct solid_system *
         preconditioner_factorise_both(p, system);
     }
 }
-
-void preconditioner_take_penalties(struct preconditioner *p, const struct solid_system *system)
-{
-    if (p->size > 0) {
-        preconditioner_factorise_both(p, system);
-    }
-}

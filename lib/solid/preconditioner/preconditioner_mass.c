@@ -26,27 +26,21 @@ static void weigh_coarse_space(struct preconditioner *p)
     }
 }
 
-enum status preconditioner_set_mass(struct preconditioner *p, const struct solid_system *system,
-                                    const double *stiffness, struct error *error)
+void preconditioner_set_mass(struct preconditioner *p, const double *stiffness)
 {
     for (int64_t n = 0; n < p->node_count; n++) {
         p->stiffness[n] = stiffness[n];
         p->mass[n] = p->at_rest != NULL ? stiffness[n] / p->at_rest[n] : stiffness[n];
     }
-    return preconditioner_restore(p, system, error);
-}
-
-enum status preconditioner_restore(struct preconditioner *p, const struct solid_system *system,
-                                   struct error *error)
-{
-    if (p->constraint.rows == NULL) {
-        RETURN_IF_ERROR(system_constrain(system, NULL, &p->constraint, error));
-    }
     if (p->size > 0) {
         weigh_coarse_space(p);
     }
-    if (p->size > 0 && p->is_measured) {
+}
+
+void preconditioner_restore(struct preconditioner *p, const struct solid_system *system)
+{
+    if (p->size > 0) {
+        weigh_coarse_space(p);
         preconditioner_factorise_both(p, system);
     }
-    return STATUS_OK;
 }

@@ -110,7 +110,6 @@ enum status preconditioner_measure(struct preconditioner *p, struct solid_system
         make_symmetric(p->size, p->body);
         *evaluations += p->size;
     }
-    p->is_measured = true;
     preconditioner_factorise_both(p, system);
     return STATUS_OK;
 }
