@@ -89,3 +89,19 @@ clamped() { # clamped DIM NU MOVE: a block between clamped ends
         fieldcmp smooth.dat $curve.dat | awk -F '\t' '$1 == "max_relative" { print; exit !($2 < 2e-5) }' # two tolerances
     done
 }
+
+# stressed STREAM SIDES HEIGHT STRESS [KEY = VALUE]: the stress (Pa) on the top of a cube of .1 m that slides on SIDES, by its closed form.
+stressed() {
+    { clamped 3 0.49 '0, 0, 0' | sed '/^\[displacement low/,$d'
+        printf '%s\n[displacement sides]\nfacets = %s\nnormal = 0\n[displacement top]\nfacets = zmax\nnormal = %s\n[output]\nreactions = yes\n' "${5:-}" "$2" "$3"; } > run.scene
+    mtled run.scene "$1" > u.dat
+    rows reactions u.dat | awk -v stress="$4" 'NR == 2 { e = $3 / .01 / stress - 1; print $3 / .01, stress; exit !(e < 1e-4 && -e < 1e-4) }'
+}
+
+@test "homogeneous states stay so: tension to 6 times the length and by Ogden to 3, confined compression to .3" {
+    cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.15 --seed 11 | shapefn > 5.mts 2> note
+    cloud -d 3 -k regular -n 6 --box 0,0.1,0,0.1,0,0.1 | shapefn > 6.mts 2> note
+    stressed 5.mts 'xmin, ymin, zmin' 0.5 5373.9267
+    stressed 5.mts 'xmin, ymin, zmin' 0.2 5450.1672 $'model = ogden\nalpha = 3'
+    stressed 6.mts 'xmin, xmax, ymin, ymax, zmin' -0.07 -39542.759
+}

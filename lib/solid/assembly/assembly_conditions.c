@@ -17,8 +17,10 @@ static enum status add_penalty(const struct prescription *p, const struct bounda
                                int64_t a, const double *direction, double target, struct error *error)
 {
     struct average average = average_of_boundary(points, a);
+    double unit = points->area[a] / p->layer;
     return system_append_penalty(p->system, &average, direction, target, p->condition->curve, p->number,
-                                 points->node[a], p->modulus * points->area[a] / p->layer, error);
+                                 points->node[a], p->modulus * unit,
+                                 p->condition->kind == CONDITION_NORMAL ? unit : 0.0, error);
 }
 
 static enum status add_row(const struct prescription *p, const struct boundary_averages *averages, int64_t a,

@@ -125,7 +125,8 @@ static enum status add_point(const struct point_condition *p, int64_t i, struct 
             continue;
         }
         RETURN_IF_ERROR(system_append_penalty(p->system, &average, direction, target, p->condition->curve,
-                                              p->number, node, p->energy / (deviation * deviation), error));
+                                              p->number, node, p->energy / (deviation * deviation), 0.0,
+                                              error));
         p->system->spring_count++;
     }
     return STATUS_OK;

@@ -49,7 +49,7 @@ static enum status add_springs(const struct assembly *input, int64_t number,
         if (stiffness > 0.0) {
             RETURN_IF_ERROR(system_append_penalty(system, &average, axis + k * dim, 0.0, support->curve,
                                                   (int32_t)(input->condition_count + number), points->node[p],
-                                                  stiffness, error));
+                                                  stiffness, 0.0, error));
             system->spring_count++;
         }
     }

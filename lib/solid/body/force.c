@@ -246,6 +246,7 @@ static void add_energy(const struct body *body, int64_t q, const double F[9], do
     struct block *of_block = block;
     double dissipated = 0.0, W = material_isochoric_energy(material, F);
     double sum = prony_energy(body, q, F, W, &dissipated) + stress_active_energy(body, q, F);
+    sum += stress_coupling_energy(body, q, F, J);
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
     of_block->energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
     of_block->dissipated += body->weight[q] * dissipated;

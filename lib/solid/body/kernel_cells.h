@@ -298,17 +298,35 @@ KERNEL_INLINE void cofactor_along(const lanes H[9], const lanes D[9], int dim, l
     }
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + p J), p held: see smoothed_cells.h. */
+/* From W_iso to W_iso + c g of (11b), a cell's volume ratio being `volume`: change its stress, and the
+ * pressure along the cofactor of F_h. shear: mu, weighted as these. */
+KERNEL_INLINE void couple_volumes(const lanes *J, const lanes *volume, const lanes *shear,
+                                  struct lanes_isochoric *isochoric, lanes *pressure)
+{
+    lanes apart = *volume / *J - 1.0, I1 = 3.0 + 2.0 * isochoric->energy / *shear, part;
+    for (int l = 0; l < LANES; l++) {
+        part[l] = 1.0 / sqrt(1.0 + COUPLING_CURVE * apart[l] * apart[l]);
+    }
+    lanes c = COUPLING_OF_ENERGY * isochoric->energy + *shear * (1.0 - 3.0 / I1);
+    lanes kept = 1.0 - apart * part * (COUPLING_OF_ENERGY + 6.0 / (I1 * I1));
+    c *= part * part * part / *J;
+    isochoric->along_gradient *= kept;
+    isochoric->along_cofactor = kept * isochoric->along_cofactor + c * (apart + 1.0);
+    *pressure -= c;
+}
+
+/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + c g + p J), p held: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {
     double weighted_pressure[BLOCK_MOST_POINTS];
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], H[9], D[9], C[9], J, weight, shear, bulk, pressure;
+        lanes F[9], H[9], D[9], C[9], J, volume, weight, shear, bulk, pressure;
         struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
+        LOAD(volume, body->J + q);
         load_matrix(body->cells.interpolant + q, body->point_count, dim, H);
         LOAD(weight, body->weight + q);
         load_moduli(body, q, &shear, &bulk);
@@ -317,6 +335,7 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
         neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
+        couple_volumes(&J, &volume, &shear, &isochoric, &pressure);
         for (int k = 0; k < dim * dim; k++) {
             D[k] = H[k] - F[k];
             F[k] = isochoric.along_gradient * F[k] + isochoric.along_cofactor * C[k];

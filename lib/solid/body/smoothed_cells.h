@@ -24,6 +24,10 @@
 /* The energy within a cell by mu / 2 times the sum over k of |R_k - R|^2, per volume. */
 #define VARIANCE_FACTOR(dim) (1.0 / (((dim) + 1) * ((dim) + 2)))
 
+/* In (11b): c by W_iso, and the square of the slope of g by its bound. */
+#define COUPLING_OF_ENERGY (2.0 / 3.0)
+#define COUPLING_CURVE 16.0
+
 struct body;
 
 /* Input, in the caller's arrays. One integration point per cell. */

@@ -3,6 +3,7 @@
 #include "solid/body/nodal_volume.h"
 #include "base/vector.h"
 #include "solid/material/ellipticity.h"
+#include "solid/material/law.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,12 +47,11 @@ double stress_active_energy(const struct body *body, int64_t point, const double
     return 0.5 * T * square;
 }
 
-/* The stress of the law but for its volumetric part, and T F a (x) a. */
-static void isochoric_stress(const struct body *body, int64_t q, const double F[9], double P[9])
+/* From the stress of the law but for its volumetric part to what has relaxed, and T F a (x) a. */
+static void relax_and_activate(const struct body *body, int64_t q, const double F[9], double P[9])
 {
     const struct material *material = &body->materials[body->material[q]];
     double T = active_stress(body, material);
-    material_isochoric_stress(material, F, P);
     prony_stress(body, q, F, P);
     for (int i = 0; i < 3 && fabs(T) > 0.0; i++) {
         add_scaled(3, T * vector_dot(3, F + 3 * i, material->fibre), material->fibre, P + 3 * i);
@@ -62,7 +62,8 @@ static void isochoric_stress(const struct body *body, int64_t q, const double F[
 static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
 {
     double C[9];
-    isochoric_stress(body, q, F, P);
+    material_isochoric_stress(&body->materials[body->material[q]], F, P);
+    relax_and_activate(body, q, F, P);
     cofactor(F, C);
     double pressure = point_pressure(body, q, J);
     for (int k = 0; k < 9; k++) {
@@ -138,18 +139,61 @@ static void cofactor_along(const double H[9], const double D[9], double along[9]
     }
 }
 
+/* The energy (11b) of a cell of volume ratio J, W being W_iso(F), and its derivatives: by W_iso, by I1', and
+ * by det F and J. */
+struct coupling {
+    double energy, of_isochoric, of_square, of_determinant, of_volume;
+};
+
+static struct coupling couple(const struct material *material, const double F[9], double J)
+{
+    double mu = material->shear_modulus, D = determinant(F), apart = J / D - 1.0;
+    double I1 = 3.0 + 2.0 * neo_hookean_energy(1.0, F),
+           part = 1.0 / sqrt(1.0 + COUPLING_CURVE * apart * apart);
+    double c = COUPLING_OF_ENERGY * material_isochoric_energy(material, F) + mu * (1.0 - 3.0 / I1);
+    double g = -apart * part, by_volume = -c * part * part * part / D;
+    return (struct coupling){c * g, COUPLING_OF_ENERGY * g, 3.0 * mu / (I1 * I1) * g,
+                             -by_volume * (apart + 1.0), by_volume};
+}
+
+double stress_coupling_energy(const struct body *body, int64_t point, const double F[9], double J)
+{
+    const struct material *material = &body->materials[body->material[point]];
+    return body->smoothed && material_is_isochoric(material) ? couple(material, F, J).energy : 0.0;
+}
+
+/* The stress of the coupling along F, if P is that of W_iso. */
+static void coupling_stress(const struct coupling *coupling, const double F[9], const double P[9],
+                            double stress[9])
+{
+    double of_square[9], C[9];
+    neo_hookean_stress(2.0, F, of_square);
+    cofactor(F, C);
+    for (int k = 0; k < 9; k++) {
+        stress[k] = coupling->of_isochoric * P[k] + coupling->of_square * of_square[k] +
+                    coupling->of_determinant * C[k];
+    }
+}
+
 static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
 {
-    double F[9], H[9], C[9], D[9], along[9];
+    const struct material *material = &body->materials[body->material[q]];
+    double F[9], H[9], C[9], D[9], along[9], coupled[9] = {0.0};
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     vector_subtract(9, H, F, D);
     double pressure = point_pressure(body, q, body->J[q]);
-    isochoric_stress(body, q, F, P);
+    material_isochoric_stress(material, F, P);
+    if (material_is_isochoric(material)) {
+        struct coupling coupling = couple(material, F, body->J[q]);
+        coupling_stress(&coupling, F, P, coupled);
+        pressure += coupling.of_volume;
+    }
+    relax_and_activate(body, q, F, P);
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {
-        P[k] += pressure * C[k];
+        P[k] += coupled[k] + pressure * C[k];
         T[k] = -pressure * along[k];
     }
 }

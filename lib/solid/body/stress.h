@@ -19,5 +19,8 @@ void stress_cells(const struct body *body, const struct block *block, block_rows
 /* Energy of the active stress at a point at present, per volume, Pa. */
 double stress_active_energy(const struct body *body, int64_t point, const double F[9]);
 
+/* Energy (11b) of a cell of volume ratio J, per volume, Pa; 0 at points without cells. */
+double stress_coupling_energy(const struct body *body, int64_t point, const double F[9], double J);
+
 /* Energy of the variance of a cell's gradient at the last evaluation, J (2D: J/m): see smoothed_cells.h. */
 double stress_variance_energy(const struct body *body, int64_t point);

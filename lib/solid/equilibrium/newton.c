@@ -252,8 +252,8 @@ static void augment(struct newton *n)
     if (contacts) {
         system_augment_contacts(n->system, false);
     }
-    (void)system_stiffen_contacts(n->system); /* followed below */
-    if (pressures || n->system->contact_count > 0) {
+    bool stiffer = system_stiffen(n->system);
+    if (stiffer || pressures || n->system->contact_count > 0) {
         (void)newton_evaluate(n, n->u, &n->at_u);
         preconditioner_follow(&n->preconditioner, n->system);
     }

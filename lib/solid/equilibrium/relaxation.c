@@ -325,7 +325,7 @@ static bool check(struct relaxation *r, enum statics_outcome *outcome, struct er
     if (r->held_steps <= CHECK_INTERVAL) { /* remove the round-off of the increments' sum */
         constraint_project(&r->mass.constraint, r->system->factor, r->u);
     }
-    if (system_stiffen_contacts(r->system)) {
+    if (system_stiffen(r->system)) {
         (void)system_residual(r->system, r->before, r->residual);
     }
     if (ends(r, outcome) && (*outcome != STATICS_CONVERGED || !goes_on(r, error))) {

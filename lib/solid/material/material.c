@@ -36,6 +36,11 @@ double material_isochoric_energy(const struct material *material, const double F
     return determinant(F) > 0.0 ? material_laws[material->model]->energy(material, F) : (double)NAN;
 }
 
+bool material_is_isochoric(const struct material *material)
+{
+    return material_laws[material->model]->volume == LAW_VOLUME_LINEAR;
+}
+
 bool material_is_logarithmic(const struct material *material)
 {
     return material_laws[material->model]->volume == LAW_VOLUME_LOG;

@@ -46,6 +46,9 @@ double material_isochoric_energy(const struct material *material, const double F
 /* P = dW_iso/dF. */
 void material_isochoric_stress(const struct material *material, const double F[9], double P[9]);
 
+/* Whether W_iso does not depend on the volume. */
+bool material_is_isochoric(const struct material *material);
+
 /* Whether y(J) is defined for J > 0 only. */
 bool material_is_logarithmic(const struct material *material);
 

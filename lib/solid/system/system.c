@@ -36,7 +36,7 @@ void system_free(struct solid_system *system)
     sliding_free(&system->sliding);
     constraint_rows_free(&system->penalties);
     constraint_nodes_free(&system->penalty_nodes);
-    FREE_ALL(system->penalty_stiffness, system->penalty_force);
+    FREE_ALL(system->penalty_stiffness, system->penalty_unit, system->penalty_volume, system->penalty_force);
     body_free(&system->body);
     *system = (struct solid_system){0};
 }
@@ -44,9 +44,12 @@ void system_free(struct solid_system *system)
 enum status system_state(struct solid_system *system, const struct state *state, struct error *error)
 {
     const struct state_value factor = {"factor", STATE_NUMBERS, system->factor, system->curve_count};
+    const struct state_value stiffness = {"stiffness", STATE_NUMBERS, system->penalty_stiffness,
+                                          system->penalties.count};
     const struct state_value stability[] = {{"least", STATE_NUMBERS, &system->stability.least, 1},
                                             {"node", STATE_COUNTS, &system->stability.node, 1}};
     RETURN_IF_ERROR(state_visit(state, "loads", &factor, 1, error));
+    RETURN_IF_ERROR(state_visit(state, "conditions", &stiffness, 1, error));
     RETURN_IF_ERROR(state_visit(state, "equilibrium", stability, 2, error));
     RETURN_IF_ERROR(prony_state(&system->body, state, error));
     for (int64_t c = 0; c < system->contact_count; c++) {

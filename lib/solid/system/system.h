@@ -78,6 +78,8 @@ struct solid_system {
     int64_t spring_count;      /* the last penalties are springs of measured points, then those of supports:
                                   they are not of a condition that is met exactly as well */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
+    double *penalty_unit;    /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
+    int32_t *penalty_volume; /* penalties.count: the nodal volume at a penalty's node; -1: none */
     double *penalty_force;     /* penalties.count: scratch */
     struct load_curve *curves;
     int64_t curve_count;
@@ -145,8 +147,9 @@ bool system_contacts_give_way(struct solid_system *system, const double *u, doub
 /* Whether a contact has pressed in an accepted state. */
 bool system_has_touched(const struct solid_system *system);
 
-/* contact_stiffen of all contacts; whether any penalty was increased. */
-bool system_stiffen_contacts(struct solid_system *system);
+/* Make the penalties of contacts and conditions stiffer where the pressure at the last evaluation needs it
+ * (contact_stiffen); whether any was. */
+bool system_stiffen(struct solid_system *system);
 
 /* contact_measure of all contacts at parameters u and system->factor. */
 void system_measure_contacts(struct solid_system *system, const double *u, bool all);
@@ -168,14 +171,18 @@ void system_add_penalties(struct solid_system *system, const double *u, double *
 double system_penalty_energy(const struct solid_system *system, const double *u);
 double system_spring_energy(const struct solid_system *system, const double *u);
 
-/* Append a constraint penalty: the arguments of constraint_rows_add, and the stiffness, N/m (2D: N/m2). */
+/* Append a constraint penalty: the arguments of constraint_rows_add, the stiffness, N/m (2D: N/m2), and that by
+ * the modulus, m (2D: 1), if it may become stiffer, or 0. */
 MUST_CHECK enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                              const double *direction, double target, int32_t curve,
-                                             int32_t section, int32_t node, double stiffness,
+                                             int32_t section, int32_t node, double stiffness, double unit,
                                              struct error *error);
 
 /* Build the transpose of the penalties, once all have been appended. */
 MUST_CHECK enum status system_share_penalties(struct solid_system *system, struct error *error);
+
+/* The part of system_stiffen that is of conditions. */
+bool system_stiffen_penalties(struct solid_system *system);
 
 /* Force of constraint penalty r at u along its direction, N (2D: N/m). */
 double system_penalty_force(const struct solid_system *system, int64_t r, const double *u);

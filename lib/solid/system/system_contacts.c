@@ -50,9 +50,9 @@ void system_augment_contacts(struct solid_system *system, bool steady)
     }
 }
 
-bool system_stiffen_contacts(struct solid_system *system)
+bool system_stiffen(struct solid_system *system)
 {
-    bool stiffer = false;
+    bool stiffer = system_stiffen_penalties(system);
     for (int64_t c = 0; c < system->contact_count; c++) {
         stiffer = contact_stiffen(&system->contacts[c]) || stiffer;
     }

@@ -5,25 +5,75 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/* Modulus of a penalty that a pressure p needs, by p^2 / mu: see system_stiffen_penalties; with a margin. */
+static const double by_square = 5.0;
 
 enum status system_append_penalty(struct solid_system *system, const struct average *average,
                                   const double *direction, double target, int32_t curve, int32_t section,
-                                  int32_t node, double stiffness, struct error *error)
+                                  int32_t node, double stiffness, double unit, struct error *error)
 {
     struct constraint_rows *penalties = &system->penalties;
     RETURN_IF_ERROR(constraint_rows_add(penalties, average->length, average->idx, average->phi, direction,
                                         target, curve, section, node, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_stiffness, penalties->count, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_unit, penalties->count, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->penalty_force, penalties->count, error));
     system->penalty_stiffness[penalties->count - 1] = stiffness;
+    system->penalty_unit[penalties->count - 1] = unit;
     return STATUS_OK;
+}
+
+/* Find the nodal volume at the node of each penalty: one of them, if there are several. */
+static enum status find_volumes(struct solid_system *system, struct error *error)
+{
+    const struct body *body = &system->body;
+    const struct nodal_volumes *volumes = &body->volumes;
+    int vertices = body->dim + 1;
+    NEW_SCRATCH(int32_t, at_node, body->node_count, error); /* 1 more than the volume; 0: none */
+    RETURN_IF_ERROR(NEW_ARRAY(&system->penalty_volume, system->penalties.count, error));
+    for (int64_t a = 0; body->smoothed && a < volumes->count; a++) {
+        int64_t slot = volumes->slot[volumes->ptr[a]];
+        int32_t place = smoothed_cells_node(body, slot / vertices, (int)(slot % vertices));
+        at_node[body->node_order[place]] = (int32_t)a + 1;
+    }
+    for (int64_t r = 0; r < system->penalties.count; r++) {
+        system->penalty_volume[r] = at_node[system->penalties.node[r]] - 1;
+    }
+    return STATUS_OK;
+}
+
+/* In the second variation of the energy a pressure p on a side that slides does the work 2 p integral(u_n div
+ * u_t), for parts of the normal and tangential displacements, u_n and u_t, that boundary averages do not see.
+ * Against k_p u_n^2 / 2 of the penalty and mu h (div u_t)^2 / 2 of a layer of cells that is indefinite where
+ * h k_p < 4 p^2 / mu: the side then buckles between its nodes. */
+bool system_stiffen_penalties(struct solid_system *system)
+{
+    const struct body *body = &system->body;
+    const double *pressure = body->volumes.pressure;
+    bool stiffer = false;
+    double shear = 0.0;
+    for (int64_t m = 0; m < body->material_count; m++) {
+        shear = fmax(shear, body->materials[m].shear_modulus);
+    }
+    for (int64_t r = 0; body->averaged && r < system->penalties.count; r++) {
+        if (system->penalty_volume[r] >= 0) {
+            double p = pressure[system->penalty_volume[r]];
+            double stiffness = by_square * p * p / shear * system->penalty_unit[r];
+            stiffer = stiffer || stiffness > system->penalty_stiffness[r];
+            system->penalty_stiffness[r] = fmax(system->penalty_stiffness[r], stiffness);
+        }
+    }
+    return stiffer;
 }
 
 enum status system_share_penalties(struct solid_system *system, struct error *error)
 {
     const struct body *body = &system->body;
     SCRATCH bool *own = NULL;
+    RETURN_IF_ERROR(find_volumes(system, error));
     if (body->share.ranks != NULL) {
         RETURN_IF_ERROR(NEW_ARRAY(&own, body->node_count, error));
         for (int64_t p = body->share.begin_node; p < body->share.end_node; p++) {
