@@ -23,11 +23,10 @@ NEURO_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 # What differs: the names of the labels, the part of the surface that is seen, names of others, labels that landmarks lie in, the true scene, what is predicted: from what is
 # seen alone, with the weight that is found from it, and knowing how the patient lies.
 NEURO_STEM := -u mm -f 'stem=ball:0,-41,-65,12'
-NEURO_EXPOSED := --part exposed=ball:63.5mm,16mm,20mm,33mm
+NEURO_EXPOSED := -f 'exposed=parenchyma|outside and ball:63.5,16,20,33'
 ifeq ($(NEURO_SCENARIO),craniotomy)
 NEURO_NAMES := $(NEURO_INPUT)/labels.tsv
-NEURO_PART := $(NEURO_EXPOSED)
-NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=all without stem without exposed'
+NEURO_GROUPS := $(NEURO_STEM) $(NEURO_EXPOSED) -f 'cortex=all without stem without exposed'
 NEURO_INSIDE := $$4 > 0
 NEURO_TRUTH := truth
 NEURO_PREDICTIONS := craniotomy load position
@@ -36,8 +35,7 @@ NEURO_DEVIATION := -d 0.5
 NEURO_SEEN := from the exposed cortex
 else ifeq ($(NEURO_SCENARIO),resection)
 NEURO_NAMES := $(NEURO_INPUT)/resection.tsv
-NEURO_PART := $(NEURO_EXPOSED)
-NEURO_GROUPS := $(NEURO_STEM) -f 'cortex=parenchyma|outside without stem'
+NEURO_GROUPS := $(NEURO_STEM) $(NEURO_EXPOSED) -f 'cortex=parenchyma|outside without stem without exposed'
 NEURO_INSIDE := $$4 > 0 && $$4 < 3
 NEURO_MEASURED := -v 'groups=exposed,parenchyma|tumour' -v deviation=0.5
 else ifeq ($(NEURO_SCENARIO),electrodes)
@@ -81,7 +79,7 @@ $(NEURO)/skull.tsv: $(NEURO_LABELS) $(NEURO_INPUT)/brain.tsv $(NEURO_PROGRAMS)
 	voxels $< -h 5mm -l $(NEURO_INPUT)/brain.tsv --surface 'brain|outside' --gap 2mm > $@
 
 $(NEURO)/true.u.dat: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO)/$(NEURO_TRUTH).scene $(NEURO)/skull.tsv $(NEURO_PROGRAMS)
-	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) $(NEURO_PART) | tag $(NEURO_GROUPS) | shapefn | \
+	(voxels $< -h $(NEURO_TRUE_SPACING) -l $(NEURO_NAMES) | tag $(NEURO_GROUPS) | shapefn | \
 	    mtled -v $(NEURO)/$(NEURO_TRUTH).scene) > $@ $(NEURO_LOG)
 
 ifeq ($(NEURO_SCENARIO),electrodes)
@@ -108,7 +106,7 @@ $(NEURO)/exposed.tsv: $(NEURO)/measured.tsv $(NEURO_SCRIPTS)/points.awk $(NEURO_
 $(NEURO)/predicted.body.mts $(NEURO)/coarse.body.mts: $(NEURO_LABELS) $(NEURO_NAMES) $(NEURO_PROGRAMS)
 	@mkdir -p $(@D)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "voxels $< -h $(if $(filter coarse.%,$(@F)),$(NEURO_LOAD_SPACING),$(NEURO_SPACING)) \
-	    -l $(NEURO_NAMES) $(NEURO_PART) | tag $(NEURO_GROUPS) > $@"
+	    -l $(NEURO_NAMES) | tag $(NEURO_GROUPS) > $@"
 
 $(NEURO)/%.table.mts: $(NEURO)/%.body.mts $(NEURO_PROGRAMS)
 	$(NEURO_TIMED) $(@:.mts=.seconds) "shapefn $< > $@"

@@ -57,7 +57,7 @@ VOXELS_BODIES := ball brain
 VOXELS_BRAIN3D := $(addprefix examples/brain3d/,brain3d.geo brain3d_surfaces.msh.gz brain3d_free.tsv.gz free.scene load.tsv)
 $(VOXELS_BODIES:%=$(VOXELS_OUT)/meshes-%.tsv): $(VOXELS_OUT)/meshes-%.tsv: pipelines/voxels/meshes.sh pipelines/voxels/ball.geo \
         pipelines/voxels/ball.scene pipelines/voxels/surface.awk pipelines/reference.awk $(VOXELS_BRAIN3D) $(VOXELS_PHANTOM) $(VOXELS_FILLED) \
-        $(addprefix $(BUILD)/bin/,nodes voxels mtled fieldcmp mts)
+        $(addprefix $(BUILD)/bin/,nodes voxels tag mtled fieldcmp mts)
 	@mkdir -p $(@D)
 	bash $< $* $(BUILD)/tests/helper > $@
 

@@ -282,10 +282,10 @@ END
         printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = label_1\nE = 3000\nnu = 0.49\nrho = 1000\n'
         printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.002\n'
     } > press.scene
-    parts='--part held=ball:0,0,-24mm,14mm --part pushed=ball:0,0,24mm,12mm'
+    parts='-u mm -f held=ball:0,0,-24,14 -f pushed=ball:0,0,24,12'
     run -2 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.1mm out
     [[ $output == "refine: SPACING: '' is not a positive length, such as 6mm" ]]
-    export SPACING=8mm VOXELS=$parts
+    export SPACING=8mm REFINE_GROUPS=$parts
     run -0 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.025mm out
     mts check out/u.dat
     mts check out/body.mts
@@ -295,7 +295,7 @@ END
     [ "$(mts print nodes.x out/u.dat | wc -l)" -eq "$(tail -n 1 out/rounds.tsv | cut -f 2)" ]
     # The estimate holds against an even, finer lattice, which is off itself: by its own estimate about as much.
     # shellcheck disable=SC2086 # several arguments
-    voxels -h 3mm $parts sphere.nii.gz | shapefn 2> log | mtled -q press.scene -o fine.dat
+    voxels -h 3mm sphere.nii.gz | tag $parts | shapefn 2> log | mtled -q press.scene -o fine.dat
     fieldcmp --skip-outside --tol-avg 0.05mm fine.dat out/u.dat
     run -1 --separate-stderr env VOXELS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
     [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]

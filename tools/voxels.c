@@ -2,8 +2,7 @@ static const char usage[] =
     "voxels - label image to node cloud, background cells, facets and node sets\n"
     "\n"
     "usage: voxels -h LENGTH [--fine LENGTH[:NAME,...]] [--sizes FILE] [-l TABLE]\n"
-    "              [--part NAME=PLACE]... [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE]\n"
-    "              [[LABEL=]IMAGE ...]\n"
+    "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-t] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "       voxels -h LENGTH --surface NAME[|NAME] [--gap LENGTH] [--fine LENGTH[:NAME,...]] [-l TABLE]\n"
     "              [-s AXIS=PLACE] [--largest] [-u UNIT] [-v] [-o FILE] [[LABEL=]IMAGE ...]\n"
     "\n"
@@ -22,7 +21,8 @@ static const char usage[] =
     "out, with a note: --fine keeps more. Bodies that share only a node or an edge are cut apart; where\n"
     "parts of one body do, the gap is filled, as are the tips of crevices.\n"
     "\n"
-    "Parts of the boundary get names by --part, with nodes on their rim, or by tag, of whole facets.\n"
+    "Parts of the boundary get names by tag: whole facets by place, or by a mask as in the last\n"
+    "example, with nodes on its rim.\n"
     "\n"
     "A slice (an image of one, or chosen by -s) makes a body in the plane: x and y are the two world axes\n"
     "in the slice, in their order.\n"
@@ -45,8 +45,7 @@ static const char usage[] =
     "                          only where that lies beyond it\n"
     "      --gap LENGTH        move it outward by LENGTH, less where it would cross itself\n"
     "  -l, --labels TABLE      names of labels\n"
-    "      --part NAME=PLACE ...  name of the boundary in ball:X,Y,Z,RADIUS, lengths with units, or in the\n"
-    "                          voxels of a mask image; the later of two that overlap\n"
+    "      --part NAME=PLACE ...  gone: tag names parts of the boundary\n"
     "  -s, --slice AXIS=PLACE  the slice nearest to PLACE on a world axis, as z=12mm\n"
     "      --largest           the largest connected body only\n"
     "  -u, --unit UNIT         unit of the file's lengths, instead of what it says: m, cm, mm, um, or a\n"
@@ -60,7 +59,8 @@ static const char usage[] =
     "  printf '1 parenchyma\\n2 ventricles -\\n3,10-12 tumour\\n* -\\n' > names\n"
     "  voxels -l names -h 4mm -v < labels.nii.gz > body.mts\n"
     "  voxels -h 4mm brain.nii.gz 2=tumour_mask.nii.gz > body.mts\n"
-    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n";
+    "  voxels -h 4mm -l names --surface 'parenchyma|outside' --gap 1mm labels.nii.gz > skull.tsv\n"
+    "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part'\n";
 
 #include "cell_report.h"
 #include "images/label_image.h"
@@ -89,13 +89,8 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     TOOL_SCRATCH(tool, double, volume, image->labels.count);
     TOOL_SCRATCH(tool, int64_t, lost, image->labels.count);
     TOOL_TRY(tool, label_cells_lost(&image->labels, image->keep, result, lost, &error));
-    TOOL_SCRATCH(tool, double, voxels, image->labels.count);
     for (int64_t c = 0; c < cells->count; c++) {
-        volume[image->region[result->label[c]]] += cell_volume(cells, c);
-    }
-    for (int32_t l = 1; l < image->labels.count; l++) {
-        voxels[image->region[l]] += image->volume[l];
-        lost[image->region[l]] += image->region[l] != l ? lost[l] : 0;
+        volume[result->label[c]] += cell_volume(cells, c);
     }
     for (int32_t l = 0; l <= image->table.name_count; l++) {
         if (!image->keep[l] && lost[l] > 0) {
@@ -105,7 +100,7 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
         }
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
-        double before = shown(dim, voxels[l]), after = shown(dim, volume[l]);
+        double before = shown(dim, image->volume[l]), after = shown(dim, volume[l]);
         double missing = shown(dim, (double)lost[l] * image->voxel_volume);
         const char *name = label_image_name(image, l);
         if (!image->keep[l]) {
@@ -250,15 +245,6 @@ static void write_stream(const struct tool *tool, const struct label_image *imag
     FREED_BY(label_mesh_free) struct mesh mesh = {0};
     FREED_BY(stream_free) struct stream stream = {0};
     TOOL_TRY(tool, label_mesh_make(image, result, &mesh, &error));
-    for (int32_t p = 0; p < image->part_count; p++) {
-        bool found = false;
-        for (int32_t s = 0; s < mesh.facet_sets.count; s++) {
-            found = found || strcmp(mesh.facet_sets.name[s], image->part[p]) == 0;
-        }
-        if (!found) {
-            tool_fail(tool, STATUS_INPUT, "--part %s: no facet of the boundary lies in it", image->part[p]);
-        }
-    }
     TOOL_TRY(tool, mesh_put(&mesh, &stream, &error));
     tool_write(tool, &stream);
 }
@@ -279,7 +265,10 @@ static void check_options(const struct tool *tool)
     if (tool_given(tool, "surface") && tool_given(tool, "text")) {
         tool_fail(tool, STATUS_INPUT, "--surface goes without -t: it writes a table");
     }
-    tool_excludes(tool, "surface", "part");
+    if (tool_given(tool, "part")) {
+        tool_fail(tool, STATUS_INPUT,
+                  "--part is gone: tag -f NAME=ball:X,Y,Z,RADIUS names facets; for masks see the end of voxels --help");
+    }
     tool_requires(tool, "gap", "surface");
 }
 
@@ -299,7 +288,6 @@ int main(int argc, char *argv[])
                                          .unit = tool_length_unit(&tool, "unit", 0),
                                          .slice = tool_value(&tool, "slice")};
     label_image_read(&tool, tool.operands, &wanted, &image);
-    label_parts_make(&tool, &image);
     struct label_surface_options surface = {.gap = tool_length(&tool, "gap", 0)};
     if (tool_given(&tool, "surface")) {
         label_surface_parse(&tool, &image, tool_value(&tool, "surface"), &surface);
@@ -310,7 +298,6 @@ int main(int argc, char *argv[])
     bool shown = isatty(STDERR_FILENO);
     struct label_cells_options label_cells_options = {.spacing = spacing,
                                                       .keep = image.keep,
-                                                      .whole = image.region,
                                                       .largest = tool_given(&tool, "largest"),
                                                       .begin = show_step,
                                                       .context = &shown};

@@ -5,7 +5,7 @@
 #
 # ball: held at one opening and pressed in at the other; the reference is that of a fine mesh of gmsh.
 # brain: the whole brain without its skull, of examples/brain3d; the reference is of mixed elements. The image is filled from the surfaces
-# that gmsh meshes anew, and so is the mask of the craniotomy.
+# that gmsh meshes anew; the craniotomy are the facets along its surface.
 #
 # The brain's sizes are 4 to 6 % apart: gmsh meshes a surface anew, with the rims on it, only where the number of nodes on these changes.
 set -euo pipefail
@@ -23,13 +23,14 @@ told() { "$@" 2> said || { cat said >&2; exit 1; }; }
 
 prepare_ball() {
     length=h
+    of_image=()
     sizes=(4.6 4.7 4.8 4.9 5 5.1 5.2 5.3 5.4)
     spacings=(6.2 6.35 6.5 6.65 6.8 6.95 7.1 7.25 7.4)
     cp "$here/ball.geo" body.geo
     cp "$here/ball.scene" body.scene
     "$helpers/phantom" sphere 1 0.75 > body.nii.gz
     printf '1 ball\n' > names
-    of_image=(--part "top=ball:0,0,28mm,14mm" --part "bottom=ball:0,0,-28mm,16mm")
+    groups=(-f top=ball:0,0,28,14 -f bottom=ball:0,0,-28,16)
     of_gmsh fine 1.8
     mv fine.dat reference.dat
 }
@@ -46,17 +47,16 @@ prepare_brain() {
     triangles brain 1 100
     triangles ventricles 201 218
     triangles tumour 301 306
-    # From 8 mm within the surface to 16 mm beyond it, along the axis of the opening.
-    triangles craniotomy 100 100 -v along=7.838,1.273,0.97
+    triangles craniotomy 100 100
     "$helpers/filled" 1 1 brain.tsv 3 ventricles.tsv 2 tumour.tsv > body.nii.gz
-    "$helpers/filled" 1 0 brain.tsv 1 craniotomy.tsv > mask.nii.gz
     printf '1 brain\n2 tumour\n3 ventricles -\n' > names
     # gmsh's meshes are finer there, too.
-    of_image=(--fine "9.5mm:ventricles,tumour" --part craniotomy=mask.nii.gz)
+    of_image=(--fine "9.5mm:ventricles,tumour")
+    groups=(-f craniotomy=along:2,craniotomy.tsv)
 }
 
-# triangles NAME FIRST LAST [OPTIONS OF AWK]: of the brain's surfaces of these numbers
-triangles() { awk -f "$here/surface.awk" -v first="$2" -v last="$3" "${@:4}" brain3d_surfaces.msh > "$1.tsv"; }
+# triangles NAME FIRST LAST: of the brain's surfaces of these numbers
+triangles() { awk -f "$here/surface.awk" -v first="$2" -v last="$3" brain3d_surfaces.msh > "$1.tsv"; }
 
 # of_gmsh NAME SIZE and of_image NAME SPACING: NAME.dat
 of_gmsh() {
@@ -65,7 +65,8 @@ of_gmsh() {
     told mtled -q body.scene "$1.mts" > "$1.dat"
 }
 of_image() {
-    told voxels -h "$2mm" -l names "${of_image[@]}" body.nii.gz > "$1.mts"
+    told voxels -h "$2mm" -l names "${of_image[@]}" body.nii.gz > "$1.voxels"
+    told tag -u mm "${groups[@]}" "$1.voxels" > "$1.mts"
     told mtled -q body.scene "$1.mts" > "$1.dat"
 }
 mean() { told fieldcmp --skip-outside "$1.dat" "$2.dat" | awk -F '\t' '$1 == "avg" { print 1e3 * $2; found = 1 } END { exit !found }'; }

@@ -110,12 +110,13 @@ TEST(five_labels_at_a_node)
             }
         }
         struct labels labels = labels_of(&shape);
+        labels.count = 5;
         struct label_cells_options options = {.spacing = 1e-3 * h, .keep = all_kept};
         FREED_BY(label_cells_free) struct label_cells mesh = make(&labels, &options);
         check_cells(&mesh);
         assert_int_equal(count_astray(&labels, &mesh), 0);
         FREED_BY(star_free) struct label_cells_star star = {0};
-        GOOD(star_make(&mesh, NULL, NULL, &star, &error));
+        GOOD(star_make(&mesh, NULL, &star, &error));
         for (int64_t n = 0; n < mesh.node_count; n++) {
             most = star.labels[n] > most ? star.labels[n] : most;
         }

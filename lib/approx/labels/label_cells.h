@@ -23,9 +23,7 @@ struct label_cells_options {
     const double *size; /* sized->node_count: wanted length of edges, m, positive, linear within cells; cubes
                            are halved where it is smaller than theirs; NULL: nowhere */
     const bool *keep;   /* labels->count: cells of this label are wanted; not label 0 */
-    const int32_t *whole; /* labels->count: the label of which each is a part; volumes of wholes are
-                             preserved. NULL: no parts */
-    bool largest;         /* keep only the largest of several connected bodies */
+    bool largest;       /* keep only the largest of several connected bodies */
     void (*begin)(void *context, const char *step); /* called at the beginning of each step; NULL: not */
     void *context;
 };

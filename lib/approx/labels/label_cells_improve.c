@@ -146,17 +146,16 @@ static void move_there(const struct shaping *shaping, double voxel, int64_t node
     }
 }
 
-/* Move x to the place of a node: on the rim of a part, where three labels meet, or on its interface. In a gap
- * between labels that no cell fills, the label there counts, too. False if there is none near. */
+/* Move x to the place of a node, where all its labels meet. In a gap between labels that no cell fills, the
+ * label there counts, too. False if there is none near. */
 static bool line_place(const struct shaping *shaping, int64_t node, double x[])
 {
-    const struct labels *labels = &shaping->labels;
+    const struct labels *labels = shaping->labels;
     const struct label_cells_star *star = &shaping->star;
     uint16_t label[LABEL_CELLS_MOST_LABELS + 1];
     int count = star->labels[node];
     memcpy(label, star->label[node], sizeof star->label[node]);
-    if ((shaping->rim[node][0] != 0 && rim_project(shaping, shaping->rim[node], x)) ||
-        line_project(labels, 0, count, label, x)) {
+    if (interface_project(labels, count, label, x)) {
         return true;
     }
     const double *here = shaping->mesh->x + node * labels->dim;
@@ -168,7 +167,7 @@ static bool line_place(const struct shaping *shaping, int64_t node, double x[])
 /* Move the nodes on interfaces to their places. */
 static void fit(const struct shaping *shaping, struct found_place *line, struct found_place *surface)
 {
-    double voxel = labels_voxel(&shaping->labels);
+    double voxel = labels_voxel(shaping->labels);
     find_places(shaping, line_place, line);
     for (int64_t n = 0; n < shaping->mesh->node_count; n++) {
         double target[3] = {0};
@@ -176,9 +175,7 @@ static void fit(const struct shaping *shaping, struct found_place *line, struct 
             continue;
         }
         (void)find_place(shaping, line_place, n, &line[n], target);
-        if (!(shaping->rim[n][0] != 0 && star_make_room(shaping, goal, n, target))) {
-            move_there(shaping, voxel, n, target);
-        }
+        move_there(shaping, voxel, n, target);
         /* If the line on which labels meet cannot be reached, use the surface or the interface. */
         if (find_place(shaping, node_project, n, &surface[n], target)) {
             move_there(shaping, voxel, n, target);
@@ -195,7 +192,7 @@ static void separate(const struct shaping *shaping)
     const struct label_cells_star *star = &shaping->star;
     const bool *apart = shaping->kept->apart, *wanted = shaping->kept->wanted;
     int dim = mesh->dim;
-    double most = most_separation * labels_voxel(&shaping->labels);
+    double most = most_separation * labels_voxel(shaping->labels);
     struct cells cells = label_cells_view(mesh);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double target[3] = {0};
@@ -226,7 +223,7 @@ static void separate(const struct shaping *shaping)
  * the place where the label there ends at another one of the node, or at a gap that cells fill. */
 static double distance(const struct shaping *shaping, int64_t node)
 {
-    const struct labels *labels = &shaping->labels;
+    const struct labels *labels = shaping->labels;
     const struct label_cells_star *star = &shaping->star;
     const bool *keep = shaping->keep;
     const double *x = shaping->mesh->x + node * labels->dim;
@@ -247,26 +244,19 @@ static double distance(const struct shaping *shaping, int64_t node)
     return least;
 }
 
-/* target[]: the place of a node that is still off its rim or interface; false if it is near, or there is no
+/* target[]: the place of a node that is still off its interface; false if it is near, or there is no
  * such place. */
 static bool astray_place(const struct shaping *shaping, int64_t node, double target[])
 {
     int dim = shaping->mesh->dim;
-    double most = last_slack * labels_voxel(&shaping->labels);
+    double most = last_slack * labels_voxel(shaping->labels);
     const double *x = shaping->mesh->x + node * dim;
-    const uint16_t *rim = shaping->rim[node];
     memcpy(target, x, (size_t)dim * sizeof *target);
-    if (rim[0] != 0 && rim_project(shaping, rim, target)) {
-        if (vector_distance(dim, target, x) > most) {
-            return true;
-        }
-        memcpy(target, x, (size_t)dim * sizeof *target);
-    }
     return shaping->star.labels[node] >= 2 && distance(shaping, node) > most &&
            node_project(shaping, node, target);
 }
 
-/* Move nodes that are still off their rim or interface as near to it as the bounds of the angles allow. */
+/* Move nodes that are still off their interface as near to it as the bounds of the angles allow. */
 static void settle(const struct shaping *shaping, struct found_place *astray)
 {
     struct label_cells *mesh = shaping->mesh;
@@ -296,28 +286,21 @@ static void measure(const struct shaping *shaping)
 #pragma omp parallel for schedule(dynamic, 64) reduction(+ : astray) reduction(max : farthest)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double off = shaping->star.labels[n] > 1 ? distance(shaping, n) : 0;
-        astray += off > LABEL_CELLS_MOST_ASTRAY * labels_voxel(&shaping->labels);
+        astray += off > LABEL_CELLS_MOST_ASTRAY * labels_voxel(shaping->labels);
         farthest = off < INFINITY ? fmax(farthest, off) : farthest;
     }
     mesh->astray = astray;
     mesh->farthest = farthest;
 }
 
-enum status label_cells_improve(const struct labels *parts, const struct label_cells_options *options,
+enum status label_cells_improve(const struct labels *labels, const struct label_cells_options *options,
                                 const struct label_cells_kept *kept, struct label_cells *mesh,
                                 struct error *error)
 {
     enum status status;
-    struct shaping shaping = {.parts = parts,
-                              .labels = *parts,
-                              .keep = options->keep,
-                              .kept = kept,
-                              .mesh = mesh,
-                              .reach = options->spacing};
+    struct shaping shaping = {.labels = labels, .keep = options->keep, .kept = kept, .mesh = mesh};
     struct found_place *found[3] = {NULL};
-    TRY(labels_without_parts(parts, options->whole, &shaping.labels, error));
-    TRY(label_cells_rims(options, &shaping, &shaping.rim, error));
-    TRY(star_make(mesh, kept->wanted, options->whole, &shaping.star, error));
+    TRY(star_make(mesh, kept->wanted, &shaping.star, error));
     for (int k = 0; k < 3; k++) {
         TRY(NEW_ARRAY(&found[k], mesh->node_count, error));
     }
@@ -333,13 +316,10 @@ enum status label_cells_improve(const struct labels *parts, const struct label_c
     }
     label_cells_begin(options, "correcting volumes");
     TRY(label_cells_volumes(&shaping, options, error));
-    label_cells_repair(&shaping, last_score, last_slack * labels_voxel(parts));
+    label_cells_repair(&shaping, last_score, last_slack * labels_voxel(labels));
     measure(&shaping);
 done:
-    if (shaping.labels.label != parts->label) {
-        free((void *)shaping.labels.label);
-    }
-    FREE_ALL(shaping.rim, found[0], found[1], found[2]);
+    FREE_ALL(found[0], found[1], found[2]);
     star_free(&shaping.star);
     return status;
 }

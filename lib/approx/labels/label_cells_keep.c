@@ -21,8 +21,8 @@ static void add_label(struct label_cells_star *star, int64_t node, int32_t label
     }
 }
 
-enum status star_make(const struct label_cells *mesh, const bool *wanted, const int32_t *whole,
-                      struct label_cells_star *star, struct error *error)
+enum status star_make(const struct label_cells *mesh, const bool *wanted, struct label_cells_star *star,
+                      struct error *error)
 {
     int corners = mesh->dim + 1;
     *star = (struct label_cells_star){0};
@@ -31,14 +31,12 @@ enum status star_make(const struct label_cells *mesh, const bool *wanted, const 
     RETURN_IF_ERROR(NEW_ARRAY(&star->label, mesh->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&star->labels, mesh->node_count, error));
     for (int64_t i = 0; i < mesh->cell_count * corners; i++) {
-        int32_t label = mesh->label[i / corners];
         if (wanted == NULL || wanted[i / corners]) {
-            add_label(star, mesh->cell[i], whole != NULL ? whole[label] : label);
+            add_label(star, mesh->cell[i], mesh->label[i / corners]);
         }
     }
     for (int64_t i = 0; i < mesh->facet_count * mesh->dim; i++) {
-        int32_t label = mesh->side[2 * (i / mesh->dim) + 1];
-        add_label(star, mesh->facet[i], whole != NULL ? whole[label] : label);
+        add_label(star, mesh->facet[i], mesh->side[2 * (i / mesh->dim) + 1]);
     }
     return STATUS_OK;
 }
@@ -183,7 +181,7 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
     TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
     TRY(NEW_ARRAY(&keeping.from, count, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
-    TRY(star_make(mesh, NULL, NULL, &star, error));
+    TRY(star_make(mesh, NULL, &star, error));
     for (int64_t c = 0; c < count; c++) {
         keeping.wanted[c] = options->keep[mesh->label[c]];
         keeping.group[c] = -1;

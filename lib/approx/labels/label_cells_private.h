@@ -111,16 +111,10 @@ struct label_cells_star {
     uint16_t (*label)[LABEL_CELLS_MOST_LABELS];
     uint8_t *labels; /* node_count: labels that meet; 1: not on an interface */
 };
-/* The labels are those of cells with wanted[cell_count] (NULL: of all cells) and of facets, replaced by
- * whole[] unless that is NULL. */
-MUST_CHECK enum status star_make(const struct label_cells *mesh, const bool *wanted, const int32_t *whole,
+/* The labels are those of cells with wanted[cell_count] (NULL: of all cells) and of facets. */
+MUST_CHECK enum status star_make(const struct label_cells *mesh, const bool *wanted,
                                  struct label_cells_star *star, struct error *error);
 void star_free(struct label_cells_star *star);
-
-/* The labels, each replaced by whole[]: result->label is to be freed, or is that of `labels` if there are no
- * parts. */
-MUST_CHECK enum status labels_without_parts(const struct labels *labels, const int32_t *whole,
-                                            struct labels *result, struct error *error);
 
 /* The cells of the body. */
 struct label_cells_kept {
@@ -168,23 +162,12 @@ MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping
 /* A body whose nodes are moved. The cells around it are part of `mesh`: as long as none of them is
  * inverted, no wall of the body passes through another one. */
 struct shaping {
-    const struct labels *parts; /* the labels, */
-    struct labels labels;       /* and with the whole in place of its parts */
-    const bool *keep;           /* labels.count: labels of the body */
+    const struct labels *labels;
+    const bool *keep; /* labels->count: labels of the body */
     const struct label_cells_kept *kept;
     struct label_cells *mesh;
     struct label_cells_star star;
-    uint16_t (*rim)[3]; /* label_cells_rims, */
-    double reach;       /* and how far a node may be off its rim: the spacing, m */
 };
-
-/* (*rim)[node_count], to be freed: the two parts whose facets meet at a node, and the label beyond the
- * boundary; zeros off rims. In 3D facets are first renamed (mesh->side) where the rim turns so sharply at a
- * node that no cell has room behind it: where a facet is the only one of its part at the node, and too flat
- * on the rim. */
-MUST_CHECK enum status label_cells_rims(const struct label_cells_options *options,
-                                        const struct shaping *shaping, uint16_t (**rim)[3],
-                                        struct error *error);
 
 /* The poorest score of the cells at a node, or one below `least`, and the score of a cell: at least 1 if its
  * angles are within the bounds and its quality (approx/cells/quality.h) is not poor, negative if it is
@@ -193,8 +176,8 @@ double star_score(const struct shaping *shaping, int64_t node, double least);
 double shaping_score(const struct shaping *shaping, int64_t cell);
 
 /* Move a node to `target`, where the cells at it alone would score less than before and than `least`, by also
- * moving the nodes around it. Nodes on interfaces stay on them; nodes of rims and nodes with others at the
- * same place are not moved. Returns false, with all nodes unchanged, if that does not help. */
+ * moving the nodes around it. Nodes on interfaces stay on them; nodes with others at the same place are not
+ * moved. Returns false, with all nodes unchanged, if that does not help. */
 bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
 
 /* Move x onto the interface of the labels; false if there is none near. */
@@ -203,13 +186,6 @@ bool interface_project(const struct labels *labels, int count, const uint16_t la
 /* Move x to the place of a node: on the boundary to the surface of the body, elsewhere to the place where all
  * labels of the node meet. False if there is none near. */
 bool node_project(const struct shaping *shaping, int64_t node, double x[]);
-
-/* Move x to the place where all the labels meet, which is searched for within `reach`, m, where Newton's
- * method from x does not find it. False if there is no such place. */
-bool line_project(const struct labels *labels, double reach, int count, const uint16_t label[], double x[]);
-
-/* Move x onto a rim: that of a ball, or the line where the three labels meet. False if there is none near. */
-bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[]);
 
 /* The label beyond an interface: one label, or any that is kept, or any that is not. */
 struct interface_beyond {

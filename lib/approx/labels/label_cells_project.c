@@ -92,37 +92,6 @@ static bool is_beyond(const struct interface_beyond *beyond, int32_t label)
 /* Largest distance of a search for an interface, voxels. */
 static const double most_voxels = 6.0;
 
-/* Whether a search from x looks for place[], nearer than `least`, m; or for a place on the way there, to
- * which place[] is moved. */
-typedef bool place_test(const struct labels *labels, const void *wanted, const double x[], double least,
-                        double place[3]);
-
-/* place[]: the nearest one to x that passes a test, of those on a grid about it with the spacing of the
- * voxels, within `reach` and a spacing, m. False if there is none. */
-static bool find_nearest(const struct labels *labels, const double x[], double reach, place_test *test,
-                         const void *wanted, double place[3])
-{
-    int dim = labels->dim;
-    double spacing = labels_voxel(labels), least = reach + spacing;
-    bool found = false;
-    for (int shell = 1; (shell - 1) * spacing <= fmin(reach, least); shell++) {
-        int side = 2 * shell + 1, rows = dim == 3 ? side * side : side;
-        for (int row = 0; row < rows; row++) {
-            int j = row % side - shell, k = dim == 3 ? row / side - shell : 0;
-            int step = abs(j) == shell || abs(k) == shell ? 1 : 2 * shell;
-            for (int i = -shell; i <= shell; i += step) {
-                double y[3] = {x[0] + spacing * i, x[1] + spacing * j, dim == 3 ? x[2] + spacing * k : 0};
-                if (test(labels, wanted, x, least, y)) {
-                    found = true;
-                    least = vector_distance(dim, x, y);
-                    memcpy(place, y, sizeof y);
-                }
-            }
-        }
-    }
-    return found;
-}
-
 /* The label of the largest share at x among those that are beyond, or are not; -1: none. */
 static int32_t largest(const struct label_mix *mix, const struct interface_beyond *beyond, bool is)
 {
@@ -172,10 +141,9 @@ static bool turn(const struct labels *labels, const struct interface_beyond *bey
 
 /* Whether the voxel at place[] lies beyond, and the way from x to there reaches beyond before `least`:
  * place[] is moved to where that begins. */
-static bool begins_beyond(const struct labels *labels, const void *wanted, const double x[], double least,
-                          double place[3])
+static bool begins_beyond(const struct labels *labels, const struct interface_beyond *beyond,
+                          const double x[], double least, double place[3])
 {
-    const struct interface_beyond *beyond = wanted;
     if (!is_beyond(beyond, labels_nearest(labels, place))) {
         return false;
     }
@@ -187,12 +155,38 @@ static bool begins_beyond(const struct labels *labels, const void *wanted, const
     return true;
 }
 
+/* place[]: the nearest one to x where the label beyond begins, on the ways to the places of a grid about x
+ * with the spacing of the voxels, within `reach` and a spacing, m. False if there is none. */
+static bool find_nearest(const struct labels *labels, const struct interface_beyond *beyond, const double x[],
+                         double reach, double place[3])
+{
+    int dim = labels->dim;
+    double spacing = labels_voxel(labels), least = reach + spacing;
+    bool found = false;
+    for (int shell = 1; (shell - 1) * spacing <= fmin(reach, least); shell++) {
+        int side = 2 * shell + 1, rows = dim == 3 ? side * side : side;
+        for (int row = 0; row < rows; row++) {
+            int j = row % side - shell, k = dim == 3 ? row / side - shell : 0;
+            int step = abs(j) == shell || abs(k) == shell ? 1 : 2 * shell;
+            for (int i = -shell; i <= shell; i += step) {
+                double y[3] = {x[0] + spacing * i, x[1] + spacing * j, dim == 3 ? x[2] + spacing * k : 0};
+                if (begins_beyond(labels, beyond, x, least, y)) {
+                    found = true;
+                    least = vector_distance(dim, x, y);
+                    memcpy(place, y, sizeof y);
+                }
+            }
+        }
+    }
+    return found;
+}
+
 /* Move x to the nearest place where the label beyond begins. False if there is none within `reach`, m. */
 static bool search_change(const struct labels *labels, const struct interface_beyond *beyond, double reach,
                           double x[])
 {
     double place[3] = {0};
-    if (!find_nearest(labels, x, reach, begins_beyond, beyond, place)) {
+    if (!find_nearest(labels, beyond, x, reach, place)) {
         return false;
     }
     for (int turns = 0; turns < 4 && turn(labels, beyond, x, place); turns++) {
@@ -220,7 +214,7 @@ static bool project_to_surface(const struct labels *labels, const bool *keep, do
 
 bool node_project(const struct shaping *shaping, int64_t node, double x[])
 {
-    const struct labels *labels = &shaping->labels;
+    const struct labels *labels = shaping->labels;
     const struct label_cells_star *star = &shaping->star;
     for (int i = 0; i < star->labels[node]; i++) {
         if (!shaping->keep[star->label[node][i]]) {
@@ -276,82 +270,4 @@ double interface_distance(const struct labels *labels, const double x[],
         least = fmin(least, vector_distance(labels->dim, place, x));
     }
     return least;
-}
-
-/* Move x onto the rim where a ball cuts the surface of the body, within `reach`, by alternating moves onto
- * the surface and along it onto the ball. */
-static bool ball_project(const struct shaping *shaping, const struct label_ball *ball, double x[])
-{
-    const struct labels *labels = &shaping->labels;
-    int dim = labels->dim;
-    double voxel = labels_voxel(labels), y[3] = {0}, off = INFINITY;
-    memcpy(y, x, (size_t)dim * sizeof *x);
-    for (int i = 0; i < 20 && project_to_surface(labels, shaping->keep, shaping->reach, y); i++) {
-        double normal[3] = {0}, along[3] = {0}, from[3] = {0};
-        struct label_mix mix;
-        labels_mix(labels, y, &mix);
-        int32_t within = label_largest(&mix, shaping->keep, true);
-        int32_t outside = label_largest(&mix, shaping->keep, false);
-        vector_subtract(dim, y, ball->centre, from);
-        off = vector_length(dim, from) - ball->radius;
-        if (fabs(off) <= least_step * voxel || within < 0 || outside < 0) {
-            break;
-        }
-        (void)labels_difference(labels, y, within, outside, normal);
-        double share = vector_dot(dim, from, normal) / vector_dot(dim, normal, normal);
-        for (int d = 0; d < dim; d++) {
-            along[d] = from[d] - share * normal[d];
-        }
-        double step = off * vector_length(dim, from) / vector_dot(dim, along, along);
-        for (int d = 0; d < dim; d++) {
-            y[d] -= step * along[d];
-        }
-        if (!(vector_distance(dim, x, y) <= shaping->reach)) {
-            return false;
-        }
-    }
-    if (fabs(off) > least_step * voxel) {
-        return false;
-    }
-    memcpy(x, y, (size_t)dim * sizeof *x);
-    return true;
-}
-
-bool rim_project(const struct shaping *shaping, const uint16_t rim[3], double x[])
-{
-    const struct labels *parts = shaping->parts;
-    int32_t later = rim[0] > rim[1] ? rim[0] : rim[1];
-    if (parts->ball != NULL && parts->ball[later].radius > 0) {
-        return ball_project(shaping, &parts->ball[later], x);
-    }
-    return line_project(parts, shaping->reach, 3, rim, x);
-}
-
-/* The labels of a line. */
-struct meeting {
-    int count;
-    const uint16_t *label;
-};
-
-static bool all_meet(const struct labels *labels, const void *wanted, const double x[], double least,
-                     double place[3])
-{
-    const struct meeting *meeting = wanted;
-    return vector_distance(labels->dim, x, place) < least &&
-           labels_meet(labels, meeting->count, meeting->label, place);
-}
-
-bool line_project(const struct labels *labels, double reach, int count, const uint16_t label[], double x[])
-{
-    const struct meeting meeting = {count, label};
-    double place[3] = {0};
-    if (interface_project(labels, count, label, x)) {
-        return true;
-    }
-    if (!find_nearest(labels, x, reach, all_meet, &meeting, place) ||
-        !interface_project(labels, count, label, place)) {
-        return false;
-    }
-    memcpy(x, place, (size_t)labels->dim * sizeof *x);
-    return true;
 }

@@ -112,8 +112,7 @@ static void find_room(const struct shaping *shaping, int64_t node, struct room *
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         for (int k = 0; k <= dim; k++) {
             int64_t other = mesh->cell[(int64_t)star->cell[i] * (dim + 1) + k];
-            bool fixed = shaping->rim[other][0] != 0 || shaping->kept->apart[other] ||
-                         shaping->star.labels[other] == 0;
+            bool fixed = shaping->kept->apart[other] || shaping->star.labels[other] == 0;
             bool listed = other == node || fixed || room->count == ROOM_MOST;
             for (int r = 0; r < room->count && !listed; r++) {
                 listed = room->node[r] == other;

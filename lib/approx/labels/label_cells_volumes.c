@@ -24,8 +24,6 @@ void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, d
 
 struct volumes {
     const struct shaping *shaping;
-    const int32_t
-        *whole;       /* labels->count: the label of which each is a part; the arrays below are of wholes */
     double *wanted;   /* labels->count: volume of the voxels, m3; 0: not to be preserved */
     double *pressure; /* labels->count */
     double *matrix;   /* labels->count squared */
@@ -45,7 +43,7 @@ static void node_gradients(const struct volumes *volumes, int64_t node, double G
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
         double gradient[3];
         int64_t cell = star->cell[i];
-        int32_t label = volumes->whole[mesh->label[cell]];
+        int32_t label = mesh->label[cell];
         int k = 0, row = shaping->kept->wanted[cell] ? 0 : star->labels[node];
         while (k < corners - 1 && mesh->cell[cell * corners + k] != node) {
             k++;
@@ -74,7 +72,7 @@ static double node_weight(int dim, double G[LABEL_CELLS_MOST_LABELS][3])
  * linear combinations of the volumes' gradients. Find the factors; false if there is nothing to correct. */
 static bool find_pressures(struct volumes *volumes)
 {
-    int32_t count = volumes->shaping->labels.count;
+    int32_t count = volumes->shaping->labels->count;
     const struct label_cells *mesh = volumes->shaping->mesh;
     const struct label_cells_star *star = &volumes->shaping->star;
     int dim = mesh->dim;
@@ -84,7 +82,7 @@ static bool find_pressures(struct volumes *volumes)
     memset(volumes->matrix, 0, (size_t)count * (size_t)count * sizeof(double));
     for (int64_t c = 0; c < cells.count; c++) {
         if (volumes->shaping->kept->wanted[c]) {
-            volumes->pressure[volumes->whole[mesh->label[c]]] -= cell_volume(&cells, c);
+            volumes->pressure[mesh->label[c]] -= cell_volume(&cells, c);
         }
     }
     for (int32_t l = 0; l < count; l++) {
@@ -101,7 +99,7 @@ static bool find_pressures(struct volumes *volumes)
         double weight = node_weight(dim, G);
         for (int i = 0; i < star->labels[n]; i++) {
             for (int j = 0; j < star->labels[n]; j++) {
-                double *entry = &volumes->matrix[volumes->whole[label[i]] * count + volumes->whole[label[j]]];
+                double *entry = &volumes->matrix[label[i] * count + label[j]];
                 for (int d = 0; d < dim; d++) {
                     *entry += weight * G[i][d] * G[j][d];
                 }
@@ -123,7 +121,7 @@ static void correct_volumes(struct volumes *volumes)
     struct label_cells *mesh = volumes->shaping->mesh;
     const struct label_cells_star *star = &volumes->shaping->star;
     int dim = mesh->dim;
-    double most = most_offset * labels_voxel(&volumes->shaping->labels);
+    double most = most_offset * labels_voxel(volumes->shaping->labels);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double G[LABEL_CELLS_MOST_LABELS][3], target[3] = {0}, before[3] = {0}, length = 0, wanted;
         const double *place = volumes->place + n * dim, *x = mesh->x + n * dim;
@@ -135,7 +133,7 @@ static void correct_volumes(struct volumes *volumes)
         for (int d = 0; d < dim; d++) {
             before[d] = target[d] = x[d];
             for (int i = 0; i < star->labels[n]; i++) {
-                target[d] += weight * volumes->pressure[volumes->whole[star->label[n][i]]] * G[i][d];
+                target[d] += weight * volumes->pressure[star->label[n][i]] * G[i][d];
             }
             length += (target[d] - place[d]) * (target[d] - place[d]);
         }
@@ -164,12 +162,10 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
                                 struct error *error)
 {
     enum status status;
-    const struct labels *labels = &shaping->labels;
+    const struct labels *labels = shaping->labels;
     const struct label_cells *mesh = shaping->mesh;
-    int32_t *whole = NULL;
     double *voxels = NULL;
     struct volumes volumes = {.shaping = shaping};
-    TRY(NEW_ARRAY(&whole, labels->count, error));
     TRY(NEW_ARRAY(&voxels, labels->count, error));
     TRY(NEW_ARRAY(&volumes.wanted, labels->count, error));
     TRY(NEW_ARRAY(&volumes.pressure, labels->count, error));
@@ -188,15 +184,13 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
     }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
-        whole[l] = options->whole != NULL ? options->whole[l] : l;
-        volumes.wanted[whole[l]] += fmax(voxels[l] - shaping->kept->dropped[l], 0);
+        volumes.wanted[l] = fmax(voxels[l] - shaping->kept->dropped[l], 0);
     }
-    volumes.whole = whole;
     for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }
 done:
-    FREE_ALL(whole, voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.free,
+    FREE_ALL(voxels, volumes.wanted, volumes.pressure, volumes.matrix, volumes.movable, volumes.free,
              volumes.place);
     return status;
 }

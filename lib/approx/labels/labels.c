@@ -66,25 +66,6 @@ int32_t labels_nearest(const struct labels *labels, const double x[])
     return (int32_t)(row_at(labels, at[0], at[1], at[2]) & UINT16_MAX);
 }
 
-bool labels_meet(const struct labels *labels, int count, const uint16_t label[], const double x[])
-{
-    double v[3];
-    int64_t at[3];
-    unsigned met = 0;
-    labels_to_voxel(labels, x, v);
-    for (int d = 0; d < 3; d++) {
-        at[d] = (int64_t)floor(v[d]);
-    }
-    for (int r = 0; r < 4; r++) {
-        int64_t j = labels->size[1] == 1 ? 0 : at[1] + r % 2, k = labels->size[2] == 1 ? 0 : at[2] + r / 2;
-        uint64_t row = row_at(labels, at[0], j, k);
-        for (int i = 0; i < count; i++) {
-            met |= (uint16_t)row == label[i] || (uint16_t)(row >> 16) == label[i] ? 1U << i : 0;
-        }
-    }
-    return met == (1U << count) - 1;
-}
-
 static void read_rows(const struct labels *labels, const int64_t first[3], struct stencil *stencil)
 {
     uint64_t *row = stencil->row;

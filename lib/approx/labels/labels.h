@@ -7,10 +7,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct label_ball {
-    double centre[3], radius; /* dim coordinates, m; radius 0: none */
-};
-
 /* The grid. Label 0 is the outside, also beyond the grid; along an axis with one voxel it extends without
  * end. Points have `dim` world coordinates, m: in 2D along the world axes `axis`, at `across` on the third.
  */
@@ -18,9 +14,7 @@ struct labels {
     int64_t size[3];
     const uint16_t *label; /* size[2] * size[1] * size[0], first index fastest; less than `count` */
     int32_t count;
-    const struct label_ball *ball; /* count: the ball that defines each label that is a part; later ones take
-                                      precedence; NULL: none */
-    double to_voxel[3][4];         /* (world, m, 1) to voxel index, voxel centres */
+    double to_voxel[3][4]; /* (world, m, 1) to voxel index, voxel centres */
     int dim;
     int axis[2];
     double across;
@@ -39,9 +33,6 @@ void labels_to_voxel(const struct labels *labels, const double x[], double voxel
 
 /* The label of the voxel nearest to a point. */
 int32_t labels_nearest(const struct labels *labels, const double x[]);
-
-/* Whether each of at most 16 labels is that of one of the voxels around a point, two along each axis. */
-bool labels_meet(const struct labels *labels, int count, const uint16_t label[], const double x[]);
 
 /* The shares at a point. */
 void labels_mix(const struct labels *labels, const double x[], struct label_mix *mix);

@@ -25,8 +25,7 @@ int32_t label_image_find(const struct label_image *image, const char *name)
 
 const char *label_image_name(const struct label_image *image, int32_t label)
 {
-    int32_t region = label > image->table.name_count ? image->region[label] : label;
-    return region == 0 ? "outside" : image->table.name[region - 1].text;
+    return label == 0 ? "outside" : image->table.name[label - 1].text;
 }
 
 /* ---- values ---- */
@@ -148,13 +147,6 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     image->labels.count = image->table.name_count + 1;
     TOOL_TRY(tool, NEW_ARRAY(&image->keep, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&image->region, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&image->part_of, image->labels.count, &error));
-    TOOL_TRY(tool, NEW_ARRAY(&image->ball, image->labels.count, &error));
-    for (int32_t l = 0; l < image->labels.count; l++) {
-        image->region[l] = l;
-        image->part_of[l] = -1;
-    }
     TOOL_TRY(tool, NEW_ARRAY(&image->voxel, count, &error));
     label_values(tool, values, image, table);
     int32_t at = 0;
@@ -390,11 +382,7 @@ void label_image_read(const struct tool *tool, char *const *files, const struct 
 
 void label_image_free(struct label_image *image)
 {
-    FREE_ALL(image->voxel, image->keep, image->volume, image->region, image->part_of, image->ball);
-    for (int32_t p = 0; p < image->part_count; p++) {
-        free(image->part[p]);
-    }
-    free(image->part);
+    FREE_ALL(image->voxel, image->keep, image->volume);
     label_table_free(&image->table);
     *image = (struct label_image){0};
 }

@@ -1,5 +1,5 @@
-/* A label image as the labels of the library; a table names, merges and omits its values. Then its parts, the
- * sizes of its cells, and the cells as a mesh or surface. */
+/* A label image as the labels of the library; a table names, merges and omits its values. Then the sizes
+ * of its cells, and the cells as a mesh or surface. */
 #pragma once
 
 #include "tool.h"
@@ -20,14 +20,9 @@ struct label_image {
     struct labels labels;
     uint16_t *voxel;          /* the array of labels.label */
     double to_world[3][4];    /* voxel index to world, m */
-    struct label_table table; /* label l, at least 1, is table.name[l - 1]; higher ones are parts: */
-    int32_t *region;          /* labels.count: the label of its region */
-    int32_t *part_of;         /* labels.count: number of its part; -1: none */
-    struct label_ball *ball;  /* labels.count: its ball, if it has one */
-    int32_t part_count;
-    char **part;    /* part_count: names */
-    bool *keep;     /* labels.count */
-    double *volume; /* labels.count: of its voxels, m3 (2D: m2) */
+    struct label_table table; /* label l, at least 1, is table.name[l - 1] */
+    bool *keep;               /* labels.count */
+    double *volume;           /* labels.count: of its voxels, m3 (2D: m2) */
     double voxel_volume;
 };
 
@@ -40,17 +35,11 @@ void label_image_read(const struct tool *tool, char *const *files, const struct 
                       struct label_image *image);
 void label_image_free(struct label_image *image);
 
-/* The name of a label, for a part that of its region; "outside" for 0. */
+/* The name of a label; "outside" for 0. */
 const char *label_image_name(const struct label_image *image, int32_t label);
 
 /* The label with this name; -1: none. */
 int32_t label_image_find(const struct label_image *image, const char *name);
-
-/* Split kept labels by the uses of --part: NAME=ball:X,Y,Z,RADIUS (2D: X,Y,RADIUS), lengths with a unit, or
- * NAME=IMAGE with the nonzero voxels of an image. Voxels of a part get a label of their own in the same
- * region. Where parts overlap, the later one counts. Exits for other expressions, a repeated name, and a part
- * without a voxel of a kept label. */
-void label_parts_make(const struct tool *tool, struct label_image *image);
 
 /* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
  * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */
@@ -70,7 +59,7 @@ void label_sizes_read(const struct tool *tool, const struct label_image *image, 
                       struct label_sizes *sizes);
 
 /* The mesh that goes into a stream. Regions are the labels with cells. Facets are the boundary, oriented
- * outward, in groups A|B with the label A within and B beyond, or with the name of a part. Node sets are the
+ * outward, in groups A|B with the label A within and B beyond. Node sets are the
  * interfaces A|B between two regions, A the lower label. The mesh borrows the nodes and cells of *result:
  * release it by label_mesh_free. */
 MUST_CHECK enum status label_mesh_make(const struct label_image *image, const struct label_cells *result,

@@ -24,9 +24,6 @@ static enum status add_name(struct mesh_names *names, const char *first, const c
                             struct error *error)
 {
     SCRATCH char *joined = NULL;
-    if (second == NULL) {
-        return mesh_add_name(names, first, error);
-    }
     if (asprintf(&joined, "%s|%s", first, second) < 0) {
         return fail_memory(error, "a name");
     }
@@ -39,16 +36,16 @@ static enum status make_regions(const struct label_image *image, const struct la
     NEW_SCRATCH(int32_t, region, image->labels.count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->cell_region, result->cell_count, error));
     for (int64_t c = 0; c < result->cell_count; c++) {
-        region[image->region[result->label[c]]] = 1;
+        region[result->label[c]] = 1;
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (region[l] != 0) {
             region[l] = mesh->regions.count;
-            RETURN_IF_ERROR(add_name(&mesh->regions, label_image_name(image, l), NULL, error));
+            RETURN_IF_ERROR(mesh_add_name(&mesh->regions, label_image_name(image, l), error));
         }
     }
     for (int64_t c = 0; c < result->cell_count; c++) {
-        mesh->cell_region[c] = region[image->region[result->label[c]]];
+        mesh->cell_region[c] = region[result->label[c]];
     }
     return STATUS_OK;
 }
@@ -61,19 +58,13 @@ static enum status make_facets(const struct label_image *image, const struct lab
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->facets, result->facet_count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->facet_set, result->facet_count, error));
     for (int32_t f = 0; f < (int32_t)result->facet_count; f++) {
-        int32_t inner = result->side[2 * f], part = image->part_of[inner];
-        member[f] = (struct member){inner, result->side[2 * f + 1], f};
-        if (part >= 0 && result->side[2 * f + 1] == 0) {
-            member[f] = (struct member){image->labels.count + part, 0, f};
-        }
+        member[f] = (struct member){result->side[2 * f], result->side[2 * f + 1], f};
     }
     qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
     for (int64_t f = 0; f < result->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
-            int32_t part = member[f].inner - image->labels.count;
-            RETURN_IF_ERROR(add_name(&mesh->facet_sets,
-                                     part >= 0 ? image->part[part] : label_image_name(image, member[f].inner),
-                                     part >= 0 ? NULL : label_image_name(image, member[f].outer), error));
+            RETURN_IF_ERROR(add_name(&mesh->facet_sets, label_image_name(image, member[f].inner),
+                                     label_image_name(image, member[f].outer), error));
         }
         mesh->facet_set[f] = mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
@@ -84,14 +75,14 @@ static enum status make_facets(const struct label_image *image, const struct lab
 }
 
 /* Count the nodes of faces between two regions, once for each face; store them if there is an array. */
-static int64_t find_interfaces(const struct cells *cells, const int32_t *region, const int32_t *across,
+static int64_t find_interfaces(const struct cells *cells, const int32_t *label, const int32_t *across,
                                struct member *member)
 {
     int corners = cells->dim + 1;
     int64_t count = 0;
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int64_t c = i / corners;
-        if (across[i] < 0 || region[across[i]] <= region[c]) {
+        if (across[i] < 0 || label[across[i]] <= label[c]) {
             continue;
         }
         for (int k = 0; k < corners; k++) {
@@ -99,7 +90,7 @@ static int64_t find_interfaces(const struct cells *cells, const int32_t *region,
                 continue;
             }
             if (member != NULL) {
-                member[count] = (struct member){region[c], region[across[i]], cells->node[c * corners + k]};
+                member[count] = (struct member){label[c], label[across[i]], cells->node[c * corners + k]};
             }
             count++;
         }
@@ -114,15 +105,11 @@ static enum status make_sets(const struct label_image *image, const struct label
     int64_t kept = 0;
     NEW_SCRATCH(int32_t, across, cells.count * (cells.dim + 1), error);
     RETURN_IF_ERROR(cells_across(&cells, across, error));
-    NEW_SCRATCH(int32_t, region, cells.count, error);
-    for (int64_t c = 0; c < cells.count; c++) {
-        region[c] = image->region[result->label[c]];
-    }
-    int64_t count = find_interfaces(&cells, region, across, NULL);
+    int64_t count = find_interfaces(&cells, result->label, across, NULL);
     NEW_SCRATCH(struct member, member, count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_idx, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->set_ptr, count + 1, error));
-    find_interfaces(&cells, region, across, member);
+    find_interfaces(&cells, result->label, across, member);
     qsort(member, (size_t)count, sizeof *member, compare_members);
     for (int64_t i = 0; i < count; i++) {
         if (i > 0 && compare_members(&member[i], &member[i - 1]) == 0) {

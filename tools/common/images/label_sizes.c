@@ -25,9 +25,7 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
         if (label < 0) {
             tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
         }
-        for (int32_t l = 0; l < image->labels.count; l++) {
-            fine[l] = fine[l] || image->region[l] == label;
-        }
+        fine[label] = true;
     }
     return fine;
 }
