@@ -202,9 +202,9 @@ double interface_distance(const struct labels *labels, const double x[],
 /* Gradient of a cell's volume with respect to the position of its corner k. */
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
 
-/* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay within
- * `slack`, m, of these. */
-void label_cells_repair(const struct shaping *shaping, double least, double slack);
+/* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay on
+ * these. */
+void label_cells_repair(const struct shaping *shaping, double least);
 
 /* Name the step that begins, for options->begin. */
 void label_cells_begin(const struct label_cells_options *options, const char *step);

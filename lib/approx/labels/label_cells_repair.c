@@ -24,28 +24,10 @@ static double edge_length(const struct shaping *shaping, int64_t node)
     return sum / (double)count;
 }
 
-/* Move place[] onto the interface of a node, unless it is within the slack, m. False if there is no interface
- * near. */
-static bool keep_to_interface(const struct shaping *shaping, int64_t node, double slack, double place[3])
-{
-    int dim = shaping->mesh->dim;
-    double projected[3] = {place[0], place[1], place[2]};
-    if (shaping->star.labels[node] < 2) {
-        return true;
-    }
-    if (!node_project(shaping, node, projected)) {
-        return false;
-    }
-    if (!(vector_distance(dim, projected, place) <= slack)) {
-        memcpy(place, projected, (size_t)dim * sizeof *place);
-    }
-    return true;
-}
-
 /* Try steps of decreasing length in all directions, along the axes and between them; nodes of interfaces stay
- * within the slack. Takes the first step after which the poorest cell at the node scores `least`, else the
+ * on them. Takes the first step after which the poorest cell at the node scores `least`, else the
  * best of each length that improves it. */
-static bool search(const struct shaping *shaping, double least, double slack, int64_t node)
+static bool search(const struct shaping *shaping, double least, int64_t node)
 {
     int dim = shaping->mesh->dim;
     double *x = shaping->mesh->x + node * dim, length = 0.25 * edge_length(shaping, node);
@@ -59,7 +41,7 @@ static bool search(const struct shaping *shaping, double least, double slack, in
             for (int d = 0; d < dim; d++) {
                 place[d] = here[d] + (norm > 0 ? length / norm * place[d] : 0);
             }
-            if (!keep_to_interface(shaping, node, slack, place)) {
+            if (shaping->star.labels[node] >= 2 && !node_project(shaping, node, place)) {
                 continue;
             }
             memcpy(x, place, (size_t)dim * sizeof *x);
@@ -76,7 +58,7 @@ static bool search(const struct shaping *shaping, double least, double slack, in
     return improved;
 }
 
-void label_cells_repair(const struct shaping *shaping, double least, double slack)
+void label_cells_repair(const struct shaping *shaping, double least)
 {
     const struct label_cells *mesh = shaping->mesh;
     bool improved = true;
@@ -86,7 +68,7 @@ void label_cells_repair(const struct shaping *shaping, double least, double slac
             for (int k = 0; k <= mesh->dim && shaping_score(shaping, c) < least; k++) {
                 int64_t node = mesh->cell[c * (mesh->dim + 1) + k];
                 improved =
-                    (shaping->star.labels[node] > 0 && search(shaping, least, slack, node)) || improved;
+                    (shaping->star.labels[node] > 0 && search(shaping, least, node)) || improved;
             }
         }
     }
@@ -150,7 +132,7 @@ bool star_make_room(const struct shaping *shaping, double least, int64_t node, c
         improved = false;
         for (int r = 0; r < room.count; r++) {
             if (star_score(shaping, room.node[r], wanted) < wanted) {
-                improved = search(shaping, wanted, 0, room.node[r]) || improved;
+                improved = search(shaping, wanted, room.node[r]) || improved;
             }
         }
         if (room_score(shaping, node, &room, wanted) >= wanted) {
