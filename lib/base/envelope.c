@@ -13,16 +13,16 @@
  * identified: a small pivot in an early row would make all following rows inaccurate. */
 static const double weak_pivot = 1e-3;
 
-/* Rows with more than this multiple of the mean number of entries are put last, too: elsewhere they would
+/* Rows with more than this multiple of the mean number of entries are put last: elsewhere they would
  * widen the envelope of all following rows. */
 static const int64_t most_entries = 8;
 
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
 
 /* Reverse Cuthill-McKee: breadth first from a node of least degree in each component. order[i] is the old
- * row; the last *longs are the long rows. */
+ * row; the long rows are last. */
 static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *column, int64_t *order,
-                              int64_t *longs, struct error *error)
+                              struct error *error)
 {
     int64_t count = 0, last = n;
     NEW_SCRATCH(bool, placed, n, error);
@@ -32,7 +32,6 @@ static enum status order_rows(int64_t n, const int64_t *ptr, const int64_t *colu
             order[--last] = i;
         }
     }
-    *longs = n - last;
     while (count < last) {
         int64_t seed = -1;
         for (int64_t i = 0; i < n; i++) {
@@ -139,165 +138,73 @@ static double *row_at(const struct envelope *factor, int64_t i)
     return factor->value + factor->start[i] - factor->first[i];
 }
 
-/* Compute the entries of row i of L in the columns before `columns`, whose rows are complete. */
-static void eliminate(struct envelope *factor, int64_t i, int64_t columns)
+/* Compute row i of L, with `shift` times the diagonal entry added to that. It is dropped if its pivot is
+ * below `least` times the diagonal entry. */
+static void factor_row(struct envelope *factor, int64_t i, double least, double shift)
 {
-    double *row = row_at(factor, i);
-    for (int64_t k = factor->first[i]; k < columns; k++) {
+    double *row = row_at(factor, i), diagonal = row[i];
+    for (int64_t k = factor->first[i]; k < i; k++) {
         const double *other = row_at(factor, k);
         int64_t from = factor->first[i] > factor->first[k] ? factor->first[i] : factor->first[k];
         row[k] = (row[k] - product(k - from, row + from, other + from)) / other[k];
     }
-}
-
-/* Entry (i, j), j <= i, of the Schur complement after the first `columns` columns. */
-static double reduced(const struct envelope *factor, int64_t i, int64_t j, int64_t columns)
-{
-    const double *row = row_at(factor, i), *other = row_at(factor, j);
-    double entry = j >= factor->first[i] ? row[j] : 0.0;
-    int64_t from = factor->first[i] > factor->first[j] ? factor->first[i] : factor->first[j];
-    return entry - product(columns - from, row + from, other + from);
-}
-
-static void drop_row(struct envelope *factor, int64_t i)
-{
-    double *row = row_at(factor, i);
-    for (int64_t l = factor->first[i]; l < i; l++) {
-        row[l] = 0.0;
+    double pivot = diagonal - product(i - factor->first[i], row + factor->first[i], row + factor->first[i]);
+    bool dropped = !(pivot > least * diagonal) && !(shift > 0.0);
+    if (dropped) {
+        memset(row + factor->first[i], 0, (size_t)(i - factor->first[i]) * sizeof *row);
     }
-    row[i] = INFINITY;
+    row[i] = dropped ? INFINITY : sqrt(fmax(pivot, 0.0) + shift * diagonal);
 }
 
-/* Compute row i of L; it is dropped if its pivot is below `least` times its diagonal entry. */
-static void factor_row(struct envelope *factor, int64_t i, double least)
+bool envelope_is_dropped(const struct envelope *factor, int64_t i)
 {
-    double diagonal = row_at(factor, i)[i];
-    eliminate(factor, i, i);
-    double pivot = reduced(factor, i, i, i);
-    if (!(pivot > least * diagonal) || !(pivot > 0.0)) {
-        drop_row(factor, i);
-        return;
-    }
-    row_at(factor, i)[i] = sqrt(pivot);
+    return isinf(row_at(factor, i)[i]);
 }
 
-/* Compute the rows of L before `kept`; the others are dropped. */
-static void factor_rows(struct envelope *factor, int64_t kept, double least)
+static void factor_rows(struct envelope *factor, double least, double shift)
 {
 #pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, 0, factor->n))
     for (int64_t b = 0; b < factor->block_count; b++) {
         for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
-            if (i < kept) {
-                factor_row(factor, i, least);
-            } else {
-                drop_row(factor, i);
-            }
+            factor_row(factor, i, least, shift);
         }
     }
     factor->dropped = 0;
     for (int64_t i = 0; i < factor->n; i++) {
-        factor->dropped += isinf(row_at(factor, i)[i]) != 0;
+        factor->dropped += envelope_is_dropped(factor, i);
     }
 }
 
-/* Order `count` rows by the largest remaining pivot, relative to the diagonal entries; matrix[count * count]
- * is overwritten. Returns the number of pivots above `least`; their rows come first in order[count]. */
-static int64_t order_by_pivot(int64_t count, double *matrix, const double *diagonal, double least,
-                              int64_t *order)
+/* Put the rows that were dropped behind the others. */
+static enum status put_last(struct envelope *factor, struct error *error)
 {
-    for (int64_t i = 0; i < count; i++) {
-        order[i] = i;
+    int64_t kept = 0, dropped = 0;
+    NEW_SCRATCH(int64_t, behind, factor->dropped, error);
+    for (int64_t i = 0; i < factor->n; i++) {
+        *(envelope_is_dropped(factor, i) ? &behind[dropped++] : &factor->order[kept++]) = factor->order[i];
     }
-    for (int64_t k = 0; k < count; k++) {
-        int64_t best = k;
-        for (int64_t i = k; i < count; i++) {
-            double pivot = matrix[order[i] * (count + 1)] / diagonal[order[i]];
-            best = pivot > matrix[order[best] * (count + 1)] / diagonal[order[best]] ? i : best;
-        }
-        int64_t row = order[best];
-        if (!(matrix[row * (count + 1)] > least * diagonal[row])) {
-            return k;
-        }
-        order[best] = order[k];
-        order[k] = row;
-        for (int64_t i = k + 1; i < count; i++) {
-            double scale = matrix[order[i] * count + row] / matrix[row * (count + 1)];
-            for (int64_t j = k + 1; j < count; j++) {
-                matrix[order[i] * count + order[j]] -= scale * matrix[row * count + order[j]];
-            }
-        }
-    }
-    return count;
-}
-
-/* Put the rows that the first pass left out behind the others, the most independent first; *kept: number of
- * independent rows. */
-static enum status order_weak(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
-                              double least, struct envelope *factor, int64_t *kept, struct error *error)
-{
-    int64_t count = factor->dropped, strong = 0, weak = 0;
-    NEW_SCRATCH(int64_t, behind, count, error);
-    NEW_SCRATCH(int64_t, by_pivot, count, error);
-    NEW_SCRATCH(double, matrix, count * count, error);
-    NEW_SCRATCH(double, diagonal, count, error);
-    for (int64_t i = 0; i < n; i++) {
-        if (isinf(row_at(factor, i)[i])) {
-            behind[weak++] = factor->order[i];
-        } else {
-            factor->order[strong++] = factor->order[i];
-        }
-    }
-    memcpy(factor->order + strong, behind, (size_t)count * sizeof *behind);
-    RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-    for (int64_t i = 0; i < n; i++) {
-        if (i >= strong) {
-            diagonal[i - strong] = row_at(factor, i)[i];
-            eliminate(factor, i, strong);
-        } else {
-            factor_row(factor, i, 0.0);
-        }
-    }
-    for (int64_t i = 0; i < count; i++) {
-        for (int64_t j = 0; j <= i; j++) {
-            matrix[i * count + j] = matrix[j * count + i] = reduced(factor, strong + i, strong + j, strong);
-        }
-    }
-    *kept = strong + order_by_pivot(count, matrix, diagonal, least, by_pivot);
-    for (int64_t i = 0; i < count; i++) {
-        factor->order[strong + i] = behind[by_pivot[i]];
-    }
+    memcpy(factor->order + kept, behind, (size_t)dropped * sizeof *behind);
     return STATUS_OK;
 }
 
 enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column, const double *value,
-                               double least, struct envelope *factor, struct error *error)
+                               double least, double shift, struct envelope *factor, struct error *error)
 {
-    int64_t kept = n, longs;
     *factor = (struct envelope){.n = n};
     RETURN_IF_ERROR(NEW_ARRAY(&factor->order, n, error));
     RETURN_IF_ERROR(NEW_ARRAY(&factor->first, n, error));
     RETURN_IF_ERROR(NEW_ARRAY(&factor->start, n + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&factor->scratch, n, error));
     RETURN_IF_ERROR(NEW_ARRAY(&factor->block, n + 1, error));
-    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, &longs, error));
+    RETURN_IF_ERROR(order_rows(n, ptr, column, factor->order, error));
     RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-    factor_rows(factor, n - longs, fmax(weak_pivot, least));
+    factor_rows(factor, fmax(weak_pivot, least), shift);
     if (factor->dropped > 0) {
-        RETURN_IF_ERROR(order_weak(n, ptr, column, value, least, factor, &kept, error));
+        RETURN_IF_ERROR(put_last(factor, error));
         RETURN_IF_ERROR(fill(n, ptr, column, value, factor, error));
-        /* A pivot that was above `least` can now be below it only by round-off. */
-        factor_rows(factor, kept, 0.1 * least);
+        factor_rows(factor, least, shift);
     }
     return STATUS_OK;
-}
-
-void envelope_dropped(const struct envelope *factor, int64_t *row)
-{
-    for (int64_t i = 0; i < factor->n; i++) {
-        if (isinf(row_at(factor, i)[i])) {
-            *row++ = factor->order[i];
-        }
-    }
 }
 
 void envelope_free(struct envelope *factor)

@@ -1,6 +1,6 @@
 /* Cholesky factorization of a sparse symmetric positive definite matrix within its envelope (skyline), rows
- * reordered by reverse Cuthill-McKee. Long rows come last, and so do rows that are nearly linearly dependent
- * on others. Used for constraint systems, which are factored once and solved in every step. */
+ * reordered by reverse Cuthill-McKee; long rows come last. Used for constraint systems, which are factored
+ * once and solved in every step. */
 #pragma once
 
 #include "base/ranks.h"
@@ -20,16 +20,17 @@ struct envelope {
     int64_t block_count;
 };
 
-/* Factorise the matrix given in CSR, both triangles: column[ptr[n]], value[ptr[n]]. A row whose pivot is
- * below `least` times its diagonal entry counts as linearly dependent and is dropped: its unknown is 0 in
- * every solution. */
+/* Factorise the matrix A given in CSR, both triangles: column[ptr[n]], value[ptr[n]], as A + shift diag(A).
+ * Without a shift a row whose pivot is below `least` times its diagonal entry counts as linearly dependent on
+ * those before it and is dropped: its unknown is 0 in every solution. With one, of the solutions of a
+ * singular system that of the least sum_i A_ii x_i^2 is found, up to the shift. */
 MUST_CHECK enum status envelope_factorise(int64_t n, const int64_t *ptr, const int64_t *column,
-                                          const double *value, double least, struct envelope *factor,
-                                          struct error *error);
+                                          const double *value, double least, double shift,
+                                          struct envelope *factor, struct error *error);
 void envelope_free(struct envelope *factor);
 
-/* row[factor->dropped]: the caller's rows that were dropped. */
-void envelope_dropped(const struct envelope *factor, int64_t *row);
+/* Whether the row at place i, order[i] of the caller, was dropped. */
+bool envelope_is_dropped(const struct envelope *factor, int64_t i);
 
 /* Distribute the diagonal blocks over the processes, with about the same work for each: process r solves for
  * the rows (*first)[r] to before (*first)[r + 1] in the factor's order. (*first)[count + 1] is to be freed.

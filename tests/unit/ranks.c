@@ -321,7 +321,7 @@ static void make_chains(struct envelope *factor)
         }
         ptr[i + 1] = at;
     }
-    GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, factor, &error));
+    GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, 0.0, factor, &error));
 }
 
 static void *solve_member(void *context)

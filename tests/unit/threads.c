@@ -26,7 +26,7 @@ static void make_chains(struct envelope *factor)
     for (int64_t i = 0; i < ROWS; i++) {
         ptr[i + 1] = ptr[i] + row_of_chains(i, column + ptr[i], value + ptr[i]);
     }
-    GOOD(envelope_factorise(ROWS, ptr, column, value, 1e-10, factor, &error));
+    GOOD(envelope_factorise(ROWS, ptr, column, value, 1e-10, 0.0, factor, &error));
 }
 
 TEST(blocks)

@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Rows with a smaller relative pivot count as linearly dependent and are dropped: the part of such a row that
- * is independent of the others is at most 1e-5 of it. */
-static const double least_pivot = 1e-10;
+ * is independent of the others is at most 1e-5 of it. Their forces are shared with this shift. */
+static const double least_pivot = 1e-10, share_shift = 1e-8;
 
 void constraint_rows_init(struct constraint_rows *rows, int dim)
 {
@@ -184,12 +184,12 @@ static enum status assemble(const struct constraint_rows *rows, int64_t node_cou
 }
 
 enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count, const double *mass,
-                                 double least, struct envelope *factor, struct error *error)
+                                 double least, double shift, struct envelope *factor, struct error *error)
 {
     SCRATCH int64_t *ptr = NULL, *column = NULL;
     SCRATCH double *value = NULL;
     RETURN_IF_ERROR(assemble(rows, node_count, mass, &ptr, &column, &value, error));
-    return envelope_factorise(rows->count, ptr, column, value, least, factor, error);
+    return envelope_factorise(rows->count, ptr, column, value, least, shift, factor, error);
 }
 
 enum status constraint_build(const struct constraint_rows *rows, int64_t node_count, const double *mass,
@@ -200,7 +200,8 @@ enum status constraint_build(const struct constraint_rows *rows, int64_t node_co
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&constraint->multiplier, rows->count, error));
-    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_pivot, &constraint->factor, error));
+    RETURN_IF_ERROR(
+        constraint_factorise(rows, node_count, mass, least_pivot, 0.0, &constraint->factor, error));
     return constraint_nodes_build(rows, node_count, mass, NULL, &constraint->nodes, error);
 }
 
@@ -240,6 +241,22 @@ void constraint_project(struct constraint *constraint, const double *factor, dou
     }
     envelope_solve(&constraint->factor, multiplier);
     constraint_spread(constraint, multiplier, u);
+}
+
+enum status constraint_share_out(const struct constraint *constraint, double *force, struct error *error)
+{
+    const struct constraint_rows *rows = constraint->rows;
+    FREED_BY(envelope_free) struct envelope factor = {0};
+    if (constraint->factor.dropped == 0) {
+        return STATUS_OK;
+    }
+    NEW_SCRATCH(double, u, constraint->node_count * rows->dim, error);
+    RETURN_IF_ERROR(constraint_factorise(rows, constraint->node_count, constraint->mass, 0.0, share_shift,
+                                         &factor, error));
+    constraint_spread(constraint, force, u);
+    constraint_values(constraint, u, force);
+    envelope_solve(&factor, force);
+    return STATUS_OK;
 }
 
 double constraint_violation(const struct constraint *constraint, const double *factor, const double *u,

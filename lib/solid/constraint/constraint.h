@@ -100,11 +100,10 @@ void constraint_values(const struct constraint *constraint, const double *u, dou
 /* u += M^-1 G^T amount[rows->count]. */
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u);
 
-/* Only factor G M^-1 G^T, M diagonal. Rows with a relative pivot below `least` are dropped, see
- * envelope_factorise. */
+/* Only factor G M^-1 G^T, M diagonal; `least` and `shift` as of envelope_factorise. */
 MUST_CHECK enum status constraint_factorise(const struct constraint_rows *rows, int64_t node_count,
-                                            const double *mass, double least, struct envelope *factor,
-                                            struct error *error);
+                                            const double *mass, double least, double shift,
+                                            struct envelope *factor, struct error *error);
 
 /* u += M^-1 G^T multiplier such that G u = target * factor[curve]. With factor == NULL the targets are zero.
  */

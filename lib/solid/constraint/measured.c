@@ -134,17 +134,9 @@ enum status measured_dependent(const struct constraint_rows *rows, int64_t node_
     for (int64_t n = 0; n < node_count; n++) {
         mass[n] = 1.0;
     }
+    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_independent, 0.0, &factor, error));
     for (int64_t r = 0; r < rows->count; r++) {
-        dependent[r] = false;
-    }
-    if (rows->count == 0) {
-        return STATUS_OK;
-    }
-    RETURN_IF_ERROR(constraint_factorise(rows, node_count, mass, least_independent, &factor, error));
-    NEW_SCRATCH(int64_t, dropped, factor.dropped, error);
-    envelope_dropped(&factor, dropped);
-    for (int64_t d = 0; d < factor.dropped; d++) {
-        dependent[dropped[d]] = true;
+        dependent[factor.order[r]] = envelope_is_dropped(&factor, r);
     }
     return STATUS_OK;
 }
