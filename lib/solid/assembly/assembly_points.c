@@ -2,7 +2,6 @@
  * springs. */
 #include "solid/assembly/assembly.h"
 
-#include "approx/points/point_grid.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -54,34 +53,20 @@ static enum status measure_nodes(struct point_condition *p, struct error *error)
     return STATUS_OK;
 }
 
-/* Check the points for contradictions and repetitions. */
-static enum status compare_rows(const struct point_condition *p, struct error *note, struct error *error)
+/* Refuse two exact points that contradict each other. */
+static enum status compare_rows(const struct point_condition *p, struct error *error)
 {
-    struct measured_pair exact, others, repeated;
+    struct measured_pair pair;
     char what[192];
-    enum status status =
-        measured_compare(p->measured, 1e-9 * p->input->extent, &exact, &others, &repeated, error);
-    if (status == STATUS_OK && exact.count > 0) {
-        snprintf(what, sizeof what,
-                 "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, which turns over "
-                 "what is between: give standard deviations, or leave one out",
-                 (long long)p->condition->line[exact.first], exact.distance, exact.apart);
-        return fail_at(p, exact.second, error, what);
+    RETURN_IF_ERROR(measured_compare(p->measured, &pair, error));
+    if (pair.second < 0) {
+        return STATUS_OK;
     }
-    if (status == STATUS_OK && repeated.count > 0) {
-        snprintf(what, sizeof what, "is the point of line %lld again: leave one out",
-                 (long long)p->condition->line[repeated.first]);
-        return fail_at(p, repeated.second, error, what);
-    }
-    if (status == STATUS_OK && others.count > 0 && note->text[0] == '\0') {
-        snprintf(what, sizeof what,
-                 "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, more than six "
-                 "standard deviations (pairs like this: %lld)",
-                 (long long)p->condition->line[others.first], others.distance, others.apart,
-                 (long long)others.count);
-        (void)fail_at(p, others.second, note, what);
-    }
-    return status;
+    snprintf(what, sizeof what,
+             "contradicts line %lld, %.3g m away: their displacements differ by %.3g m, which turns over "
+             "what is between: give standard deviations, or leave one out",
+             (long long)p->condition->line[pair.first], pair.distance, pair.apart);
+    return fail_at(p, pair.second, error, what);
 }
 
 /* The nearest of the nodes of the field at point i. */
@@ -196,99 +181,21 @@ static enum status check_rows(const struct point_condition *p, int64_t first, st
     for (int64_t i = 0; i < p->measured->count; i++) {
         for (int a = 0; a < dim && !(p->measured->deviation[i] > 0.0); a++) {
             if (!isnan(p->measured->u[i * dim + a]) && dependent[row++]) {
-                return fail_at(p, i, error,
-                               "too many points for the nodes there, or one on what another section holds: "
-                               "leave it out, give standard deviations, or refine the cloud");
+                return fail_at(
+                    p, i, error,
+                    "too many points for the nodes there, one twice, or one on what another section "
+                    "holds: leave it out, give standard deviations, or refine the cloud");
             }
         }
     }
     return STATUS_OK;
 }
 
-/* The difference between the displacement measured at point i and the target of a row, along the row's
- * direction; 0 if the measured component is not known. */
-static double off_row(const struct point_condition *p, int64_t i, int64_t row)
-{
-    const struct constraint_rows *rows = &p->system->rows;
-    int dim = p->measured->dim;
-    double along = 0.0;
-    for (int a = 0; a < dim; a++) {
-        double part = rows->direction[row * dim + a];
-        along += part == 0.0 ? 0.0 : part * p->measured->u[i * dim + a];
-    }
-    return isnan(along) ? 0.0 : fabs(along - rows->target[row]);
-}
-
-/* A grid of the nodes of the rows. The radius of each is a bound of off_row: its target plus the largest
- * measured displacement. x, radius: to be freed, as is the grid, also on failure. */
-static enum status grid_of_rows(const struct point_condition *p, struct point_grid *grid, double **x,
-                                double **radius, struct error *error)
-{
-    const struct constraint_rows *rows = &p->system->rows;
-    const struct cells *cells = &p->input->cells;
-    int dim = cells->dim;
-    double most = 0.0;
-    RETURN_IF_ERROR(NEW_ARRAY(x, rows->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(radius, rows->count, error));
-    for (int64_t i = 0; i < p->measured->count * dim; i++) {
-        most = fmax(most, dim * fabs(p->measured->u[i])); /* fmax ignores NAN, an unknown component */
-    }
-    for (int64_t r = 0; r < rows->count; r++) {
-        memcpy(*x + r * dim, cells->x + (int64_t)rows->node[r] * dim, (size_t)dim * sizeof **x);
-        (*radius)[r] = fabs(rows->target[r]) + most + 1e-9 * p->input->extent;
-    }
-    return point_grid_build(grid, dim, rows->count, *x, *radius, error);
-}
-
-/* Check exact point i against rows of other sections near it (`near`): their displacements must not differ by
- * more than their distance. */
-static enum status compare_near(const struct point_condition *p, int64_t i, const struct index_list *near,
-                                struct error *error)
-{
-    const struct constraint_rows *rows = &p->system->rows;
-    int dim = p->measured->dim;
-    char what[256];
-    for (int64_t k = 0; k < near->count; k++) {
-        int32_t r = near->index[k];
-        const struct condition *other = &p->input->conditions[rows->section[r]];
-        double off = off_row(p, i, r),
-               distance = vector_distance(dim, p->measured->x + i * dim,
-                                          p->input->cells.x + (int64_t)rows->node[r] * dim);
-        if (other->kind == CONDITION_POINTS || !(off > distance + 1e-9 * p->input->extent)) {
-            continue;
-        }
-        snprintf(what, sizeof what,
-                 "contradicts [displacement %s], which holds a node %.3g m away: their displacements differ "
-                 "by %.3g m, which turns over what is between: give a standard deviation, or leave it out",
-                 other->name, distance, off);
-        return fail_at(p, i, error, what);
-    }
-    return STATUS_OK;
-}
-
-static enum status compare_held(const struct point_condition *p, struct error *error)
-{
-    FREED_BY(point_grid_free) struct point_grid grid = {0};
-    FREED_BY(index_list_free) struct index_list near = {0};
-    SCRATCH double *x = NULL, *radius = NULL;
-    RETURN_IF_ERROR(grid_of_rows(p, &grid, &x, &radius, error));
-    for (int64_t i = 0; i < p->measured->count; i++) {
-        near.count = 0;
-        if (!(p->measured->deviation[i] > 0.0)) {
-            RETURN_IF_ERROR(
-                point_grid_query(&grid, p->measured->x + i * p->measured->dim, 1.0, &near, error));
-            RETURN_IF_ERROR(compare_near(p, i, &near, error));
-        }
-    }
-    return STATUS_OK;
-}
-
-static enum status add_condition(struct point_condition *p, struct error *note, struct error *error)
+static enum status add_condition(struct point_condition *p, struct error *error)
 {
     enum status status;
     int64_t first = p->system->rows.count;
-    TRY(compare_rows(p, note, error));
-    TRY(compare_held(p, error));
+    TRY(compare_rows(p, error));
     TRY(measure_nodes(p, error));
     TRY(set_energy(p, error));
     for (int64_t i = 0; i < p->measured->count; i++) {
@@ -302,7 +209,7 @@ done:
     return status;
 }
 
-enum status assembly_add_points(const struct assembly *input, struct solid_system *system, struct error *note,
+enum status assembly_add_points(const struct assembly *input, struct solid_system *system,
                                 struct error *error)
 {
     for (int64_t i = 0; i < input->condition_count; i++) {
@@ -312,7 +219,7 @@ enum status assembly_add_points(const struct assembly *input, struct solid_syste
                                         .measured = &input->conditions[i].measured,
                                         .system = system,
                                         .number = (int32_t)i};
-            RETURN_IF_ERROR(add_condition(&p, note, error));
+            RETURN_IF_ERROR(add_condition(&p, error));
         }
     }
     return STATUS_OK;

@@ -2,12 +2,12 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
-static const double most_deviations = 6.0; /* a larger difference, by its standard deviation, is not noise */
 /* The part of a condition that must be independent of the others, squared. */
 static const double least_independent = 0.01;
 
@@ -48,10 +48,10 @@ double measured_energy(const struct measured *measured, const struct measured_re
     return count > 0 ? stiffness * region->model_error * region->model_error / independent : 0.0;
 }
 
-/* A bound of the difference of any two displacements, noise included, m. */
+/* A bound of the difference of any two displacements, m. */
 static double farthest_apart(const struct measured *measured)
 {
-    double sum = 0.0, most = 0.0;
+    double sum = 0.0;
     for (int a = 0; a < measured->dim; a++) {
         double low = INFINITY, high = -INFINITY;
         for (int64_t i = 0; i < measured->count; i++) {
@@ -60,67 +60,45 @@ static double farthest_apart(const struct measured *measured)
         }
         sum += high > low ? (high - low) * (high - low) : 0.0;
     }
-    for (int64_t i = 0; i < measured->count; i++) {
-        most = fmax(most, measured->deviation[i]);
-    }
-    return sqrt(sum) + most_deviations * sqrt(2.0) * most;
+    return sqrt(sum);
 }
 
 /* The distance of two points, and the difference of their displacements in the components that are known for
- * both; -1 if there is no such component. */
-static void differences(const struct measured *measured, int64_t i, int64_t k, double *distance,
-                        double *apart)
+ * both. */
+static void differences(const struct measured *measured, struct measured_pair *pair)
 {
-    int dim = measured->dim, known = 0;
-    double places = 0.0, moves = 0.0;
+    int dim = measured->dim;
+    double moves = 0.0;
     for (int a = 0; a < dim; a++) {
-        double offset = measured->x[i * dim + a] - measured->x[k * dim + a];
-        double difference = measured->u[i * dim + a] - measured->u[k * dim + a];
-        places += offset * offset;
-        if (!isnan(difference)) {
-            moves += difference * difference;
-            known++;
-        }
+        double difference = measured->u[pair->first * dim + a] - measured->u[pair->second * dim + a];
+        moves += isnan(difference) ? 0.0 : difference * difference;
     }
-    *distance = sqrt(places);
-    *apart = known > 0 ? sqrt(moves) : -1.0;
+    pair->distance = vector_distance(dim, measured->x + pair->first * dim, measured->x + pair->second * dim);
+    pair->apart = sqrt(moves);
 }
 
-static void note_pair(struct measured_pair *pair, int64_t i, int64_t k, double distance, double apart)
-{
-    int64_t first = i < k ? i : k, second = i < k ? k : i;
-    if (pair->count++ == 0 || second < pair->second || (second == pair->second && first < pair->first)) {
-        pair->first = first;
-        pair->second = second;
-        pair->distance = distance;
-        pair->apart = apart;
-    }
-}
-
-enum status measured_compare(const struct measured *measured, double same, struct measured_pair *exact,
-                             struct measured_pair *others, struct measured_pair *repeated,
+enum status measured_compare(const struct measured *measured, struct measured_pair *found,
                              struct error *error)
 {
-    SCRATCH struct placed *sorted = NULL; /* points by their first coordinates */
-    double window = fmax(same, farthest_apart(measured));
-    *exact = *others = *repeated = (struct measured_pair){.first = -1, .second = -1};
+    SCRATCH struct placed *sorted = NULL; /* exact points by their first coordinates */
+    double window = farthest_apart(measured);
+    int64_t count = 0;
+    *found = (struct measured_pair){.first = -1, .second = -1};
     RETURN_IF_ERROR(NEW_ARRAY(&sorted, measured->count, error));
     for (int64_t i = 0; i < measured->count; i++) {
-        sorted[i] = (struct placed){measured->x[i * measured->dim], i};
+        if (is_exact(measured, i)) {
+            sorted[count++] = (struct placed){measured->x[i * measured->dim], i};
+        }
     }
-    qsort(sorted, (size_t)measured->count, sizeof *sorted, compare_placed);
-    for (int64_t s = 0; s < measured->count; s++) {
-        for (int64_t t = s + 1; t < measured->count && sorted[t].place - sorted[s].place <= window; t++) {
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_placed);
+    for (int64_t s = 0; s < count; s++) {
+        for (int64_t t = s + 1; t < count && sorted[t].place - sorted[s].place <= window; t++) {
             int64_t i = sorted[s].item, k = sorted[t].item;
-            bool both = is_exact(measured, i) && is_exact(measured, k);
-            double distance, apart;
-            double deviation = hypot(measured->deviation[i], measured->deviation[k]);
-            differences(measured, i, k, &distance, &apart);
-            if (apart > distance + most_deviations * deviation) {
-                note_pair(both ? exact : others, i, k, distance, apart);
-            } else if (both && apart >= 0.0 && distance <= same) {
-                note_pair(repeated, i, k, distance, apart);
-            }
+            struct measured_pair pair = {.first = i < k ? i : k, .second = i < k ? k : i};
+            differences(measured, &pair);
+            bool before = found->second < 0 || pair.second < found->second ||
+                          (pair.second == found->second && pair.first < found->first);
+            *found = pair.apart > pair.distance && before ? pair : *found;
         }
     }
     return STATUS_OK;

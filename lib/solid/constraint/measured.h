@@ -46,17 +46,13 @@ struct measured_pair {
     int64_t first, second; /* -1, -1: none */
     double distance;       /* of the points at rest, m */
     double apart;          /* difference of their displacements, in the components known for both, m */
-    int64_t count;         /* of all pairs of this kind */
 };
 
-/* Find pairs of points whose displacements differ by more than their distance plus six standard deviations of
- * the difference: the material between them would be inverted. `exact` counts the pairs of two exact points,
- * `others` the rest; each holds the pair with the lowest `second`. `repeated` counts the pairs of exact
- * points within `same` m of each other that agree and have a known component in common. The time is n log n
- * if displacements are similar. STATUS_SYSTEM: memory. */
-MUST_CHECK enum status measured_compare(const struct measured *measured, double same,
-                                        struct measured_pair *exact, struct measured_pair *others,
-                                        struct measured_pair *repeated, struct error *error);
+/* Find the exact points, those with the lowest `second`, whose displacements differ by more than their
+ * distance: the material between them would be inverted. The time is n log n if displacements are similar.
+ * STATUS_SYSTEM: memory. */
+MUST_CHECK enum status measured_compare(const struct measured *measured, struct measured_pair *pair,
+                                        struct error *error);
 
 /* dependent[rows->count]: rows whose part that is independent of the others is at most a tenth. They would
  * magnify a difference between measurements ten times. */
