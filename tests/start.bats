@@ -140,5 +140,4 @@ begin_from_coarse() {
     refused 2 "--start: half.dat: node " mtled -s half.dat push.scene fine.mts
     awk '/^# / { on = $2 == "u" || $2 == "parameters"; print; next } on && NF { print "nan nan"; next } { print }' coarse.dat > nan.dat
     refused 2 "--start: nan.dat: u has values that are not finite numbers" mtled -s nan.dat push.scene fine.mts
-    refused 2 "replaces coarse.dat, an input of this run" mtled -s coarse.dat -o coarse.dat push.scene fine.mts
 }

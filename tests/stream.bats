@@ -119,21 +119,6 @@ large() {
     small | cmp - text
 }
 
-@test "a mapped file cut short while it is in use is an error with a message" {
-    large > text
-    mkfifo gate
-    # Reading the mapped file is over when the writing begins, which the gate holds up; then the pages are gone.
-    mts binary text > binary
-    (mts text binary -o gate 2> message || echo $? > status) &
-    exec 5< gate
-    head -c 1000 <&5 > /dev/null
-    truncate -s 64 binary
-    cat <&5 > /dev/null
-    wait
-    [ "$(cat status)" = 3 ]
-    [[ "$(cat message)" == "mts: an input file was cut short"* ]]
-}
-
 @test "no binary to a terminal, no stream from one" {
     small > text
     run -2 script -qefc 'mts binary text' /dev/null

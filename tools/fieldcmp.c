@@ -65,7 +65,6 @@ int main(int argc, char *argv[])
     struct side a, b;
     struct findings findings;
     tool_begin(&tool, usage, 2, 2, argc, argv);
-    overwrite_refuse(&tool, "map", "");
     struct comparison_request request = comparison_parse(&tool);
     side_read(&tool, tool.operands[0], request.field, &a);
     side_read(&tool, tool.operands[1], request.field, &b);

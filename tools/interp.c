@@ -37,7 +37,7 @@ static const char usage[] =
     "      --skip-outside     leave out the points that lie in no cell, as of a grid that covers the\n"
     "                         body; a section points.row then tells the rows of POINTS that are there\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole; with\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole; with\n"
     "                         --deformed and a name in .mrk.json or .fcsv, the moved points as landmarks\n"
     "\n"
     "Examples:\n"

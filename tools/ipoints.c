@@ -38,7 +38,7 @@ static const char usage[] =
     "                          along all); needs no cells\n"
     "  -v, --verbose           report on standard error how many points there are\n"
     "  -t, --text              write text instead of binary\n"
-    "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | ipoints -g 4 | mts list\n"

@@ -53,7 +53,7 @@ static const char usage[] =
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"
-    "  -o, --output FILE    write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE    write to FILE, which appears only when whole\n"
     "\n"
     "Exit status:\n"
     "  0        done\n"
@@ -79,6 +79,7 @@ static const char usage[] =
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A number that mpirun gives each process in the environment, by Open MPI or by others; -1: none. */
@@ -109,16 +110,14 @@ static void become_mpi(char *argv[])
     exit((int)STATUS_INPUT);
 }
 
-/* The checkpoint, the previous one and the frames must be neither an input nor the result, as they are
- * removed at the end. */
+/* The checkpoint, the previous one and the frames are removed at the end: none of them may be the result. */
 static void check_checkpoint(const struct tool *tool)
 {
     static const char *const suffixes[] = {"", ".old", ".frames"};
     const char *file = tool_value(tool, "checkpoint");
     for (int i = 0; i < 3 && file != NULL; i++) {
         SCRATCH char *name = tool_text(tool, "%s%s", file, suffixes[i]);
-        overwrite_refuse(tool, "checkpoint", suffixes[i]);
-        if (tool->output != NULL && overwrite_is_same(name, tool->output)) {
+        if (tool->output != NULL && strcmp(name, tool->output) == 0) {
             tool_fail(tool, STATUS_INPUT,
                       "-o %s: is the checkpoint of -c %s, which is removed at the end: name another file",
                       tool->output, file);
@@ -129,7 +128,16 @@ static void check_checkpoint(const struct tool *tool)
 /* Exit if the operands are in the wrong order. */
 static void check_scene(const struct tool *tool)
 {
-    if (overwrite_is_stream(tool->operands[0])) {
+    char begin[6] = "";
+    struct stat status; /* a pipe would lose what is read here */
+    bool regular = stat(tool->operands[0], &status) == 0 && S_ISREG(status.st_mode);
+    FILE *file = regular ? fopen(tool->operands[0], "rb") : NULL;
+    bool is_stream = file != NULL && fread(begin, 1, sizeof begin, file) == sizeof begin &&
+                     memcmp(begin, "# mts ", sizeof begin) == 0;
+    if (file != NULL) {
+        (void)fclose(file);
+    }
+    if (is_stream) {
         tool_fail(tool, STATUS_INPUT, "%s: a stream, not a scene: mtled SCENE [FILE]", tool->operands[0]);
     }
 }

@@ -31,7 +31,7 @@ static const char usage[] =
     "Options:\n"
     "  -v, --verbose      list: first the command lines that made the stream\n"
     "  -t, --text         keep, drop, recover: write text instead of binary\n"
-    "  -o, --output FILE  write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  mts print nodes.x u.dat | awk '{ print $1 * 1000, $2 * 1000 }'\n"

@@ -47,7 +47,7 @@ static const char usage[] =
     "  -v, --verbose           report box, volume, connected bodies, and the cells of poorest quality\n"
     "                          (radius of the inscribed to the circumscribed sphere, 1 if regular)\n"
     "  -t, --text              write text instead of binary\n"
-    "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  gmsh -2 brain2d.geo -o body.msh && nodes -u mm body.msh | mts list\n";

@@ -39,7 +39,7 @@ static const char usage[] =
     "      --material TABLE  stiffness from the values of an image\n"
     "      --tissue E,NU ...  stiffness from probabilities: E, Pa, and nu of an image's tissue\n"
     "  -t, --text            write the stream as text instead of binary\n"
-    "  -o, --output FILE     write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE     write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  sample -i nearest labels.nii.gz body.mts > label_at_nodes.tsv\n"

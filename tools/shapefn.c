@@ -24,7 +24,7 @@ static const char usage[] =
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit (m, cm, mm, um): mu / s^4\n"
     "                         is used\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | shapefn | mtled scene > u.dat\n"

@@ -30,7 +30,7 @@ static const char usage[] =
     "  -b, --binary           write a stream, binary\n"
     "  -t, --text             write a stream, as text\n"
     "  -v, --verbose          report on standard error: least and largest size, nodes\n"
-    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  sizefield -s 0.3 -u mm -o sizes.pos u.dat\n"

@@ -47,7 +47,7 @@ static const char usage[] =
     "  -v, --verbose          report on standard error how many points were widened, and for each\n"
     "                         list the fewest, most and mean neighbours of a point\n"
     "  -t, --text             write text instead of binary\n"
-    "  -o, --output FILE      write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE      write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm body.msh | ipoints | support -k 2 > lists.mts\n"

@@ -52,7 +52,7 @@ static const char usage[] =
     "                          or a number of metres\n"
     "  -v, --verbose           report each group on standard error: count, area, box, mean normal\n"
     "  -t, --text              write text instead of binary\n"
-    "  -o, --output FILE       write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE       write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  nodes -u mm liver.msh | tag -f held=low:long,12% -f pushed=high:long,12% -v > liver.mts\n"

@@ -16,7 +16,7 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -u, --unit UNIT    of the lengths written: m (default), cm, mm, um or so many metres\n"
-    "  -o, --output FILE  write to FILE, none of the inputs, which appears only when whole (required)\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole (required)\n"
     "\n"
     "Examples:\n"
     "  voxels -h 6mm labels.nii.gz | tomesh -u mm -o body.msh\n"

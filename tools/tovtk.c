@@ -36,7 +36,7 @@ static const char usage[] =
     "\n"
     "Options:\n"
     "  -t, --text         write numbers as text, not as base64\n"
-    "  -o, --output FILE  write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  mtled brain2d.scene < table.mts | tovtk -o brain2d.pvd\n"

@@ -44,7 +44,7 @@ static const char usage[] =
     "      --frame K      take u.frame.K in place of u\n"
     "  -v, --verbose      tell what was moved, how far, and how exact the inverse map is; with\n"
     "                     -i nearest the volumes of labels before and after\n"
-    "  -o, --output FILE  write to FILE, none of the inputs, which appears only when whole\n"
+    "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
     "  warp -i linear T1.nii.gz u.dat > predicted.nii.gz\n"

@@ -13,17 +13,14 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* State of the process, like the standard descriptors. */
 static char **arguments;         /* the command line, operands first; never freed, as is */
 static char **command;           /* the command line for the provenance, up to NULL */
-static const char *process_name; /* tool->name, for the handler of SIGBUS */
 static const char *main_input;   /* the operand that replaces standard input, or NULL */
 static bool stdin_read;          /* standard input has been read */
 static bool stdout_closed;       /* standard output has been closed, its errors reported */
-static bool ending;              /* this program ends the process, not a library */
 
 static void print_message(const struct tool *tool, const char *format, va_list values)
 {
@@ -48,7 +45,6 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
 
 void tool_exit(enum status status)
 {
-    ending = true;
     (void)process_fails_alone();
     process_end();
     exit((int)status);
@@ -127,26 +123,6 @@ static void parse_options(struct tool *tool, int argc)
     tool->text = options_has(&tool->options, "text") && tool_given(tool, "text");
 }
 
-/* SIGBUS: another program has cut a mapped input file short while it was read. */
-static void on_lost_mapping(int number)
-{
-    static const char message[] = ": an input file was cut short or could not be read while in use\n";
-    (void)number;
-    ssize_t ignored = write(STDERR_FILENO, process_name, strlen(process_name)) +
-                      write(STDERR_FILENO, message, sizeof message - 1);
-    (void)ignored;
-    _exit((int)STATUS_SYSTEM);
-}
-
-/* libgomp ends the process with status 1 if it gets no memory; here 1 would be a verdict. */
-static void on_foreign_exit(int status, void *unused)
-{
-    (void)status, (void)unused;
-    if (!ending) {
-        _exit((int)STATUS_SYSTEM);
-    }
-}
-
 void tool_begin(struct tool *tool, const char *usage, int least, int most, int argc, char *argv[])
 {
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
@@ -156,13 +132,10 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     /* If the reader closes the pipe (head), end quietly, whatever the parent process has set. */
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_IGN); /* writing beyond the size limit then fails, with a message */
-    process_name = tool->name;
-    signal(SIGBUS, on_lost_mapping);
 #ifdef M_MMAP_THRESHOLD
     /* Return arrays from this size on to the system when they are freed; by default the bound grows. */
     (void)mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
-    (void)on_exit(on_foreign_exit, NULL);
     arguments = tool_memory(tool, array_new(argc + 1, sizeof *arguments));
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
     command = tool_memory(tool, array_new(argc + 1, sizeof *command));
@@ -175,9 +148,6 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     }
     if (tool->operand_count < least) {
         tool_fail(tool, STATUS_INPUT, "an operand is missing (see -h)");
-    }
-    if (tool->output != NULL) {
-        overwrite_refuse(tool, "output", "");
     }
 }
 
@@ -313,7 +283,6 @@ void tool_copy(const struct tool *tool, const struct stream *stream)
 int tool_end(const struct tool *tool)
 {
     bool failed = !stdout_closed && ferror(stdout) != 0;
-    ending = true;
     errno = 0;
     if (!stdout_closed && (fflush(stdout) != 0 || failed)) {
         tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
