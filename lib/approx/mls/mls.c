@@ -47,16 +47,12 @@ void mls_work_free(struct mls_work *work)
     *work = (struct mls_work){0};
 }
 
-/* Rows of scratch: those of mls_orthogonal, which needs more than the kernels, then phi. */
-enum { ROW_OF_VALUES = MLS_ROWS, SCRATCH_ROWS = MLS_ROWS + 1 };
-_Static_assert((int)MLS_KERNEL_ROWS <= (int)MLS_ROWS, "scratch of the kernels");
-
 /* Scratch for `count` neighbours, or NULL (memory). */
 static double *work_reserve(struct mls_work *work, int64_t count)
 {
     if (count > work->capacity) {
         int64_t capacity = (count + count / 2 + 16) / 8 * 8;
-        double *values = array_new(capacity + MLS_PADDING, sizeof *values * SCRATCH_ROWS);
+        double *values = array_new(capacity + MLS_PADDING, sizeof *values * MLS_ROWS);
         if (values == NULL) {
             return NULL;
         }
@@ -82,8 +78,7 @@ enum status mls_evaluate(const struct mls *mls, const struct mls_support *suppor
     int64_t stride = work->capacity + MLS_PADDING;
     *verdict = MLS_GOOD;
     if (!mls_kernel(mls, support, scratch, stride, phi, dphi)) {
-        *verdict = mls_orthogonal(mls, support, scratch, stride,
-                                  phi != NULL ? phi : scratch + ROW_OF_VALUES * stride, dphi);
+        *verdict = mls_orthogonal(mls, support, scratch, stride, phi, dphi);
     }
     return STATUS_OK;
 }

@@ -7,7 +7,7 @@
 
 #include "approx/mls/mls.h"
 
-/* Rows of scratch. Their stride is at least the number of neighbours and a whole vector. */
+/* Rows of scratch. Their stride is at least the number of neighbours and MLS_PADDING. */
 enum mls_row {
     ROW_XI,
     ROW_RATIO = ROW_XI + 3,
@@ -16,10 +16,14 @@ enum mls_row {
     ROW_PHI,
     ROW_GRADIENT,
     ROW_IMAGE = ROW_GRADIENT + 3,
-    MLS_KERNEL_ROWS = ROW_IMAGE + 3
+    ROW_ORTHOGONAL = ROW_IMAGE + 3, /* mls_orthogonal: MLS_MAX_BASIS rows */
+    MLS_ROWS = ROW_ORTHOGONAL + MLS_MAX_BASIS
 };
 
+/* Padding of a row beyond the number of neighbours: for the rows of H, and to whole vectors. */
+#define MLS_PADDING 16
+
 /* Evaluate at one point: phi[count] and dphi[count * dim], per unit of x, unless NULL; false if
- * mls_orthogonal() is needed. scratch[MLS_KERNEL_ROWS * stride]. */
+ * mls_orthogonal() is needed. scratch[MLS_ROWS * stride]. */
 bool mls_kernel(const struct mls *mls, const struct mls_support *support, double *scratch, int64_t stride,
                 double *phi, double *dphi);
