@@ -33,18 +33,6 @@ SCENE
     printf -- '-1 -0.005\n2 -0.005\n' > floor.tsv
 }
 
-@test "ended by a signal: status 128 + n; the same command goes on to the same bytes" {
-    mtled run.scene table.mts > whole.dat
-    begin_and_end HUP run.scene
-    [ $status -eq 129 ]
-    grep -q "^mtled: ended by SIGHUP after step [0-9]*: the same command goes on from run.ckpt$" said
-    step=$(mts print checkpoint run.ckpt)
-    mtled -crun.ckpt --every=30 -o out.dat run.scene table.mts 2> said
-    grep -q "^mtled: going on from step $step, kept in run.ckpt$" said
-    cmp whole.dat out.dat
-    [ -z "$(find . -name 'run.ckpt*')" ]
-}
-
 @test "a checkpoint is a stream that can be looked into" {
     begin_and_end TERM run.scene
     mts list run.ckpt | grep -q '^checkpoint	i8	1	1	version='

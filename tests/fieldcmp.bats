@@ -155,12 +155,3 @@ square() {
     [ -s map2.mts ]
     run -3 --separate-stderr fieldcmp -m missing/map.mts a.txt b.txt
 }
-
-@test "standard input stands for A or for B; any number of threads" {
-    cloud -d 2 -k jittered -n 9 --box 0,1,0,1 --field paper > a.mts
-    cloud -d 2 -k jittered -n 30 --box 0,1,0,1 --field paper --seed 3 > b.mts
-    OMP_NUM_THREADS=1 fieldcmp a.mts b.mts > table
-    fieldcmp - b.mts < a.mts | cmp - table
-    fieldcmp a.mts - < b.mts | cmp - table
-    mts text b.mts | OMP_NUM_THREADS=3 fieldcmp a.mts - | cmp - table
-}

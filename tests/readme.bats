@@ -50,64 +50,6 @@ up_to_date() {
     up_to_date pipelines/README.md
 }
 
-@test "no figure is typed by hand: fractions stand in code, tables made from files, and marked figures only; no line is too long" {
-    run -1 grep -nE '^.{201}' "$top/README.md"
-    for text in README.md pipelines/README.md; do
-        sed -e '/^```/,/^```/d; /^<!-- stud/,/^<!-- end -->$/d; /^## References/,/^## /d; /^    /d' \
-            -e 's/<!-- figure: [^>]*-->[^<]*<!-- end -->//g; s/`[^`]*`//g; s/\]([^)]*)//g' "$top/$text" > prose
-        [ "$(wc -l < prose)" -gt 30 ]
-        run -1 grep -nE '[0-9]*[.][0-9]' prose
-    done
-}
-
-@test "a figure whose file, column or row is not there, or whose row is not the only one, is an error" {
-    mkdir results
-    printf 'case\tscheme\tmean\na\tdefault, fine\t0.25\na\tmixed\t0.5\n' > results/table.tsv
-    figures() { printf '%s\n' "$1" | RESULTS=$PWD/results bash "$top/pipelines/readme.sh"; }
-    [ "$(figures 'x <!-- figure: table.tsv mean default fine -->9<!-- end --> y')" = 'x <!-- figure: table.tsv mean default fine -->0.25<!-- end --> y' ]
-    for mark in 'table.tsv mean none' 'table.tsv mean a' 'table.tsv median mixed' 'tables.tsv mean mixed'; do
-        run -1 --separate-stderr figures "<!-- figure: $mark -->9<!-- end -->"
-        [[ $stderr == *figures:* ]]
-    done
-    run -1 --separate-stderr figures '<!-- figure: table.tsv mean mixed -->9'
-    run -1 --separate-stderr figures $'<!-- study table.tsv none -->\n<!-- end -->'
-}
-
-@test "a number, a word or a line that changed is noticed; another size of blanks is not" {
-    printf 'points\t1247\nu is -1.5e-3 m\n' > text
-    same text text
-    printf 'points  1250 \nu is -1.52e-3 m\n' > near
-    same text near
-    printf 'points\t1247\nu is -2.8e-3 m\n' > far
-    run -1 same text far
-    printf 'points\t1247\nu is 1.5e-3 m\n' > sign
-    run -1 same text sign
-    printf 'points\t1247\nv is -1.5e-3 m\n' > word
-    run -1 same text word
-    printf 'points\t1247\n' > short
-    run -1 same text short
-    printf 'points\t1247\nu is nan m\n' > nan
-    run -1 same text nan
-    run -1 same missing missing
-}
-
-@test "numbers that are to agree in all digits differ by one unit of the last at most" {
-    printf '702 nodes, 0.028 mm, 1.25e-3\n' > text
-    printf '703 nodes, 0.029 mm, 1.24e-3\n' > near
-    same text near -v digits=1
-    for far in '704 nodes, 0.028 mm, 1.25e-3' '702 nodes, 0.030 mm, 1.25e-3' '702 nodes, 0.028 mm, 1.27e-3' '702 nodes, 0.0281 mm, 1.25e-3'; do
-        printf '%s\n' "$far" > far
-        run -1 same text far -v digits=1
-    done
-}
-
-@test "a command in a text that fails is noticed" {
-    printf '```console\n$ echo 1; false\n2\n```\n' > bad.md
-    run -1 --separate-stderr bash "$top/pipelines/readme.sh" < bad.md
-    [ "${lines[2]}" = 1 ]
-    [[ $stderr == *'status 1: echo 1; false'* ]]
-}
-
 @test "files that the texts point to exist" {
     for text in $texts lib/README.md examples/brain2d/README.md; do
         grep -oE '\]\([^)#]+\)' "$top/$text" | sed 's/^](//; s/)$//' | grep -v '^http' > links || true

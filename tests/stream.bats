@@ -67,21 +67,6 @@ large() {
     grep -qxF "# @ test 1 test 'a b'" list
 }
 
-@test "a file that cannot be written is status 3 with one line, and what had the name stays" {
-    large > text
-    mts binary text > binary
-    echo precious > kept
-    run -3 --separate-stderr mts binary text -o missing/kept
-    [[ "$stderr" == "mts: missing/kept: No such file or directory" ]]
-    # A limit on file sizes, which comes with SIGXFSZ, in the middle of writing.
-    run -3 --separate-stderr bash -c 'ulimit -f 100; exec mts binary text -o kept'
-    [[ "$stderr" == "mts: kept: cannot write: File too large" ]]
-    [ "$(cat kept)" = precious ]
-    run -2 bash -c 'head -c 1000 binary | mts text -o kept'
-    [ "$(cat kept)" = precious ]
-    [ "$(ls -A | sort | tr '\n' ' ')" = "binary kept text " ]
-}
-
 @test "-o replaces the file behind a link and keeps its mode; input and output may be one file" {
     small > data
     ln -s data link
@@ -96,16 +81,6 @@ large() {
     [[ "$stderr" == "mts: .: is a directory" ]]
     mts text data -o /dev/null
     [ -c /dev/null ]
-}
-
-@test "a reader that stops early ends the writer quietly" {
-    large > text
-    for setup in ':' "trap '' PIPE"; do
-        run --separate-stderr bash -c "$setup; mts text text | head -n 1; exit \${PIPESTATUS[0]}"
-        [ "$status" -eq 141 ]
-        [ "$output" = "# mts 1" ]
-        [ "$stderr" = "" ]
-    done
 }
 
 @test "closed standard streams are errors, and no file takes their place" {

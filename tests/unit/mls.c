@@ -309,48 +309,6 @@ TEST(normal_equations)
     assert_true(decided > 3 * left && left > 0);
 }
 
-static double wave(int dim, const double *x)
-{
-    double value = 1.0;
-    for (int a = 0; a < dim; a++) {
-        value *= sin(3.0 * x[a] + 0.4 + a);
-    }
-    return value;
-}
-
-/* RMS error of the fit of a smooth function on a cloud of that fineness. */
-static double fit_error(int dim, enum basis basis, int per_axis)
-{
-    static const struct place unit = {"unit", 1.0, 0.0};
-    FREED_BY(scattered_free) struct scattered cloud = scatter(dim, per_axis, 400, &unit, 0.2, 21);
-    struct support_options options = options_for(dim, basis, WEIGHT_QUARTIC);
-    options.radius = (basis == BASIS_LINEAR ? 1.8 : 2.6) * cloud.spacing;
-    FREED_BY(table_free) struct table table = {0};
-    double sum = 0.0;
-    GOOD(tabulate(&options, cloud.count, cloud.x, 400, cloud.points, &table, &error));
-    for (int64_t p = 0; p < 400; p++) {
-        double value = -wave(dim, cloud.points + p * dim);
-        for (int64_t i = table.lists.ptr[p]; i < table.lists.ptr[p + 1]; i++) {
-            value += table.phi[i] * wave(dim, cloud.x + (int64_t)table.lists.idx[i] * dim);
-        }
-        sum += value * value;
-    }
-    return sqrt(sum / 400.0);
-}
-
-/* Order 2 for the linear basis, 3 for the quadratic and the modified. */
-TEST_IN_EACH_DIM(convergence)
-{
-    for (int b = 0; b < BASIS_COUNT; b++) {
-        int coarse = dim == 2 ? 13 : 7, fine = 2 * coarse - 1;
-        double before = fit_error(dim, (enum basis)b, coarse), after = fit_error(dim, (enum basis)b, fine);
-        double order = log2(before / after);
-        print_message("# %dD %s: %d, %d nodes per axis: %.3g, %.3g, order %.2f\n", dim, basis_names[b],
-                      coarse, fine, before, after, order);
-        AT_MOST((b == BASIS_LINEAR ? 1.8 : 2.7), order);
-    }
-}
-
 /* RMSE of the paper's test function (1 - r^2) exp(-r^2 / 2) on 81 x 81 points from 18 x 18 nodes over [-4,
  * 4]^2, quartic weight, at most the 20 nearest nodes; infinity where singular. */
 static double paper_error(enum basis basis, double mu, double radius)

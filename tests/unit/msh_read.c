@@ -157,24 +157,6 @@ TEST(entities_may_be_absent)
     assert_int_equal(msh.groups[2].element_count, 0);
 }
 
-TEST(truncation_at_every_byte_is_found)
-{
-    for (int form = 0; form < FIXTURE_FORMS; form++) {
-        struct fixture f = fixture_make(form);
-        for (size_t size = 0; size + 1 < f.size; size++) {
-            struct msh msh;
-            struct error error = {""};
-            enum status status = size % 13 == 0 ? read_bytes(&msh, f.bytes, size, &error)
-                                                : parse_copy(&msh, f.bytes, size, &error);
-            if (status != STATUS_INPUT || error.text[0] == '\0') {
-                fail_msg("form %d cut after %zu of %zu bytes passes", form, size, f.size);
-            }
-            assert_true(size % 13 != 0 || strstr(error.text, "test.msh: ") == error.text);
-            assert_null(msh.x);
-        }
-    }
-}
-
 /* Partitioned files of MSH 2 and second order, as gmsh writes them; in the folder that holds the tests. */
 TEST(other_forms_are_read)
 {

@@ -372,18 +372,6 @@ TEST(wrong_files)
     }
 }
 
-/* Cut anywhere, a scene is either refused or means a whole number of its lines; it never crashes. */
-TEST(truncation)
-{
-    for (size_t size = 0; size < sizeof full; size++) {
-        FREED_BY(scene_free) struct scene scene = {0};
-        struct error error = {""};
-        write_bytes(full, size);
-        enum status status = scene_read(path, &scene, &error);
-        assert_true(status == STATUS_OK ? full[size - 1] == '\n' : error.text[0] != '\0');
-    }
-}
-
 static int make_folder(void **state)
 {
     (void)state;
