@@ -72,13 +72,12 @@ TEST_IN_EACH_DIM(linear_field_by_table)
     }
 }
 
-/* Only the faces within one condition are held; those of a corner between two are not. One of the conditions
- * lets them slide. */
+/* Only the faces within one condition are held; those of a corner between two are not. */
 TEST(held_faces)
 {
     FREED_BY(lattice_free) struct lattice l = {0};
     SCRATCH int32_t *low = NULL, *high = NULL;
-    SCRATCH bool *held = NULL, *slides = NULL;
+    SCRATCH bool *held = NULL;
     int64_t count = 0;
     struct lattice_options options = lattice_defaults(2, 5);
     lattice_build(&l, &options);
@@ -87,14 +86,12 @@ TEST(held_faces)
         {.facets = side_facets(&l, 1u << 3, &high)}};
     l.assembly.conditions = conditions;
     l.assembly.condition_count = 2;
-    GOOD(assembly_held_faces(&l.assembly, 1, false, &held, &error));
-    GOOD(assembly_held_faces(&l.assembly, 1, true, &slides, &error));
+    GOOD(assembly_held_faces(&l.assembly, 1, &held, &error));
     for (int64_t f = 0; f < l.assembly.boundary.count; f++) {
         const double *a = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f],
                      *b = l.assembly.cells.x + 2 * (int64_t)l.assembly.boundary.node[2 * f + 1];
         bool flat = a[1] == b[1] && (a[1] < 1e-9 || a[1] > 0.1 - 1e-9);
         assert_int_equal(held[f], flat);
-        assert_int_equal(slides[f], flat && a[1] < 1e-9);
         count += held[f];
     }
     assert_int_equal(count, 8);

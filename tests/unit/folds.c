@@ -348,29 +348,6 @@ TEST(flat)
     }
 }
 
-/* Turned by an angle; in 3D also tilted by twice that. Facets that slide on their plane may not be turned
- * there by more than 120 degrees; others may. */
-TEST(reversed)
-{
-    static struct shape shape;
-    static const double angle[] = {1.0, 2.0, 2.9};
-    double y[MOST_NODES * 3];
-    for (int dim = 2; dim <= 3; dim++) {
-        make_grid(&shape, dim, 5, 2);
-        for (int i = 0; i < 6; i++) {
-            shape.folds.input.slides = i < 3 ? shape.held : NULL;
-            turn(&shape, angle[i % 3], 1.2, y);
-            struct fold fold = found(&shape, y);
-            assert_int_equal(fold.kind, i == 2 ? FOLD_REVERSED : FOLD_NONE);
-            if (i == 2) {
-                assert_int_equal(fold.count, dim == 2 ? 5 : 10);
-                assert_true(shape.held[fold.facet[0]] && fold.facet[1] == -1);
-            }
-        }
-        folds_free(&shape.folds);
-    }
-}
-
 /* A grid, and a smaller one that is `away` from its middle along x: another body. */
 static void make_two(struct shape *shape, int dim, double away)
 {

@@ -112,7 +112,6 @@ void assembly_complete(struct assembly *input)
                                             .cell_side = input->cell_side};
 }
 
-
 enum status assembly_build(struct assembly *input, struct solid_system *system, struct error *note,
                            struct error *error)
 {
@@ -170,16 +169,14 @@ static void mark_faces(const struct assembly *input, const struct facet_set *set
     }
 }
 
-enum status assembly_held_faces(const struct assembly *input, int least, bool sliding, bool **held,
-                                struct error *error)
+enum status assembly_held_faces(const struct assembly *input, int least, bool **held, struct error *error)
 {
     SCRATCH int64_t *stamp = NULL; /* of each node: the last set that contains it, from 1 on */
     RETURN_IF_ERROR(NEW_ARRAY(held, input->boundary.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&stamp, input->cells.node_count, error));
     for (int64_t i = 0; i < input->condition_count; i++) {
         const struct condition *condition = &input->conditions[i];
-        if (prescription_directions(condition, input->cells.dim) >= least &&
-            (!sliding || condition->kind == CONDITION_NORMAL)) {
+        if (prescription_directions(condition, input->cells.dim) >= least) {
             mark_faces(input, &condition->facets, i + 1, stamp, *held);
         }
     }

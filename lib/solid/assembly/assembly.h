@@ -146,9 +146,8 @@ bool assembly_has_gravity(const struct assembly *input);
 bool assembly_holds_averages(const struct assembly *input);
 
 /* (*held)[boundary.count], to be freed: whether all nodes of the face belong to facets of one condition that
- * prescribes at least `least` directions; with `sliding`, of one along normals, so that the face stays in its
- * plane. */
-MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool sliding, bool **held,
+ * prescribes at least `least` directions. */
+MUST_CHECK enum status assembly_held_faces(const struct assembly *input, int least, bool **held,
                                            struct error *error);
 
 /* The modulus of penalties, Pa: the P-wave modulus, but at most `factor` times the shear modulus, so that it

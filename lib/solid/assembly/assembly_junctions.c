@@ -16,8 +16,8 @@ static enum status find_junctions(const struct assembly *input, int kinds, int l
                                   struct error *error)
 {
     SCRATCH bool *held = NULL, *constrained = NULL;
-    RETURN_IF_ERROR(assembly_held_faces(input, least, false, &held, error));
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &constrained, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, least, &held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &constrained, error));
     RETURN_IF_ERROR(NEW_ARRAY(junction, input->cells.node_count, error));
     return boundary_find_junctions(&input->face_table, kinds, held, constrained, *junction, error);
 }
@@ -27,7 +27,7 @@ static enum status mark_cells(const struct assembly *input, bool *softer, struct
 {
     int corners = input->cells.dim + 1;
     SCRATCH bool *held = NULL, *junction = NULL;
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &held, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &held, error));
     RETURN_IF_ERROR(find_junctions(input, BOUNDARY_JUNCTION_SMOOTH, 1, &junction, error));
     for (int64_t i = 0; i < input->cells.count * corners; i++) {
         softer[i / corners] = softer[i / corners] || junction[input->cells.node[i]];

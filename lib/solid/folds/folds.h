@@ -12,9 +12,7 @@
  * The interpolant of a flat cell also turns over where the field only bends: where the boundary bulges, a
  * node just beneath a facet passes through its chord; where it becomes concave, a node of a flat cell between
  * facets that continue each other. Such a cell is no fold if the gradient of the field itself keeps its
- * orientation (approx/field/field_turning.h).
- *
- * A facet that slides on a plane can turn over only if the body passes through the plane. */
+ * orientation (approx/field/field_turning.h). */
 #pragma once
 
 #include "approx/cells/crossing.h"
@@ -30,8 +28,7 @@ enum fold_kind {
     FOLD_CREASE, /* the facets that meet at a node (2D) or an edge (3D) have passed through each other */
     FOLD_CROSSING, /* two parts of the boundary have passed through each other: by a twentieth of their facets
                     */
-    FOLD_WITHIN,   /* a body lies within another; or a cell within a cell that it shares no node with */
-    FOLD_REVERSED /* a facet that slides on its plane shows its back there: the body went through the plane */
+    FOLD_WITHIN    /* a body lies within another; or a cell within a cell that it shares no node with */
 };
 
 struct fold {
@@ -52,7 +49,6 @@ struct fold_input {
     const int32_t *facet; /* facet_count * dim: the boundary, oriented outward */
     const bool
         *held; /* facet_count: whether the displacement is prescribed there, if only along one direction */
-    const bool *slides;        /* facet_count: whether it is prescribed along the normal alone; NULL: none */
     const struct ranks *ranks; /* processes that share the search; NULL: one */
 };
 

@@ -10,7 +10,6 @@ static const double full_turn = 6.28318530717958648;
 
 enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
-static const double reversing = -0.5;   /* cosine of 120 degrees, see search_sliding */
 static const double turned_share = 0.1; /* see is_turned_over */
 static const double flat_share = 0.2;   /* see folds_list_flat */
 
@@ -175,28 +174,6 @@ static struct fold search_rings(const struct folds *folds, int64_t begin, int64_
     return fold;
 }
 
-/* Search for sliding facets that are turned over. */
-static struct fold search_sliding(const struct folds *folds, int64_t begin, int64_t end)
-{
-    const struct fold_input *input = &folds->input;
-    struct fold fold = FOLD_NOTHING;
-    int dim = input->dim;
-    for (int64_t f = begin; f < end; f++) {
-        double now[3], rest[3];
-        if (!input->slides[f]) {
-            continue;
-        }
-        face_area_vector(dim, folds->y, input->facet + f * dim, now);
-        face_area_vector(dim, input->x, input->facet + f * dim, rest);
-        if (vector_dot(dim, now, rest) < reversing * vector_length(dim, now) * vector_length(dim, rest) &&
-            fold.count++ == 0) {
-            fold_name_facets(&folds->input, f, -1, &fold);
-        }
-    }
-    fold.kind = fold.count > 0 ? FOLD_REVERSED : FOLD_NONE;
-    return fold;
-}
-
 void folds_take_positions(struct folds *folds, const double *u)
 {
     folds->largest = 0.0;
@@ -234,9 +211,6 @@ struct fold folds_find(struct folds *folds, const double *u, const bool *stopped
         if (fold.kind == FOLD_NONE) {
             folds_find_within(folds, &fold);
         }
-    }
-    if (fold.kind == FOLD_NONE && folds->input.slides != NULL) {
-        fold = search(folds, folds->input.facet_count, search_sliding);
     }
     return fold;
 }

@@ -49,8 +49,7 @@ struct run_frames {
 
 struct run_folds {
     struct folds folds;
-    bool *held, *slides;        /* whether the displacement is prescribed at each face of the boundary; along
-                                   its normal alone */
+    bool *held;                 /* whether the displacement is prescribed at each face of the boundary */
     double *field;              /* scratch: node_count * dim */
     int64_t *node_first;        /* the nodes at which each process evaluates it */
     bool *stopped, *in_contact; /* scratch: node_count */

@@ -21,10 +21,8 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
                               .facet_count = input->boundary.count,
                               .facet = input->boundary.node,
                               .ranks = process_ranks()};
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, false, &folds->held, error));
-    RETURN_IF_ERROR(assembly_held_faces(input, 1, true, &folds->slides, error));
+    RETURN_IF_ERROR(assembly_held_faces(input, 1, &folds->held, error));
     body.held = folds->held;
-    body.slides = folds->slides;
     RETURN_IF_ERROR(NEW_ARRAY(&folds->field, cells->node_count * cells->dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->stopped, cells->node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->in_contact, cells->node_count, error));
@@ -48,7 +46,7 @@ void run_folds_begin(struct run *run)
 void run_folds_free(struct run *run)
 {
     folds_free(&run->folds.folds);
-    FREE_ALL(run->folds.held, run->folds.slides, run->folds.field, run->folds.node_first, run->folds.stopped,
+    FREE_ALL(run->folds.held, run->folds.field, run->folds.node_first, run->folds.stopped,
              run->folds.in_contact, run->folds.flat);
     support_space_free(&run->folds.space);
 }
