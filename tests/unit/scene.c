@@ -255,7 +255,7 @@ TEST(material_keys)
     fails(HEAD BODY "prony = .45, .5\n", 9, "prony: '.45' is not a term: write g and tau in s");
     fails(HEAD BODY "prony = .1 1, .1 2, .1 3, .1 4, .1 5, .1 6, .1 7\n", 9, "prony: has more than 6 terms");
     fails(HEAD BODY "prony = .45 .5\n", 9, "prony: the scene has no time: give duration in [scene], s");
-    fails(HEAD BODY "[solver]\ntime_steps = 5\n", 10, "time_steps: not allowed: the scene has no duration");
+    fails(HEAD BODY "[solver]\ntime_steps = 5\n", 0, "time_steps: not allowed: the scene has neither duration nor friction");
     fails(HEAD "duration = nan\n" BODY, 4, "duration: 'nan' is not a finite number");
     fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11, "method: a scene with duration takes newton");
     fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4, "duration: not allowed: a dynamic scene");

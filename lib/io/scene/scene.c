@@ -6,6 +6,9 @@
 
 #include <string.h>
 
+/* Steps of a quasi-static scene: of time; without duration, with friction, of the load. */
+static const int64_t usual_time_steps = 50, usual_increments = 20;
+
 /* Append *added, zero except for its label. */
 static enum status add_item(const struct place *place, const struct scene_kind *kind, struct scene *scene,
                             void **added)
@@ -102,7 +105,40 @@ static bool has_prony(const struct scene *scene)
     return terms > 0;
 }
 
-static enum status check_whole(const struct scene *scene, struct error *error)
+/* The first contact with friction, or NULL. */
+static const struct scene_contact *first_friction(const struct scene *scene)
+{
+    for (int64_t c = 0; c < scene->contact_count; c++) {
+        if (scene->contacts[c].friction > 0.0) {
+            return &scene->contacts[c];
+        }
+    }
+    return NULL;
+}
+
+/* The state of a body with memory depends on the way there, which is taken in steps. */
+static enum status check_steps(struct scene *scene, struct error *error)
+{
+    const struct scene_contact *friction = first_friction(scene);
+    if (scene->analysis == SCENE_DYNAMIC) {
+        return STATUS_OK;
+    }
+    if (friction != NULL && scene->solver.method == SCENE_RELAXATION) {
+        return fail(error, STATUS_INPUT, "%s: friction: method = relaxation has none: leave method out",
+                    friction->label.where);
+    }
+    if (!(scene->duration > 0.0) && friction == NULL && scene->solver.time_steps > 0) {
+        return fail(error, STATUS_INPUT,
+                    "%s: [solver]: time_steps: not allowed: the scene has neither duration nor friction",
+                    scene->path);
+    }
+    if ((scene->duration > 0.0 || friction != NULL) && scene->solver.time_steps == 0) {
+        scene->solver.time_steps = scene->duration > 0.0 ? usual_time_steps : usual_increments;
+    }
+    return STATUS_OK;
+}
+
+static enum status check_whole(struct scene *scene, struct error *error)
 {
     if (scene->duration > 0.0 && !has_prony(scene) && !scene->tabulated) {
         return fail(error, STATUS_INPUT,
@@ -116,6 +152,7 @@ static enum status check_whole(const struct scene *scene, struct error *error)
         return fail(error, STATUS_INPUT, "%s: [solver]: end_time: missing: a dynamic scene needs it, in s",
                     scene->path);
     }
+    RETURN_IF_ERROR(check_steps(scene, error));
     return check_regions(scene, error);
 }
 

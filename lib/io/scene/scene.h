@@ -89,6 +89,7 @@ struct scene_contact {
     double rigid_unit;        /* m per unit of the file */
     enum scene_side side;     /* left, right in 2D; front, back in 3D */
     double stiffness;         /* Pa/m, > 0; 0: not given, chosen by the solver */
+    double friction;          /* Coulomb's coefficient, >= 0 */
                               /* Motion of the surface: it is turned, then moved. */
     bool moves;               /* false: it stays, and the curves are not used */
     double translation[3];    /* m, dim components */
@@ -158,7 +159,7 @@ struct scene_solver {
     double tolerance;        /* estimated remaining error relative to the displacement; default 1e-5 */
     int64_t max_steps;       /* 0: not given */
     int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
-    int64_t time_steps;      /* of a quasi-static scene with duration; default 50 */
+    int64_t time_steps;      /* of a quasi-static scene with duration or friction; 0: of others */
     double end_time;         /* s, dynamic */
     double time_step_margin; /* share of the estimated critical step; default .9, dynamic .8 */
     double damping;          /* 1/s, dynamic; default 0 */

@@ -7,8 +7,6 @@
 
 #define KEYS (const char *const[])
 
-static const int64_t usual_time_steps = 50;
-
 /* ---- checks of the keys of a section together, after all have been read ---- */
 
 static enum status check_scene(const struct place *place, struct scene *scene)
@@ -16,9 +14,6 @@ static enum status check_scene(const struct place *place, struct scene *scene)
     if (scene->analysis == SCENE_DYNAMIC) { /* steps must be accurate, not only stable */
         scene->solver.time_step_margin = 0.75;
         return place_forbid(place, "duration", "a dynamic scene has end_time");
-    }
-    if (scene->duration > 0.0) {
-        scene->solver.time_steps = usual_time_steps;
     }
     return STATUS_OK;
 }
@@ -163,9 +158,7 @@ static enum status check_solver(const struct place *place, struct scene *scene)
             place_forbid(place, "time_steps", "a dynamic scene chooses its own (time_step_margin)"));
         return place_forbid(place, "tolerance", "a dynamic scene ends at end_time");
     }
-    if (!(scene->duration > 0.0)) {
-        RETURN_IF_ERROR(place_forbid(place, "time_steps", "the scene has no duration"));
-    } else if (scene->solver.method != SCENE_NEWTON) {
+    if (scene->duration > 0.0 && scene->solver.method != SCENE_NEWTON) {
         return place_fail(place, "method", "a scene with duration takes newton");
     }
     if (scene->solver.method == SCENE_NEWTON) {
@@ -238,6 +231,7 @@ static const struct scene_key contact_keys[] = {
     {"unit", VALUE_UNIT, AT(scene_contact, rigid_unit)},
     {"side", VALUE_CHOICE, AT(scene_contact, side), WORDS("left", "right", "front", "back")},
     {"stiffness", VALUE_POSITIVE, AT(scene_contact, stiffness)},
+    {"friction", VALUE_NOT_NEGATIVE, AT(scene_contact, friction)},
     {"translation", VALUE_VECTOR, AT(scene_contact, translation)},
     {"angle", VALUE_NUMBER, AT(scene_contact, angle)},
     {"axis_point", VALUE_VECTOR, AT(scene_contact, axis_point)},

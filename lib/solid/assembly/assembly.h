@@ -31,6 +31,7 @@ struct contact_condition {
     int64_t rigid_count;
     bool flip;
     double stiffness; /* of the penalty, Pa/m; 0: that of a layer of cells */
+    double friction;  /* coefficient; 0: none */
     struct rigid_motion motion;
 };
 

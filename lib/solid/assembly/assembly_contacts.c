@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "solid/contact/contact_between.h"
 #include "solid/contact/contact_rest.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -128,6 +129,9 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
                                            assembly_penalty_modulus(system, penalty_factor));
     }
     contact->section = number;
+    if (condition->friction > 0.0) {
+        RETURN_IF_ERROR(friction_build(contact, condition->friction, error));
+    }
     return add_motion(condition, system, &contact->motion, error);
 }
 

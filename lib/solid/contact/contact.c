@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "solid/contact/contact_rest.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <string.h>
@@ -144,6 +145,7 @@ void contact_free(struct contact *contact)
 {
     rigid_free(&contact->surface);
     contact_between_free(contact);
+    friction_free(contact);
     FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->change, contact->behind,
              contact->checked_x, contact->checked_distance, contact->checked_normal, contact->held,
              contact->gap, contact->pressure, contact->normal, contact->view);
@@ -167,6 +169,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     };
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
+    RETURN_IF_ERROR(friction_state(contact, prefix, state, error));
     if (contact->modulus > 0.0) {
         contact_set_stiffness(contact, contact->modulus);
     }
@@ -252,17 +255,19 @@ void contact_move(struct contact *contact, const double *factor)
     contact->place = rigid_place_at(&contact->motion, factor);
 }
 
-void contact_measure(struct contact *contact, const double *u, bool all)
+static void measure_to_surface(struct contact *contact, const double *u, bool all)
 {
-    if (contact->between != NULL) {
-        contact_between_measure(contact, u, all);
-        return;
-    }
     struct chunks points = chunks_of(contact->count, POINTS_FOR_THREAD);
 #pragma omp parallel for schedule(static) num_threads(points.threads)
     for (int64_t c = 0; c < points.count; c++) {
         measure_points(contact, chunks_begin(&points, c), chunks_begin(&points, c + 1), u, all);
     }
+}
+
+void contact_measure(struct contact *contact, const double *u, bool all)
+{
+    (contact->between != NULL ? contact_between_measure : measure_to_surface)(contact, u, all);
+    friction_measure(contact);
 }
 
 void contact_accept(struct contact *contact)
@@ -279,13 +284,23 @@ void contact_accept(struct contact *contact)
             memcpy(contact->checked_normal + p * dim, view->normal, (size_t)dim * sizeof *view->normal);
         }
     }
+    friction_accept(contact);
+}
+
+bool contact_acts(const struct contact *contact, int64_t p)
+{
+    return contact->pressure[p] > 0.0 || friction_acts(contact, p);
 }
 
 void contact_point_force(const struct contact *contact, int64_t p, double force[3])
 {
-    double strength = contact->pressure[p] * contact->points->area[p];
+    double strength = contact->pressure[p] * contact->points->area[p], traction[3];
     for (int c = 0; c < contact->dim; c++) {
         force[c] = strength * contact->normal[p * contact->dim + c];
+    }
+    if (friction_acts(contact, p)) {
+        friction_traction(contact, p, traction);
+        add_scaled(contact->dim, contact->points->area[p], traction, force);
     }
 }
 
@@ -293,7 +308,7 @@ void contact_force(struct contact *contact, const double *u, double *force)
 {
     contact_measure(contact, u, false);
     for (int64_t p = 0; p < contact->count; p++) {
-        if (contact->pressure[p] > 0.0) {
+        if (contact_acts(contact, p)) {
             struct average average = average_of_boundary(contact->points, p);
             double on_point[3];
             contact_point_force(contact, p, on_point);
@@ -315,7 +330,7 @@ double contact_energy(const struct contact *contact)
         difference = contact_between_led(contact, p) ? 0.0 : difference;
         sum += contact->points->area[p] * difference / (2.0 * contact->stiffness[p]);
     }
-    return sum;
+    return sum + friction_energy(contact);
 }
 
 void contact_total(const struct contact *contact, double *total)
@@ -336,7 +351,7 @@ void contact_moment(const struct contact *contact, const double *point, double m
     memset(moment, 0, 3 * sizeof *moment);
     for (int64_t p = 0; p < contact->count; p++) {
         double arm[3] = {0.0, 0.0, 0.0}, force[3] = {0.0, 0.0, 0.0}, of_point[3];
-        if (!(contact->pressure[p] > 0.0)) {
+        if (!contact_acts(contact, p)) {
             continue;
         }
         contact_point_force(contact, p, force);
@@ -362,7 +377,7 @@ struct contact_work contact_work(const struct contact *contact, const double *fa
     struct rigid_place to = rigid_place_at(&contact->motion, factor_to);
     for (int64_t p = 0; p < contact->count; p++) {
         double before[3], after[3], force[3];
-        if (!(contact->pressure[p] > 0.0)) {
+        if (!contact_acts(contact, p)) {
             continue;
         }
         contact_point_force(contact, p, force);

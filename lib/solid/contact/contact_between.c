@@ -3,6 +3,7 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -251,8 +252,10 @@ void contact_between_react(struct contact *contact, double *force)
     memset(opposite->load, 0, (size_t)(opposite->rows.count * dim) * sizeof *opposite->load);
     for (int64_t p = 0; p < contact->count; p++) {
         const struct between_view *here = &contact->between->view[p];
-        double on_point[3];
-        contact_point_force(contact, p, on_point);
+        double strength = contact->pressure[p] * contact->points->area[p], on_point[3];
+        for (int c = 0; c < dim; c++) {
+            on_point[c] = strength * contact->normal[p * dim + c];
+        }
         for (int k = 0; k < dim && contact->pressure[p] > 0.0; k++) {
             int64_t v = opposite->surface.facet[here->facet * dim + k];
             for (int c = 0; c < dim; c++) {
@@ -260,6 +263,7 @@ void contact_between_react(struct contact *contact, double *force)
             }
         }
     }
+    friction_load(contact, opposite->load);
     for (int64_t v = 0; v < opposite->rows.count; v++) {
         struct average average = average_of_boundary(&opposite->rows, v);
         const double *load = opposite->load + v * dim;

@@ -2,6 +2,7 @@
 #include "solid/contact/contact_between.h"
 
 #include "base/vector.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,6 +46,13 @@ static double add_point(const struct contact *contact, int64_t p, double share, 
     node->stiffness += share * contact->stiffness[p];
     node->turned = node->turned || contact->view[p].turned;
     add_scaled(contact->dim, share, contact->normal + p * contact->dim, node->normal);
+    if (friction_acts(contact, p)) {
+        double traction[3];
+        friction_traction(contact, p, traction);
+        add_scaled(contact->dim, share, traction, node->friction);
+        node->sticks += friction_sticks(contact, p) ? share : 0.0;
+        node->slips += contact->friction->slips[p] ? share : 0.0;
+    }
     return within ? share : 0.0;
 }
 

@@ -119,8 +119,9 @@ static enum dynamics_outcome march(struct dynamics *d, struct error *error)
             return DYNAMICS_INVERTED;
         }
         body_accept(&d->system->body);
-        system_accept(d->system);
+        system_slide(d->system);
         double contact = energy_contact(d->system);
+        system_accept(d->system);
         if (is_check && !is_last) {
             dynamics_estimate_frequency(d, n == 0 ? first_iterations : later_iterations);
             system_measure_contacts(d->system, d->u, false);

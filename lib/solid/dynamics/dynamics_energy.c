@@ -51,7 +51,7 @@ bool dynamics_sample(struct dynamics *d, double contact, struct error *error)
                          .kinetic = energy_kinetic(d->system, d->before, d->after),
                          .internal = energy_internal(d->system, d->u),
                          .contact = contact};
-    row.dissipated = d->system->body.prony.dissipated;
+    row.dissipated = d->system->body.prony.dissipated + system_friction_work(d->system);
     d->report->force_evaluations++;
     energy_balance_complete(&d->balance, is_first, &row);
     d->report->last_drift = fabs(row.error);

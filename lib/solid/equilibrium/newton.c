@@ -163,7 +163,11 @@ static bool begin_increment(struct newton *n, double from, double change)
     double target = newton_load_to_hold(n);
     set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
+    system_predict_friction(n->system, n->preconditioner.has_rigid_mode);
     (void)newton_evaluate(n, n->u, &n->at_u);
+    if (n->slides) {
+        preconditioner_follow(&n->preconditioner, n->system);
+    }
     bool whole = newton_solve_model(n, n->last_change != 0.0 ? left : left_at_first, far * n->body_size);
     n->length = newton_longest(n, n->step, NULL);
     take_multipliers(n);
@@ -198,7 +202,7 @@ static bool take_increment(struct newton *n, double from, double change)
     n->report->loading_steps++;
     n->corrections = n->uphill = 0;
     n->above = 0.0;
-    n->judged = false;
+    n->judged = n->rests = false;
     return true;
 }
 
@@ -271,11 +275,36 @@ static void go_back(struct newton *n)
     system_accept(n->system);
 }
 
+/* The step of the model from u. Where friction does not hold the body, as its pressures are those of a step before,
+ * the step with the predicted ones is taken, as long as that finds better pressures. */
+static bool solve(struct newton *n)
+{
+    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+    if (newton_solve_model(n, left, n->radius)) {
+        return true;
+    }
+    for (int held = 1; held >= 0 && n->slides && n->preconditioner.has_rigid_mode; held--) {
+        if (held == 1) {
+            system_predict_friction(n->system, true);
+        } else {
+            system_accept(n->system);
+        }
+        newton_touch(n, n->u, &n->at_u);
+        preconditioner_follow(&n->preconditioner, n->system);
+        memset(n->step, 0, (size_t)n->size * sizeof *n->step);
+        bool whole = newton_solve_model(n, left, n->radius);
+        if (held == 1 && whole && newton_longest(n, n->step, NULL) > n->options->tolerance * n->report->move) {
+            return true;
+        }
+        newton_touch(n, n->u, &n->at_u);
+    }
+    return false;
+}
+
 /* A Newton step at this load. False where even a short one inverts cells. */
 static bool correct(struct newton *n)
 {
-    memset(n->step, 0, (size_t)n->size * sizeof *n->step);
-    bool whole = newton_solve_model(n, left, n->radius);
+    bool whole = solve(n);
     n->length = newton_longest(n, n->step, &n->report->worst_node);
     if (n->length == 0.0) {
         return true;
@@ -375,7 +404,8 @@ static bool is_found(struct newton *n, bool vain)
 static bool ends(struct newton *n, enum statics_outcome *outcome)
 {
     int64_t vain = note_progress(n);
-    bool found = n->corrections > 0 && n->load == newton_load_to_hold(n) && is_found(n, vain > most_vain);
+    bool holds = n->slides || n->load == newton_load_to_hold(n);
+    bool found = n->corrections > 0 && holds && is_found(n, vain > most_vain);
     *outcome = found ? STATICS_CONVERGED : is_away(n) ? STATICS_AWAY : STATICS_STALLED;
     return found || is_away(n) || vain > 4 * most_vain;
 }
@@ -383,14 +413,17 @@ static bool ends(struct newton *n, enum statics_outcome *outcome)
 /* An equilibrium at this load: false where the run ends, with the outcome or n->failure. */
 static bool goes_on(struct newton *n, struct error *error)
 {
-    n->failure = newton_give_frame(n, error);
+    system_slide(n->system);
+    n->rests = true;
+    n->failure = n->load == newton_load_to_hold(n) ? newton_give_frame(n, error) : STATUS_OK;
     return n->failure == STATUS_OK && n->load < 1.0;
 }
 
 /* Whether the load grows in the next step. */
 static bool loads(const struct newton *n)
 {
-    return n->load < newton_load_to_hold(n) && n->uphill == 0 && n->report->error < error_between;
+    return n->load < newton_load_to_hold(n) && n->uphill == 0 &&
+           (n->slides ? n->rests : n->report->error < error_between);
 }
 
 /* Leave a state near an equilibrium that is not stable, along the last search direction, of negative
@@ -437,6 +470,10 @@ static bool step(struct newton *n, struct error *error)
         }
         set_load(n, from, from);
         (void)newton_evaluate(n, n->u, &n->at_u);
+        if (n->slides) { /* instead of what was predicted */
+            system_accept(n->system);
+            newton_touch(n, n->u, &n->at_u);
+        }
         n->load_change = 0.5 * change;
         n->corrections++;
         return leave(n);
@@ -481,6 +518,7 @@ static enum status begin(struct newton *n, struct error *error)
     constraint_project(&n->preconditioner.constraint, system->factor, n->u);
     n->radius = fmin(n->spacing, n->longest_step);
     n->load_change = n->most_change;
+    n->rests = true;
     return measure(n, error);
 }
 
@@ -502,6 +540,7 @@ enum status newton_run(struct solid_system *system, const struct statics_options
                        .options = options,
                        .report = report,
                        .size = system->node_count * system->dim,
+                       .slides = system_has_friction(system),
                        .u = u,
                        .row_force = row_force};
     struct box box = box_of(system->dim, system->node_count, system->X);

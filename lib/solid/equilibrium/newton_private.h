@@ -41,6 +41,8 @@ struct newton {
     int64_t cost;  /* and the evaluations that making it took */
     double square; /* r . M^-1 r at the start of the last correction */
     double lowest; /* least eigenvalue of M^-1 K, from above; INFINITY: not known at this load */
+    bool slides;   /* a contact has friction: every increment of the load ends in an equilibrium */
+    bool rests;    /* at which u is, of the increment before the next one */
     bool judged;   /* that, and the stability, are of a state near u */
     double length; /* of that step at the node that moved most, m; INFINITY: it was cut short */
     double pressures_lack; /* share of the nodal pressures that the multipliers lack; see body_augment */

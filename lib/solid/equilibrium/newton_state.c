@@ -41,6 +41,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"square", STATE_NUMBERS, &n->square, 1},
         {"lowest", STATE_NUMBERS, &n->lowest, 1},
         {"judged", STATE_FLAGS, &n->judged, 1},
+        {"rests", STATE_FLAGS, &n->rests, 1},
         {"length", STATE_NUMBERS, &n->length, 1},
         {"largest_move", STATE_NUMBERS, &n->largest_move, 1},
         {"kept", STATE_NUMBERS, n->kept, n->size},

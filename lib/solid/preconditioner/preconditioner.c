@@ -99,6 +99,9 @@ enum status preconditioner_build(struct solid_system *system, bool coarse, struc
     cells = p->size * p->size;
     RETURN_IF_ERROR(NEW_ARRAY(&p->active, p->contact_node_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->normal, p->contact_node_count * p->dim, error));
+    if (system_has_friction(system)) {
+        RETURN_IF_ERROR(NEW_ARRAY(&p->sticks, p->contact_node_count, error));
+    }
     RETURN_IF_ERROR(NEW_ARRAY(&p->body, cells, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->weight, p->coarse.count * p->coarse.count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&p->stiffness_factor, cells, error));
@@ -122,7 +125,7 @@ void preconditioner_free(struct preconditioner *p)
     sparse_free(&p->conditions);
     sparse_free(&p->of_field);
     coarse_mean_free(&p->mean);
-    FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->held,
+    FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks, p->held,
              p->weight, p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
 }
@@ -200,5 +203,7 @@ enum status preconditioner_state(struct preconditioner *p, const struct state *s
         {"active", STATE_FLAGS, p->active, p->contact_node_count},
         {"normal", STATE_NUMBERS, p->normal, p->contact_node_count * p->dim},
     };
-    return state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error);
+    const struct state_value sticks = {"sticks", STATE_NUMBERS, p->sticks, p->contact_node_count};
+    RETURN_IF_ERROR(state_visit(state, "preconditioner", values, sizeof values / sizeof *values, error));
+    return p->sticks != NULL ? state_visit(state, "preconditioner", &sticks, 1, error) : STATUS_OK;
 }

@@ -5,7 +5,11 @@
 #include "base/vector.h"
 #include "solid/contact/contact_between.h"
 
+#include <math.h>
 #include <string.h>
+
+/* The share of friction that A counts in at each contact node of a body that may move as a whole. */
+static const double least_sticks = 0.01;
 
 /* The next part, from *i on, of what is opposite contact node a that has a weight; false: no more. */
 static bool next_opposite(const struct contact *contact, int64_t a, int64_t *i, int64_t *corner,
@@ -61,6 +65,18 @@ static void add_square(const struct preconditioner *p, double stiffness, const d
     }
 }
 
+/* The same for all directions across a normal. */
+static void add_across(const struct preconditioner *p, double stiffness, const double *normal,
+                       const struct coarse_mean *mean, double *matrix)
+{
+    for (int i = 0; i < p->dim; i++) { /* T^T T = T for the projection T = 1 - n (x) n */
+        double across[3] = {0.0};
+        across[i] = 1.0;
+        add_scaled(p->dim, -normal[i], normal, across);
+        add_square(p, stiffness, across, mean, matrix);
+    }
+}
+
 void preconditioner_add_contacts(struct preconditioner *p, const struct solid_system *system, double *matrix)
 {
     int64_t dim = p->dim, at = 0, corners = 0;
@@ -68,12 +84,18 @@ void preconditioner_add_contacts(struct preconditioner *p, const struct solid_sy
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *averages = contact_nodes(contact);
         for (int64_t a = 0; a < averages->count; a++, at++) {
-            if (!p->active[at]) {
+            double sticks = p->sticks != NULL ? p->sticks[at] : 0.0;
+            if (!p->active[at] && sticks == 0.0) {
                 continue;
             }
             double stiffness = contact_node(contact, a).stiffness * averages->area[a];
             take_fields(p, contact, a, corners, &p->mean);
-            add_square(p, stiffness, p->normal + at * dim, &p->mean, matrix);
+            if (p->active[at]) {
+                add_square(p, stiffness, p->normal + at * dim, &p->mean, matrix);
+            }
+            if (sticks > 0.0) {
+                add_across(p, sticks * stiffness, p->normal + at * dim, &p->mean, matrix);
+            }
         }
         corners += contact_between_corners(contact);
     }
@@ -146,6 +168,9 @@ void preconditioner_follow(struct preconditioner *p, const struct solid_system *
             struct contact_node node = contact_node(contact, a);
             p->active[at] = node.pressure > 0.0 || p->has_rigid_mode;
             memcpy(p->normal + at * contact->dim, node.normal, (size_t)contact->dim * sizeof *node.normal);
+            if (contact->friction != NULL) {
+                p->sticks[at] = fmax(node.sticks, p->has_rigid_mode ? least_sticks : 0.0);
+            }
         }
         contact_between_take(contact);
     }

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,6 +42,38 @@ void system_accept(struct solid_system *system)
     for (int64_t c = 0; c < system->contact_count; c++) {
         contact_accept(&system->contacts[c]);
     }
+}
+
+bool system_has_friction(const struct solid_system *system)
+{
+    bool any = false;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        any = any || system->contacts[c].friction != NULL;
+    }
+    return any;
+}
+
+void system_predict_friction(struct solid_system *system, bool sticks)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        friction_predict(&system->contacts[c], sticks);
+    }
+}
+
+void system_slide(struct solid_system *system)
+{
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        friction_slide(&system->contacts[c]);
+    }
+}
+
+double system_friction_work(const struct solid_system *system)
+{
+    double work = 0.0;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        work += system->contacts[c].friction != NULL ? system->contacts[c].friction->dissipated : 0.0;
+    }
+    return work;
 }
 
 void system_augment_contacts(struct solid_system *system, bool steady)

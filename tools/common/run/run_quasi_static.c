@@ -81,7 +81,7 @@ static void put_error(const struct run *run)
     run_put(run, "iteration", 1, 1, "unit=m cols=error", error);
 }
 
-/* Steps of time: as many as asked for, or the next number that is a multiple of that of the frames. */
+/* Steps: as many as asked for, or the next number that is a multiple of that of the frames. */
 static int64_t count_steps(const struct scene *scene)
 {
     int64_t frames = scene->output.frames > 0 ? scene->output.frames : 1;
@@ -108,14 +108,14 @@ void run_quasi_static(struct run *run)
 {
     const struct scene_solver *solver = &run->scene->solver;
     const struct body *body = &run->model->system.body;
-    bool in_time = run->scene->duration > 0.0;
+    bool in_time = run->scene->duration > 0.0, in_steps = solver->time_steps > 0;
     struct statics_options options = {.tolerance = solver->tolerance,
                                       .time_step_margin = solver->time_step_margin,
                                       .ramp_steps = solver->ramp_steps,
                                       .most_steps = solver->max_steps,
-                                      .frames = in_time ? count_steps(run->scene) : run->scene->output.frames,
+                                      .frames = in_steps ? count_steps(run->scene) : run->scene->output.frames,
                                       .in_time = in_time,
-                                      .frame = in_time ? end_step : run_put_equilibrium,
+                                      .frame = in_steps ? end_step : run_put_equilibrium,
                                       .progress = run_progress,
                                       .context = run,
                                       .restored = run_checkpoint_state(run)};

@@ -191,7 +191,8 @@ static void put_gaps(const struct run *run, const struct moment *moment)
 {
     const struct solid_system *system = &run->model->system;
     const struct assembly *assembly = &run->model->assembly;
-    int dim = run->scene->dim, cols = dim + 3;
+    const bool friction = system_has_friction(system);
+    int dim = run->scene->dim, cols = dim + 3 + (friction ? dim + 1 : 0);
     int64_t rows = 0, size = system->node_count * dim;
     SCRATCH double *x = run_new_values(run, size);
     assembly_nodal_field(assembly, run->u, x);
@@ -212,11 +213,21 @@ static void put_gaps(const struct run *run, const struct moment *moment)
             row[dim] = node.gap;
             row[dim + 1] = node.pressure;
             row[dim + 2] = node.pressure / boundary_stretch(nodes, &assembly->face_table, facets, a, x);
+            for (int k = 0; k < dim && friction; k++) {
+                row[dim + 3 + k] = node.friction[k];
+            }
+            if (friction) {
+                row[2 * dim + 3] = node.slips;
+            }
         }
     }
     put(run, moment, "gaps", rows, cols,
-        dim == 2 ? "unit=m,m,m,Pa,Pa cols=x,y,gap,pressure,true_pressure"
-                 : "unit=m,m,m,m,Pa,Pa cols=x,y,z,gap,pressure,true_pressure",
+        friction   ? dim == 2 ? "unit=m,m,m,Pa,Pa,Pa,Pa,1 "
+                                "cols=x,y,gap,pressure,true_pressure,friction.x,friction.y,slips"
+                              : "unit=m,m,m,m,Pa,Pa,Pa,Pa,Pa,1 "
+                                "cols=x,y,z,gap,pressure,true_pressure,friction.x,friction.y,friction.z,slips"
+        : dim == 2 ? "unit=m,m,m,Pa,Pa cols=x,y,gap,pressure,true_pressure"
+                   : "unit=m,m,m,m,Pa,Pa cols=x,y,z,gap,pressure,true_pressure",
         values);
 }
 
@@ -225,22 +236,22 @@ static void put_energy(struct run *run, const struct moment *moment)
 {
     struct solid_system *system = &run->model->system;
     bool is_plane = run->scene->dim == 2;
-    bool in_time = run->scene->duration > 0.0;
-    const char *unit = is_plane ? "J/m" : "J", *more = in_time ? "," : "";
-    int count = in_time ? 3 : 2;
+    bool in_time = run->scene->duration > 0.0, in_steps = run->scene->solver.time_steps > 0;
+    const char *unit = is_plane ? "J/m" : "J", *more = in_steps ? "," : "";
+    int count = in_steps ? 3 : 2;
     char attributes[96];
     double *values = run_new_values(run, count);
     values[0] = energy_internal(system, run->u);
     values[1] = energy_contact(system);
     bool is_frame = moment->frame != FRAME_NONE;
-    if (in_time) {
-        values[2] = system->body.prony.dissipated;
+    if (in_steps) {
+        values[2] = system->body.prony.dissipated + system_friction_work(system);
     }
     snprintf(attributes, sizeof attributes, "unit=%s%s,%s%s%s cols=%sinternal,contact%s",
              !is_frame ? ""
              : in_time ? "s,"
                        : "1,",
-             unit, unit, more, in_time ? unit : "", is_frame ? "time," : "", in_time ? ",dissipated" : "");
+             unit, unit, more, in_steps ? unit : "", is_frame ? "time," : "", in_steps ? ",dissipated" : "");
     if (is_frame) {
         run_append_row(run, "energy.frames", moment->time, values, count, attributes);
     } else {

@@ -12,10 +12,10 @@ void run_start_read(struct run *run)
     if (file == NULL) {
         return;
     }
-    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0 || scene->duration > 0.0) {
+    if (scene->analysis == SCENE_DYNAMIC || scene->output.frames > 0 || scene->solver.time_steps > 0) {
         tool_fail(run->tool, STATUS_INPUT,
-                  "--start: the run begins at the whole load: a scene in time, or that asks for frames, "
-                  "has states before");
+                  "--start: the run begins at the whole load: a scene in time, with friction, or that asks "
+                  "for frames, has states before");
     }
     side_read(run->tool, file, "u", &run->start);
     const struct nodal_field *field = &run->start.field;

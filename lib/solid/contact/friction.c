@@ -1,0 +1,291 @@
+#include "solid/contact/friction.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+#include "solid/contact/contact_between.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The yield in a prediction, by that of the last accepted step. */
+static const double predicted = 2.0;
+
+enum status friction_build(struct contact *contact, double coefficient, struct error *error)
+{
+    int64_t count = contact->count, places = contact->between != NULL ? count : 0, dim = contact->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&contact->friction, 1, error));
+    struct contact_friction *friction = contact->friction;
+    friction->coefficient = coefficient;
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->stiffness, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->yield, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->anchor, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->slips, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->slip, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->facet, places, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->place_facet, places, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->place_weight, places * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->ahead, places * dim, error));
+    memcpy(friction->stiffness, contact->stiffness, (size_t)count * sizeof *friction->stiffness);
+    for (int64_t i = 0; i < count * dim && contact->between == NULL; i++) {
+        friction->anchor[i] = contact->rest[i];
+    }
+    return STATUS_OK;
+}
+
+void friction_free(struct contact *contact)
+{
+    struct contact_friction *friction = contact->friction;
+    if (friction != NULL) {
+        FREE_ALL(friction->stiffness, friction->yield, friction->anchor, friction->facet,
+                 friction->place_facet, friction->place_weight, friction->ahead, friction->slips,
+                 friction->slip);
+    }
+    free(friction);
+    contact->friction = NULL;
+}
+
+enum status friction_state(struct contact *contact, const char *prefix, const struct state *state,
+                           struct error *error)
+{
+    struct contact_friction *friction = contact->friction;
+    int64_t count = contact->count, dim = contact->dim;
+    if (friction == NULL) {
+        return STATUS_OK;
+    }
+    const struct state_value values[] = {
+        {"yield", STATE_NUMBERS, friction->yield, count},
+        {"anchor", STATE_NUMBERS, friction->anchor, count * dim},
+        {"slips", STATE_FLAGS, friction->slips, count},
+        {"dissipated", STATE_NUMBERS, &friction->dissipated, 1},
+    };
+    const struct state_value places[] = {
+        {"facet", STATE_COUNTS, friction->facet, count},
+        {"place_facet", STATE_COUNTS, friction->place_facet, count},
+        {"place_weight", STATE_NUMBERS, friction->place_weight, count * dim},
+        {"ahead", STATE_NUMBERS, friction->ahead, count * dim},
+    };
+    RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
+    return contact->between == NULL
+               ? STATUS_OK
+               : state_visit(state, prefix, places, sizeof places / sizeof *places, error);
+}
+
+bool friction_acts(const struct contact *contact, int64_t p)
+{
+    return contact->friction != NULL && contact->friction->yield[p] > 0.0;
+}
+
+/* The share of the way to the anchor that the spring holds: beyond it, the point slips. */
+static double held_share(const struct contact_friction *friction, int dim, int64_t p)
+{
+    double pull = friction->stiffness[p] * vector_length(dim, friction->slip + p * dim);
+    return pull > friction->yield[p] ? friction->yield[p] / pull : 1.0;
+}
+
+bool friction_sticks(const struct contact *contact, int64_t p)
+{
+    return friction_acts(contact, p) && held_share(contact->friction, contact->dim, p) == 1.0;
+}
+
+void friction_traction(const struct contact *contact, int64_t p, double traction[3])
+{
+    const struct contact_friction *friction = contact->friction;
+    int dim = contact->dim;
+    memset(traction, 0, 3 * sizeof *traction);
+    if (friction_acts(contact, p)) {
+        double factor = -friction->stiffness[p] * held_share(friction, dim, p);
+        add_scaled(dim, factor, friction->slip + p * dim, traction);
+        rigid_place_turn(&contact->place, dim, traction);
+    }
+}
+
+/* place[dim] = sum of weights times corners of an opposite facet, where they are. */
+static void place_on_facet(const struct contact *contact, int64_t facet, const double *weight, double *place)
+{
+    const struct rigid_surface *surface = &contact->between->opposite.surface;
+    int dim = contact->dim;
+    memset(place, 0, (size_t)dim * sizeof *place);
+    for (int k = 0; k < dim; k++) {
+        add_scaled(dim, weight[k], surface->vertex + (int64_t)surface->facet[facet * dim + k] * dim, place);
+    }
+}
+
+/* slip[dim] = from the anchor to point p, across the normal of the last accepted step. */
+static void measure_slip(const struct contact *contact, int64_t p, double *slip)
+{
+    const struct contact_friction *friction = contact->friction;
+    int dim = contact->dim;
+    const double *normal = contact->checked_normal + p * dim, *x = contact->view[p].x;
+    if (contact->between == NULL) {
+        vector_subtract(dim, x, friction->anchor + p * dim, slip);
+    } else {
+        double place[3];
+        place_on_facet(contact, friction->place_facet[p] - 1, friction->place_weight + p * dim, place);
+        add_scaled(dim, 1.0, friction->ahead + p * dim, place);
+        vector_subtract(dim, x, place, slip);
+    }
+    add_scaled(dim, -vector_dot(dim, slip, normal), normal, slip);
+}
+
+void friction_measure(struct contact *contact)
+{
+    for (int64_t p = 0; contact->friction != NULL && p < contact->count; p++) {
+        if (friction_acts(contact, p)) {
+            measure_slip(contact, p, contact->friction->slip + p * contact->dim);
+        }
+    }
+}
+
+/* Take what is opposite to point p now; a point that meets a facet for the first time has its anchor there. */
+static void take_place(struct contact *contact, int64_t p)
+{
+    struct contact_friction *friction = contact->friction;
+    const struct between_view *here = &contact->between->view[p];
+    int dim = contact->dim;
+    double *weight = friction->place_weight + p * dim, *ahead = friction->ahead + p * dim, place[3];
+    friction->place_facet[p] = contact->view[p].searched ? here->facet + 1 : 0;
+    if (friction->place_facet[p] == 0) {
+        friction->yield[p] = 0.0;
+        return;
+    }
+    memcpy(weight, here->weight, (size_t)dim * sizeof *weight);
+    if (friction->facet[p] == 0) {
+        friction->facet[p] = friction->place_facet[p];
+        memcpy(friction->anchor + p * dim, weight, (size_t)dim * sizeof *weight);
+    }
+    place_on_facet(contact, here->facet, weight, place);
+    place_on_facet(contact, friction->facet[p] - 1, friction->anchor + p * dim, ahead);
+    add_scaled(dim, -1.0, place, ahead);
+}
+
+void friction_accept(struct contact *contact)
+{
+    struct contact_friction *friction = contact->friction;
+    for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
+        friction->yield[p] = friction->coefficient * contact->pressure[p];
+        if (contact->between != NULL) {
+            take_place(contact, p);
+        }
+    }
+}
+
+double friction_energy(const struct contact *contact)
+{
+    const struct contact_friction *friction = contact->friction;
+    double sum = 0.0;
+    for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
+        if (friction_acts(contact, p)) {
+            double way = vector_length(contact->dim, friction->slip + p * contact->dim);
+            double share = held_share(friction, contact->dim, p);
+            sum += contact->points->area[p] * friction->stiffness[p] * way * way * share * (1.0 - 0.5 * share);
+        }
+    }
+    return sum;
+}
+
+void friction_load(const struct contact *contact, double *load)
+{
+    int dim = contact->dim;
+    for (int64_t p = 0; contact->friction != NULL && p < contact->count; p++) {
+        if (friction_acts(contact, p)) {
+            const int32_t *corner =
+                contact->between->opposite.surface.facet + (contact->friction->place_facet[p] - 1) * dim;
+            double traction[3];
+            friction_traction(contact, p, traction);
+            for (int k = 0; k < dim; k++) {
+                double weight = contact->friction->place_weight[p * dim + k];
+                add_scaled(dim, -weight * contact->points->area[p], traction, load + (int64_t)corner[k] * dim);
+            }
+        }
+    }
+}
+
+/* weight[dim] = those of a place that is `way` before the one opposite to point p, in the plane of its facet. */
+static void weigh_behind(const struct contact *contact, int64_t p, const double *way, double *weight)
+{
+    const struct rigid_surface *surface = &contact->between->opposite.surface;
+    const struct between_view *here = &contact->between->view[p];
+    int dim = contact->dim;
+    double edge[2][3], square[2], both = 0.0, along[2] = {0.0}, part[2] = {0.0};
+    const int32_t *corner = surface->facet + here->facet * dim;
+    for (int k = 1; k < dim; k++) {
+        vector_subtract(dim, surface->vertex + (int64_t)corner[k] * dim,
+                        surface->vertex + (int64_t)corner[0] * dim, edge[k - 1]);
+        square[k - 1] = vector_dot(dim, edge[k - 1], edge[k - 1]);
+        along[k - 1] = vector_dot(dim, edge[k - 1], way);
+    }
+    if (dim == 2) {
+        part[0] = along[0] / square[0];
+    } else {
+        both = vector_dot(3, edge[0], edge[1]);
+        double determinant = square[0] * square[1] - both * both;
+        part[0] = (along[0] * square[1] - along[1] * both) / determinant;
+        part[1] = (along[1] * square[0] - along[0] * both) / determinant;
+    }
+    memcpy(weight, here->weight, (size_t)dim * sizeof *weight);
+    for (int k = 1; k < dim; k++) {
+        weight[k] -= part[k - 1];
+        weight[0] += part[k - 1];
+    }
+}
+
+/* Move the anchor of point p to `way` behind it; false where nothing is opposite to it. */
+static void move_anchor(struct contact *contact, int64_t p, const double *way)
+{
+    struct contact_friction *friction = contact->friction;
+    int dim = contact->dim;
+    double *anchor = friction->anchor + p * dim;
+    if (contact->between == NULL) {
+        vector_subtract(dim, contact->view[p].x, way, anchor);
+        return;
+    }
+    bool found = contact->view[p].searched && contact->between->view[p].facet >= 0;
+    friction->facet[p] = found ? contact->between->view[p].facet + 1 : 0;
+    if (found) {
+        weigh_behind(contact, p, way, anchor);
+    }
+}
+
+/* A point that does not press stays free: its anchor is where it is. */
+static void slide_point(struct contact *contact, int64_t p)
+{
+    struct contact_friction *friction = contact->friction;
+    int dim = contact->dim;
+    double *slip = friction->slip + p * dim, way = vector_length(dim, slip);
+    double share = friction_acts(contact, p) ? held_share(friction, dim, p) : 0.0;
+    friction->slips[p] = share > 0.0 && share < 1.0;
+    if (share == 1.0) {
+        return;
+    }
+    for (int c = 0; c < dim; c++) {
+        slip[c] *= share;
+    }
+    friction->dissipated +=
+        contact->points->area[p] * friction->stiffness[p] * share * (1.0 - share) * way * way;
+    move_anchor(contact, p, slip);
+}
+
+void friction_slide(struct contact *contact)
+{
+    for (int64_t p = 0; contact->friction != NULL && p < contact->count; p++) {
+        slide_point(contact, p);
+        if (contact->between != NULL) {
+            take_place(contact, p);
+        }
+    }
+}
+
+void friction_predict(struct contact *contact, bool sticks)
+{
+    struct contact_friction *friction = contact->friction;
+    for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
+        bool touches = contact->between == NULL || friction->place_facet[p] > 0;
+        bool presses = friction->yield[p] > 0.0;
+        friction->yield[p] *= predicted;
+        if (presses ? sticks
+                    : touches && fabs(contact->checked_distance[p]) <= contact_round_off(contact, p)) {
+            friction->yield[p] = INFINITY;
+        }
+    }
+}
