@@ -130,7 +130,7 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
     }
     contact->section = number;
     if (condition->friction > 0.0) {
-        RETURN_IF_ERROR(friction_build(contact, condition->friction, error));
+        RETURN_IF_ERROR(friction_build(contact, condition->friction, input->in_time, error));
     }
     return add_motion(condition, system, &contact->motion, error);
 }

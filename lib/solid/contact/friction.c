@@ -11,16 +11,18 @@
 /* The yield in a prediction, by that of the last accepted step. */
 static const double predicted = 2.0;
 
-enum status friction_build(struct contact *contact, double coefficient, struct error *error)
+enum status friction_build(struct contact *contact, double coefficient, bool follows, struct error *error)
 {
     int64_t count = contact->count, places = contact->between != NULL ? count : 0, dim = contact->dim;
     RETURN_IF_ERROR(NEW_ARRAY(&contact->friction, 1, error));
     struct contact_friction *friction = contact->friction;
     friction->coefficient = coefficient;
+    friction->follows = follows;
     RETURN_IF_ERROR(NEW_ARRAY(&friction->stiffness, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->yield, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->anchor, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->slips, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->before, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->slip, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->facet, places, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->place_facet, places, error));
@@ -39,7 +41,7 @@ void friction_free(struct contact *contact)
     if (friction != NULL) {
         FREE_ALL(friction->stiffness, friction->yield, friction->anchor, friction->facet,
                  friction->place_facet, friction->place_weight, friction->ahead, friction->slips,
-                 friction->slip);
+                 friction->before, friction->slip);
     }
     free(friction);
     contact->friction = NULL;
@@ -57,6 +59,7 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
         {"yield", STATE_NUMBERS, friction->yield, count},
         {"anchor", STATE_NUMBERS, friction->anchor, count * dim},
         {"slips", STATE_FLAGS, friction->slips, count},
+        {"before", STATE_NUMBERS, friction->before, count * dim},
         {"dissipated", STATE_NUMBERS, &friction->dissipated, 1},
     };
     const struct state_value places[] = {
@@ -111,12 +114,13 @@ static void place_on_facet(const struct contact *contact, int64_t facet, const d
     }
 }
 
-/* slip[dim] = from the anchor to point p, across the normal of the last accepted step. */
+/* slip[dim] = from the anchor to point p, across the normal. */
 static void measure_slip(const struct contact *contact, int64_t p, double *slip)
 {
     const struct contact_friction *friction = contact->friction;
     int dim = contact->dim;
-    const double *normal = contact->checked_normal + p * dim, *x = contact->view[p].x;
+    const double *x = contact->view[p].x;
+    const double *normal = friction->follows ? contact->view[p].normal : contact->checked_normal + p * dim;
     if (contact->between == NULL) {
         vector_subtract(dim, x, friction->anchor + p * dim, slip);
     } else {
@@ -130,9 +134,15 @@ static void measure_slip(const struct contact *contact, int64_t p, double *slip)
 
 void friction_measure(struct contact *contact)
 {
-    for (int64_t p = 0; contact->friction != NULL && p < contact->count; p++) {
-        if (friction_acts(contact, p)) {
-            measure_slip(contact, p, contact->friction->slip + p * contact->dim);
+    struct contact_friction *friction = contact->friction;
+    for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
+        bool placed = contact->between == NULL || friction->place_facet[p] > 0;
+        if (friction->follows) {
+            friction->yield[p] = placed ? friction->coefficient * contact->pressure[p] : 0.0;
+        }
+        bool acted = vector_length(contact->dim, friction->before + p * contact->dim) > 0.0;
+        if (placed && (acted || friction_acts(contact, p))) {
+            measure_slip(contact, p, friction->slip + p * contact->dim);
         }
     }
 }
@@ -163,7 +173,9 @@ void friction_accept(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
-        friction->yield[p] = friction->coefficient * contact->pressure[p];
+        if (!friction->follows) {
+            friction->yield[p] = friction->coefficient * contact->pressure[p];
+        }
         if (contact->between != NULL) {
             take_place(contact, p);
         }
@@ -252,18 +264,19 @@ static void slide_point(struct contact *contact, int64_t p)
 {
     struct contact_friction *friction = contact->friction;
     int dim = contact->dim;
-    double *slip = friction->slip + p * dim, way = vector_length(dim, slip);
+    double *slip = friction->slip + p * dim, *before = friction->before + p * dim, mean[3], work = 0.0;
     double share = friction_acts(contact, p) ? held_share(friction, dim, p) : 0.0;
     friction->slips[p] = share > 0.0 && share < 1.0;
-    if (share == 1.0) {
-        return;
-    }
     for (int c = 0; c < dim; c++) {
-        slip[c] *= share;
+        mean[c] = share * slip[c];
+        mean[c] = friction->follows ? 0.5 * (mean[c] + before[c]) : mean[c];
+        work += mean[c] * (1.0 - share) * slip[c];
+        slip[c] = before[c] = share * slip[c];
     }
-    friction->dissipated +=
-        contact->points->area[p] * friction->stiffness[p] * share * (1.0 - share) * way * way;
-    move_anchor(contact, p, slip);
+    friction->dissipated += contact->points->area[p] * friction->stiffness[p] * work;
+    if (share < 1.0) {
+        move_anchor(contact, p, slip);
+    }
 }
 
 void friction_slide(struct contact *contact)

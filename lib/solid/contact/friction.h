@@ -2,14 +2,15 @@
  *
  * The traction across the normal is that of a spring from the point to its anchor, a place that the opposite
  * surface carries along, up to the yield: the coefficient times the pressure. Beyond it the point slips, and the
- * anchor follows when an increment is accepted (friction_slide). Between two accepted steps normals, yields and
- * the opposite place are constant, so that the traction is minus the gradient of a convex energy. */
+ * anchor follows when an increment is accepted (friction_slide). At rest, normals, yields and the opposite place are
+ * constant between two accepted steps, so that the traction is minus the gradient of a convex energy. */
 #pragma once
 
 #include "solid/contact/contact.h"
 
 struct contact_friction {
     double coefficient;
+    bool follows; /* dynamics: yields and normals are those of each evaluation */
     double *stiffness; /* count: of the spring, Pa/m */
                        /* The state. */
     double *yield;     /* count: the largest traction, Pa: that by the pressure at the last accepted step */
@@ -19,14 +20,16 @@ struct contact_friction {
     int64_t *place_facet; /* count: opposite facet at the last accepted step, + 1; 0: none; NULL */
     double *place_weight; /* count * dim: weights of its corners, */
     double *ahead;        /* count * dim: and from that place to the anchor then, m */
-    bool *slips;          /* count: it slipped in the last increment */
+    bool *slips;          /* count: it slipped in the last increment, */
+    double *before;       /* count * dim: after which slip was this, m */
     double dissipated;    /* since the start, J (2D: J/m) */
                           /* Of the last evaluation. */
     double *slip;         /* count * dim: from the anchor across the normal, m, in the surface's frame */
 };
 
 /* Give a contact, whose stiffness is set, friction. */
-MUST_CHECK enum status friction_build(struct contact *contact, double coefficient, struct error *error);
+MUST_CHECK enum status friction_build(struct contact *contact, double coefficient, bool follows,
+                                      struct error *error);
 
 /* The functions below do nothing for a contact without friction. */
 void friction_free(struct contact *contact);
