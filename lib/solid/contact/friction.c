@@ -56,17 +56,17 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
         return STATUS_OK;
     }
     const struct state_value values[] = {
-        {"yield", STATE_NUMBERS, friction->yield, count},
-        {"anchor", STATE_NUMBERS, friction->anchor, count * dim},
-        {"slips", STATE_FLAGS, friction->slips, count},
-        {"before", STATE_NUMBERS, friction->before, count * dim},
-        {"dissipated", STATE_NUMBERS, &friction->dissipated, 1},
+        {"friction_yield", STATE_NUMBERS, friction->yield, count},
+        {"friction_anchor", STATE_NUMBERS, friction->anchor, count * dim},
+        {"friction_slips", STATE_FLAGS, friction->slips, count},
+        {"friction_before", STATE_NUMBERS, friction->before, count * dim},
+        {"friction_dissipated", STATE_NUMBERS, &friction->dissipated, 1},
     };
     const struct state_value places[] = {
-        {"facet", STATE_COUNTS, friction->facet, count},
-        {"place_facet", STATE_COUNTS, friction->place_facet, count},
-        {"place_weight", STATE_NUMBERS, friction->place_weight, count * dim},
-        {"ahead", STATE_NUMBERS, friction->ahead, count * dim},
+        {"friction_facet", STATE_COUNTS, friction->facet, count},
+        {"friction_place_facet", STATE_COUNTS, friction->place_facet, count},
+        {"friction_place_weight", STATE_NUMBERS, friction->place_weight, count * dim},
+        {"friction_ahead", STATE_NUMBERS, friction->ahead, count * dim},
     };
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     return contact->between == NULL
