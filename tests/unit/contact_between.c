@@ -5,6 +5,7 @@
 #include "body_setup.h"
 
 #include "solid/contact/contact_between.h"
+#include "solid/contact/friction.h"
 
 enum { LOW_SIDE = 0, HIGH_SIDE = 1 }; /* xmin, xmax */
 
@@ -137,6 +138,62 @@ TEST(force_is_gradient)
             }
             u[i] = at;
             NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 2e-4 * most);
+        }
+        pair_free(pair);
+    }
+}
+
+/* Friction, from an accepted state on: minus the gradient of its energy, without resultant, where points stick and
+ * slip. As they slide, the energy falls by what is dissipated, and the force stays. */
+TEST(friction)
+{
+    struct random random = {5};
+    for (int s = 0; s < 4; s++) {
+        bool any;
+        struct pair *pair = make_pair(&samples[s], false, &any);
+        struct contact *contact = &pair->contact;
+        int64_t size = 2 * pair->nodes * samples[s].dim, sticks = 0, slips = 0;
+        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force), h = 1e-9, most = 0.0, sum[3] = {0.0};
+        double *aside = zeros(size, sizeof *aside);
+        GOOD(friction_build(contact, 0.4, false, &error));
+        overlap(pair, 1e-3, 1e-4, &random, u);
+        contact_measure(contact, u, true);
+        contact_accept(contact);
+        friction_slide(contact);
+        for (int64_t i = 0; i < size; i++) {
+            u[i] += uniform(&random, -8e-4, 8e-4);
+        }
+        contact_force(contact, u, force);
+        for (int64_t p = 0; p < contact->count; p++) {
+            sticks += friction_sticks(contact, p);
+            slips += friction_acts(contact, p) && !friction_sticks(contact, p);
+        }
+        assert_true(sticks > contact->count / 10 && slips > contact->count / 10);
+        for (int64_t i = 0; i < size; i++) {
+            most = fmax(most, fabs(force[i]));
+            sum[i % samples[s].dim] += force[i];
+        }
+        for (int64_t i = 0; i < size; i += 1 + size / 150) {
+            double at = u[i], energy[2];
+            NEAR_TO(sum[i % samples[s].dim], 0.0, 1e-12 * most);
+            for (int side = 0; side < 2; side++) {
+                u[i] = at + (side ? h : -h);
+                contact_force(contact, u, aside);
+                energy[side] = contact_energy(contact);
+            }
+            u[i] = at;
+            NEAR_TO(force[i], -(energy[1] - energy[0]) / (2.0 * h), 1e-3 * most);
+        }
+        contact_measure(contact, u, true);
+        double before = contact_energy(contact), done = contact->friction->dissipated;
+        friction_slide(contact);
+        done = contact->friction->dissipated - done;
+        assert_true(done > 0.01 * before);
+        NEAR_TO(contact_energy(contact) + done, before, 1e-12 * before);
+        memset(aside, 0, (size_t)size * sizeof *aside);
+        contact_force(contact, u, aside);
+        for (int64_t i = 0; i < size; i++) {
+            NEAR_TO(aside[i], force[i], 0.02 * most);
         }
         pair_free(pair);
     }

@@ -147,7 +147,8 @@ void friction_measure(struct contact *contact)
     }
 }
 
-/* Take what is opposite to point p now; a point that meets a facet for the first time has its anchor there. */
+/* Take what is opposite to point p now; a point that meets a facet for the first time has its anchor there.
+ */
 static void take_place(struct contact *contact, int64_t p)
 {
     struct contact_friction *friction = contact->friction;
@@ -190,7 +191,8 @@ double friction_energy(const struct contact *contact)
         if (friction_acts(contact, p)) {
             double way = vector_length(contact->dim, friction->slip + p * contact->dim);
             double share = held_share(friction, contact->dim, p);
-            sum += contact->points->area[p] * friction->stiffness[p] * way * way * share * (1.0 - 0.5 * share);
+            sum +=
+                contact->points->area[p] * friction->stiffness[p] * way * way * share * (1.0 - 0.5 * share);
         }
     }
     return sum;
@@ -207,13 +209,15 @@ void friction_load(const struct contact *contact, double *load)
             friction_traction(contact, p, traction);
             for (int k = 0; k < dim; k++) {
                 double weight = contact->friction->place_weight[p * dim + k];
-                add_scaled(dim, -weight * contact->points->area[p], traction, load + (int64_t)corner[k] * dim);
+                add_scaled(dim, -weight * contact->points->area[p], traction,
+                           load + (int64_t)corner[k] * dim);
             }
         }
     }
 }
 
-/* weight[dim] = those of a place that is `way` before the one opposite to point p, in the plane of its facet. */
+/* weight[dim] = those of a place that is `way` before the one opposite to point p, in the plane of its facet.
+ */
 static void weigh_behind(const struct contact *contact, int64_t p, const double *way, double *weight)
 {
     const struct rigid_surface *surface = &contact->between->opposite.surface;

@@ -1,22 +1,24 @@
 /* Coulomb's law at the points of a contact, equation (20d) of lib/README.md.
  *
  * The traction across the normal is that of a spring from the point to its anchor, a place that the opposite
- * surface carries along, up to the yield: the coefficient times the pressure. Beyond it the point slips, and the
- * anchor follows when an increment is accepted (friction_slide). At rest, normals, yields and the opposite place are
- * constant between two accepted steps, so that the traction is minus the gradient of a convex energy. */
+ * surface carries along, up to the yield: the coefficient times the pressure. Beyond it the point slips, and
+ * the anchor follows when an increment is accepted (friction_slide). At rest, normals, yields and the
+ * opposite place are constant between two accepted steps, so that the traction is minus the gradient of a
+ * convex energy. */
 #pragma once
 
 #include "solid/contact/contact.h"
 
 struct contact_friction {
     double coefficient;
-    bool follows; /* dynamics: yields and normals are those of each evaluation */
+    bool follows;      /* dynamics: yields and normals are those of each evaluation */
     double *stiffness; /* count: of the spring, Pa/m */
                        /* The state. */
     double *yield;     /* count: the largest traction, Pa: that by the pressure at the last accepted step */
-    double *anchor;    /* count * dim: its place in the frame of a rigid surface, m, from which only the part across
-                          the normal counts; or the weights of the corners of a facet, which may be negative */
-    int64_t *facet;    /* count: opposite facet that carries the anchor, + 1; 0: none; NULL: a rigid surface */
+    double
+        *anchor; /* count * dim: its place in the frame of a rigid surface, m, from which only the part across
+                    the normal counts; or the weights of the corners of a facet, which may be negative */
+    int64_t *facet; /* count: opposite facet that carries the anchor, + 1; 0: none; NULL: a rigid surface */
     int64_t *place_facet; /* count: opposite facet at the last accepted step, + 1; 0: none; NULL */
     double *place_weight; /* count * dim: weights of its corners, */
     double *ahead;        /* count * dim: and from that place to the anchor then, m */
@@ -50,13 +52,13 @@ double friction_energy(const struct contact *contact);
 /* load[opposite vertices * dim] -= what acts on the corners opposite to points, N (2D: N/m). */
 void friction_load(const struct contact *contact, double *load);
 
-/* Accept the last evaluation as the end of an increment: points that slip take their anchors along. With `rises`
- * pressures may have grown within it in proportion to the time. */
+/* Accept the last evaluation as the end of an increment: points that slip take their anchors along. With
+ * `rises` pressures may have grown within it in proportion to the time. */
 void friction_slide(struct contact *contact);
 
-/* Until a step is accepted, points have twice their yield, and those that touch without pressing do not slip; with
- * `sticks` none that touches does: a body that only friction holds would otherwise be free while its pressures
- * grow. */
+/* Until a step is accepted, points have twice their yield, and those that touch without pressing do not slip;
+ * with `sticks` none that touches does: a body that only friction holds would otherwise be free while its
+ * pressures grow. */
 void friction_predict(struct contact *contact, bool sticks);
 
 /* The share of the spring at point p that is not at its yield: 1 or 0. */
