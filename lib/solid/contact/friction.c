@@ -23,6 +23,7 @@ enum status friction_build(struct contact *contact, double coefficient, bool fol
     RETURN_IF_ERROR(NEW_ARRAY(&friction->anchor, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->slips, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->before, count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&friction->passed, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->slip, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->facet, places, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->place_facet, places, error));
@@ -41,7 +42,8 @@ void friction_free(struct contact *contact)
     if (friction != NULL) {
         FREE_ALL(friction->stiffness, friction->yield, friction->anchor, friction->facet,
                  friction->place_facet, friction->place_weight, friction->ahead, friction->slips,
-                 friction->before, friction->slip);
+                 friction->before, friction->passed,
+                 friction->slip);
     }
     free(friction);
     contact->friction = NULL;
@@ -130,6 +132,7 @@ static void measure_slip(const struct contact *contact, int64_t p, double *slip)
         vector_subtract(dim, x, place, slip);
     }
     add_scaled(dim, -vector_dot(dim, slip, normal), normal, slip);
+    add_scaled(dim, -1.0, friction->passed + p * dim, slip);
 }
 
 void friction_measure(struct contact *contact)
@@ -173,6 +176,9 @@ static void take_place(struct contact *contact, int64_t p)
 void friction_accept(struct contact *contact)
 {
     struct contact_friction *friction = contact->friction;
+    for (int64_t i = 0; friction != NULL && i < contact->count * contact->dim; i++) {
+        friction->passed[i] = 0.0;
+    }
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
         if (!friction->follows) {
             friction->yield[p] = friction->coefficient * contact->pressure[p];
@@ -299,6 +305,9 @@ void friction_predict(struct contact *contact, bool sticks)
     for (int64_t p = 0; friction != NULL && p < contact->count; p++) {
         bool touches = contact->between == NULL || friction->place_facet[p] > 0;
         bool presses = friction->yield[p] > 0.0;
+        double passed = presses ? 1.0 - held_share(friction, contact->dim, p) : 0.0;
+        add_scaled(contact->dim, passed, friction->slip + p * contact->dim,
+                   friction->passed + p * contact->dim);
         friction->yield[p] *= predicted;
         if (presses ? sticks
                     : touches && fabs(contact->checked_distance[p]) <= contact_round_off(contact, p)) {

@@ -25,7 +25,9 @@ struct contact_friction {
     bool *slips;          /* count: it slipped in the last increment, */
     double *before;       /* count * dim: after which slip was this, m */
     double dissipated;    /* since the start, J (2D: J/m) */
-                          /* Of the last evaluation. */
+                          /* Until a step is accepted, and otherwise 0: */
+    double *passed; /* count * dim: the slip that a prediction does not take back, m */
+                    /* Of the last evaluation. */
     double *slip;         /* count * dim: from the anchor across the normal, m, in the surface's frame */
 };
 
@@ -56,7 +58,7 @@ void friction_load(const struct contact *contact, double *load);
  * `rises` pressures may have grown within it in proportion to the time. */
 void friction_slide(struct contact *contact);
 
-/* Until a step is accepted, points have twice their yield, and those that touch without pressing do not slip;
+/* Until a step is accepted, points hold where they are, up to twice their yield, and those that touch without pressing do not slip;
  * with `sticks` none that touches does: a body that only friction holds would otherwise be free while its
  * pressures grow. */
 void friction_predict(struct contact *contact, bool sticks);

@@ -46,6 +46,12 @@ static const double most_length = 0.1;
 static const int64_t most_vain = 12; /* corrections in which the error has not halved */
 static const int64_t usual_most_steps = 100000;
 
+/* Whether friction alone may hold a body, which slides if it does not. */
+static bool held_by_friction(const struct newton *n)
+{
+    return n->slides && n->preconditioner.has_rigid_mode;
+}
+
 /* How far a node may move in a step: between facets of the body so far that what is opposite a point is still
  * found. */
 static double longest_step(const struct newton *n)
@@ -163,7 +169,7 @@ static bool begin_increment(struct newton *n, double from, double change)
     double target = newton_load_to_hold(n);
     set_load(n, from, from + change > target * (1.0 - 1e-12) ? target : from + change);
     predict(n, change);
-    system_predict_friction(n->system, n->preconditioner.has_rigid_mode);
+    system_predict_friction(n->system, held_by_friction(n));
     (void)newton_evaluate(n, n->u, &n->at_u);
     if (n->slides) {
         preconditioner_follow(&n->preconditioner, n->system);
@@ -283,8 +289,9 @@ static bool solve(struct newton *n)
     if (newton_solve_model(n, left, n->radius)) {
         return true;
     }
-    for (int held = 1; held >= 0 && n->slides && n->preconditioner.has_rigid_mode; held--) {
+    for (int held = 1; held >= 0 && held_by_friction(n); held--) {
         if (held == 1) {
+            newton_touch(n, n->u, &n->at_u);
             system_predict_friction(n->system, true);
         } else {
             system_accept(n->system);
@@ -391,7 +398,8 @@ static bool is_found(struct newton *n, bool vain)
         estimate(n);
     }
     if (vain) {
-        most = fmax(most, system_has_touched(n->system) ? most_hovering : round_off(n));
+        bool hovers = system_has_touched(n->system) && !held_by_friction(n);
+        most = fmax(most, hovers ? most_hovering : round_off(n));
     }
     bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
     bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;

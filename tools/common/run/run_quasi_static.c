@@ -3,6 +3,8 @@
 #include "solid/equilibrium/newton.h"
 #include "solid/equilibrium/relaxation.h"
 
+static const char slides[] = ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
+                             "scene";
 static const char beyond_limit[] =
     "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
     "a dynamic scene, or refine there; frames show up to which load it stands";
@@ -33,6 +35,7 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_STALLED) {
         const char *remedy =
             run->folds.seen ? "" /* it is named with the fold */
+            : system_has_friction(&run->model->system) ? slides
             : run->model->system.contact_count > 0
                 ? ": a larger tolerance, a finer cloud at the contacts, or supports against rigid motion may "
                   "help"
@@ -59,7 +62,8 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,
                  "%s: step %lld%s: the body moves on, by %.3g m so far, and does not come to rest: %s",
-                 scene->path, (long long)report->steps, load, report->move, beyond_limit);
+                 scene->path, (long long)report->steps, load, report->move,
+                 system_has_friction(&run->model->system) ? slides + 2 : beyond_limit);
     }
     run_fail(run, STATUS_VERDICT,
              "%s: not converged after %lld steps%s: estimated remaining error %.2g of the displacement, "
