@@ -29,7 +29,9 @@ enum status friction_build(struct contact *contact, double coefficient, bool fol
     RETURN_IF_ERROR(NEW_ARRAY(&friction->place_facet, places, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->place_weight, places * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&friction->ahead, places * dim, error));
-    memcpy(friction->stiffness, contact->stiffness, (size_t)count * sizeof *friction->stiffness);
+    for (int64_t p = 0; p < count; p++) {
+        friction->stiffness[p] = contact->stiffness[p];
+    }
     for (int64_t i = 0; i < count * dim && contact->between == NULL; i++) {
         friction->anchor[i] = contact->rest[i];
     }
@@ -42,8 +44,7 @@ void friction_free(struct contact *contact)
     if (friction != NULL) {
         FREE_ALL(friction->stiffness, friction->yield, friction->anchor, friction->facet,
                  friction->place_facet, friction->place_weight, friction->ahead, friction->slips,
-                 friction->before, friction->passed,
-                 friction->slip);
+                 friction->before, friction->passed, friction->slip);
     }
     free(friction);
     contact->friction = NULL;

@@ -4,6 +4,7 @@
 #include "base/processor.h"
 #include "base/vector.h"
 #include "solid/body/nodal_volume.h"
+#include "solid/contact/friction.h"
 #include "solid/system/system.h"
 
 #include <math.h>
@@ -57,7 +58,18 @@ static void set_cell(const struct body *body, int64_t q, struct stiffness_cell *
 /* Of the penalties of points, as most of them do not press. */
 static const double counted = 0.3;
 
-/* The points of contacts with rigid surfaces. Those between facets of the body are left out:
+static enum status take_point(struct stiffness_rows *rows, const struct contact *contact, int64_t p,
+                              const double *direction, double stiffness, struct error *error)
+{
+    struct average average = average_of_boundary(contact->points, p);
+    RETURN_IF_ERROR(constraint_rows_add(&rows->touching, average.length, average.idx, average.phi, direction, 0.0,
+                                        0, 0, 0, error));
+    RETURN_IF_ERROR(RESIZE_ARRAY(&rows->touching_stiffness, rows->touching.count, error));
+    rows->touching_stiffness[rows->touching.count - 1] = stiffness;
+    return STATUS_OK;
+}
+
+/* The points of contacts with rigid surfaces, and with friction across their normals, too. Those between facets of the body are left out:
  * most of them never do. */
 static enum status take_contacts(struct stiffness_rows *rows, struct error *error)
 {
@@ -66,13 +78,15 @@ static enum status take_contacts(struct stiffness_rows *rows, struct error *erro
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         for (int64_t p = 0; contact->between == NULL && p < contact->count; p++) {
-            struct average average = average_of_boundary(contact->points, p);
-            RETURN_IF_ERROR(constraint_rows_add(&rows->touching, average.length, average.idx, average.phi,
-                                                contact->points->normal + p * system->dim, 0.0, 0, 0, 0,
-                                                error));
-            RETURN_IF_ERROR(RESIZE_ARRAY(&rows->touching_stiffness, rows->touching.count, error));
-            rows->touching_stiffness[rows->touching.count - 1] =
-                counted * contact->stiffness[p] * contact->points->area[p];
+            const double *normal = contact->points->normal + p * system->dim;
+            double factor = counted * contact->points->area[p];
+            RETURN_IF_ERROR(take_point(rows, contact, p, normal, factor * contact->stiffness[p], error));
+            for (int i = 0; contact->friction != NULL && i < system->dim; i++) {
+                double across[3] = {0.0}; /* T^T T = T for the projection T = 1 - n (x) n */
+                across[i] = 1.0;
+                add_scaled(system->dim, -normal[i], normal, across);
+                RETURN_IF_ERROR(take_point(rows, contact, p, across, factor * contact->friction->stiffness[p], error));
+            }
         }
     }
     return transpose_lists(&rows->touching, system->node_count, &rows->touched, error);
