@@ -143,8 +143,8 @@ TEST(force_is_gradient)
     }
 }
 
-/* Friction, from an accepted state on: minus the gradient of its energy, without resultant, where points stick and
- * slip. As they slide, the energy falls by what is dissipated, and the force stays. */
+/* Friction, from an accepted state on: minus the gradient of its energy, without resultant, where points
+ * stick and slip. As they slide, the energy falls by what is dissipated, and the force stays. */
 TEST(friction)
 {
     struct random random = {5};
@@ -153,7 +153,8 @@ TEST(friction)
         struct pair *pair = make_pair(&samples[s], false, &any);
         struct contact *contact = &pair->contact;
         int64_t size = 2 * pair->nodes * samples[s].dim, sticks = 0, slips = 0;
-        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force), h = 1e-9, most = 0.0, sum[3] = {0.0};
+        double *u = zeros(size, sizeof *u), *force = zeros(size, sizeof *force), h = 1e-9, most = 0.0,
+               sum[3] = {0.0};
         double *aside = zeros(size, sizeof *aside);
         GOOD(friction_build(contact, 0.4, false, &error));
         overlap(pair, 1e-3, 1e-4, &random, u);

@@ -1,5 +1,5 @@
-/* Contact of a boundary with a rigid surface, or with another part of the boundary (contact_between.h), finite
- * sliding, by an augmented Lagrangian: equations (19) and (20) of lib/README.md. Friction: friction.h.
+/* Contact of a boundary with a rigid surface, or with another part of the boundary (contact_between.h),
+ * finite sliding, by an augmented Lagrangian: equations (19) and (20) of lib/README.md. Friction: friction.h.
  *
  * Contact points are quadrature points of the facets, with multipliers lambda_a at the boundary nodes;
  * without nodal averages each point has a multiplier of its own, and may itself be a boundary average. With
@@ -95,7 +95,8 @@ double contact_most_depth(const struct contact *contact, int64_t p);
 /* Depths of point p below this count as zero, m. */
 double contact_round_off(const struct contact *contact, int64_t p);
 
-/* Whether a force acts on point p at the last evaluation, pressure and friction; and the force, N (2D: N/m). */
+/* Whether a force acts on point p at the last evaluation, pressure and friction; and the force, N (2D: N/m).
+ */
 bool contact_acts(const struct contact *contact, int64_t p);
 void contact_point_force(const struct contact *contact, int64_t p, double force[3]);
 
@@ -143,20 +144,20 @@ double contact_missing_work(const struct contact *contact);
  * last evaluation: means over the points, weighted by the node's hat function. */
 const struct boundary_averages *contact_nodes(const struct contact *contact);
 struct contact_node {
-    double gap;       /* m, over the points that have one; INFINITY: none has */
-    double pressure;  /* Pa */
-    double pressed;   /* weight of the points that press, 0 to 1 */
-    double stiffness; /* of the penalty, Pa/m */
-    bool turned;      /* as contact_view, for any of the points */
-    double normal[3]; /* unit; 0 where the surface was never searched for */
+    double gap;         /* m, over the points that have one; INFINITY: none has */
+    double pressure;    /* Pa */
+    double pressed;     /* weight of the points that press, 0 to 1 */
+    double stiffness;   /* of the penalty, Pa/m */
+    bool turned;        /* as contact_view, for any of the points */
+    double normal[3];   /* unit; 0 where the surface was never searched for */
     double friction[3]; /* traction on the body, Pa */
     double sticks;      /* weight of the points that friction holds, 0 to 1; */
     double slips;       /* of those that slipped in the last increment */
 };
 struct contact_node contact_node(const struct contact *contact, int64_t a);
 
-/* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), and of friction, J (2D:
- * J/m). */
+/* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), and of friction, J
+ * (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* total[dim] = total force on the body at the last evaluation, N (2D: N/m). Between facets of the body it is

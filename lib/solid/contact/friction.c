@@ -72,9 +72,17 @@ enum status friction_state(struct contact *contact, const char *prefix, const st
         {"friction_ahead", STATE_NUMBERS, friction->ahead, count * dim},
     };
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
-    return contact->between == NULL
-               ? STATUS_OK
-               : state_visit(state, prefix, places, sizeof places / sizeof *places, error);
+    if (contact->between == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(state_visit(state, prefix, places, sizeof places / sizeof *places, error));
+    for (int64_t p = 0; p < count; p++) {
+        int64_t facets = contact->between->opposite.surface.facet_count;
+        if (friction->facet[p] > facets || friction->place_facet[p] > facets) {
+            return fail(error, STATUS_INPUT, "%s.friction_facet: there is no such facet", prefix);
+        }
+    }
+    return STATUS_OK;
 }
 
 bool friction_acts(const struct contact *contact, int64_t p)

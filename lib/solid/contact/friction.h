@@ -26,8 +26,8 @@ struct contact_friction {
     double *before;       /* count * dim: after which slip was this, m */
     double dissipated;    /* since the start, J (2D: J/m) */
                           /* Until a step is accepted, and otherwise 0: */
-    double *passed; /* count * dim: the slip that a prediction does not take back, m */
-                    /* Of the last evaluation. */
+    double *passed;       /* count * dim: the slip that a prediction does not take back, m */
+                          /* Of the last evaluation. */
     double *slip;         /* count * dim: from the anchor across the normal, m, in the surface's frame */
 };
 
@@ -54,14 +54,13 @@ double friction_energy(const struct contact *contact);
 /* load[opposite vertices * dim] -= what acts on the corners opposite to points, N (2D: N/m). */
 void friction_load(const struct contact *contact, double *load);
 
-/* Accept the last evaluation as the end of an increment: points that slip take their anchors along. With
- * `rises` pressures may have grown within it in proportion to the time. */
+/* Accept the last evaluation as the end of an increment: points that slip take their anchors along. */
 void friction_slide(struct contact *contact);
 
-/* Until a step is accepted, points hold where they are, up to twice their yield, and those that touch without pressing do not slip;
- * with `sticks` none that touches does: a body that only friction holds would otherwise be free while its
- * pressures grow. */
+/* Until a step is accepted, points hold where they are, up to twice their yield, and those that touch without
+ * pressing do not slip; with `sticks` none that touches does: a body that only friction holds would otherwise
+ * be free while its pressures grow. */
 void friction_predict(struct contact *contact, bool sticks);
 
-/* The share of the spring at point p that is not at its yield: 1 or 0. */
+/* Whether friction holds point p, at the last evaluation. */
 bool friction_sticks(const struct contact *contact, int64_t p);

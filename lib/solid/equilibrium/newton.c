@@ -281,8 +281,8 @@ static void go_back(struct newton *n)
     system_accept(n->system);
 }
 
-/* The step of the model from u. Where friction does not hold the body, as its pressures are those of a step before,
- * the step with the predicted ones is taken, as long as that finds better pressures. */
+/* The step of the model from u. Where friction does not hold the body, as its pressures are those of a step
+ * before, the step with the predicted ones is taken, as long as that finds better pressures. */
 static bool solve(struct newton *n)
 {
     memset(n->step, 0, (size_t)n->size * sizeof *n->step);
@@ -300,7 +300,8 @@ static bool solve(struct newton *n)
         preconditioner_follow(&n->preconditioner, n->system);
         memset(n->step, 0, (size_t)n->size * sizeof *n->step);
         bool whole = newton_solve_model(n, left, n->radius);
-        if (held == 1 && whole && newton_longest(n, n->step, NULL) > n->options->tolerance * n->report->move) {
+        if (held == 1 && whole &&
+            newton_longest(n, n->step, NULL) > n->options->tolerance * n->report->move) {
             return true;
         }
         newton_touch(n, n->u, &n->at_u);

@@ -125,8 +125,8 @@ void preconditioner_free(struct preconditioner *p)
     sparse_free(&p->conditions);
     sparse_free(&p->of_field);
     coarse_mean_free(&p->mean);
-    FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks, p->held,
-             p->weight, p->stiffness_factor, p->amount, p->contacts);
+    FREE_ALL(p->vector, p->force, p->at_rest, p->stiffness, p->mass, p->body, p->active, p->normal, p->sticks,
+             p->held, p->weight, p->stiffness_factor, p->amount, p->contacts);
     *p = (struct preconditioner){0};
 }
 

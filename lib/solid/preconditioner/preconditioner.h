@@ -44,7 +44,7 @@ struct preconditioner {
     bool has_rigid_mode; /* the conditions leave the body free to move as a whole */
     bool *active;        /* contact nodes of all contacts: those that A counts in (NULL: none), */
     double *normal;      /* contact_node_count * dim: and the surface's normals there, */
-    double *sticks;      /* contact_node_count: and the share that friction holds; NULL: there is no friction */
+    double *sticks; /* contact_node_count: and the share that friction holds; NULL: there is no friction */
     int64_t contact_node_count;
     bool *held; /* node_count, where there are contacts: nodes that the conditions hold in all directions. P
                    takes what the coarse fields move them by, so that contacts see the fields without it */

@@ -62,15 +62,15 @@ static enum status take_point(struct stiffness_rows *rows, const struct contact 
                               const double *direction, double stiffness, struct error *error)
 {
     struct average average = average_of_boundary(contact->points, p);
-    RETURN_IF_ERROR(constraint_rows_add(&rows->touching, average.length, average.idx, average.phi, direction, 0.0,
-                                        0, 0, 0, error));
+    RETURN_IF_ERROR(constraint_rows_add(&rows->touching, average.length, average.idx, average.phi, direction,
+                                        0.0, 0, 0, 0, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&rows->touching_stiffness, rows->touching.count, error));
     rows->touching_stiffness[rows->touching.count - 1] = stiffness;
     return STATUS_OK;
 }
 
-/* The points of contacts with rigid surfaces, and with friction across their normals, too. Those between facets of the body are left out:
- * most of them never do. */
+/* The points of contacts with rigid surfaces, and with friction across their normals, too. Those between
+ * facets of the body are left out: most of them never do. */
 static enum status take_contacts(struct stiffness_rows *rows, struct error *error)
 {
     const struct solid_system *system = rows->system;
@@ -85,7 +85,8 @@ static enum status take_contacts(struct stiffness_rows *rows, struct error *erro
                 double across[3] = {0.0}; /* T^T T = T for the projection T = 1 - n (x) n */
                 across[i] = 1.0;
                 add_scaled(system->dim, -normal[i], normal, across);
-                RETURN_IF_ERROR(take_point(rows, contact, p, across, factor * contact->friction->stiffness[p], error));
+                RETURN_IF_ERROR(
+                    take_point(rows, contact, p, across, factor * contact->friction->stiffness[p], error));
             }
         }
     }

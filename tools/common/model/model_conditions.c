@@ -148,9 +148,8 @@ static enum status add_contact(struct model *model, const struct scene_contact *
 {
     struct rigid_motion *motion = &contact->motion;
     double *corners = NULL;
-    *contact = (struct contact_condition){.where = section->label.where,
-                                         .stiffness = section->stiffness,
-                                         .friction = section->friction};
+    *contact = (struct contact_condition){
+        .where = section->label.where, .stiffness = section->stiffness, .friction = section->friction};
     if (section->against.count > 0) {
         return model_between(model, section, contact, error);
     }

@@ -3,8 +3,9 @@
 #include "solid/equilibrium/newton.h"
 #include "solid/equilibrium/relaxation.h"
 
-static const char slides[] = ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
-                             "scene";
+static const char slides[] =
+    ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
+    "scene";
 static const char beyond_limit[] =
     "it may have passed a limit load, beyond which there is no equilibrium, or buckle: use a smaller load or "
     "a dynamic scene, or refine there; frames show up to which load it stands";
@@ -34,7 +35,7 @@ static void judge(struct run *run, const struct statics_report *report)
     point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
     if (report->outcome == STATICS_STALLED) {
         const char *remedy =
-            run->folds.seen ? "" /* it is named with the fold */
+            run->folds.seen                            ? "" /* it is named with the fold */
             : system_has_friction(&run->model->system) ? slides
             : run->model->system.contact_count > 0
                 ? ": a larger tolerance, a finer cloud at the contacts, or supports against rigid motion may "
@@ -117,7 +118,8 @@ void run_quasi_static(struct run *run)
                                       .time_step_margin = solver->time_step_margin,
                                       .ramp_steps = solver->ramp_steps,
                                       .most_steps = solver->max_steps,
-                                      .frames = in_steps ? count_steps(run->scene) : run->scene->output.frames,
+                                      .frames =
+                                          in_steps ? count_steps(run->scene) : run->scene->output.frames,
                                       .in_time = in_time,
                                       .frame = in_steps ? end_step : run_put_equilibrium,
                                       .progress = run_progress,
