@@ -7,9 +7,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A point nearer to a cell than this share of its size counts as inside. */
 static const double in_cell = 1e-9;
+
+/* How far into its cell a node is looked for, as a share of the way to the middle. */
+static const double into_cell = 1e-3;
 
 enum { POINTS_FOR_THREAD = 4000 }; /* see chunks_of */
 
@@ -161,13 +165,15 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
     }
 }
 
-enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
-                         const double *x, double *result, struct error *error)
+/* result[count * cols] at x[count * dim], in the cells that contain the points `within`, or are nearest to
+ * them. */
+static enum status interpolate(const struct cells *cells, int64_t cols, const double *values, int64_t count,
+                               const double *within, const double *x, double *result, struct error *error)
 {
     NEW_SCRATCH(double, spacing, cells->node_count, error);
     NEW_SCRATCH(int64_t, cell, count, error);
     RETURN_IF_ERROR(field_spacing(cells, spacing, error));
-    RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, x, cell, error));
+    RETURN_IF_ERROR(nearest_cells(cells, spacing, FIELD_MARGIN, count, within, cell, error));
     for (int64_t p = 0; p < count; p++) {
         if (cell[p] < 0) {
             char place[96];
@@ -178,4 +184,25 @@ enum status field_linear(const struct cells *cells, int64_t cols, const double *
         interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
     }
     return STATUS_OK;
+}
+
+enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
+                         const double *x, double *result, struct error *error)
+{
+    return interpolate(cells, cols, values, count, x, x, result, error);
+}
+
+enum status field_carry(const struct cells *from, int64_t cols, const double *values, const struct cells *to,
+                        double *result, struct error *error)
+{
+    int dim = to->dim;
+    NEW_SCRATCH(double, within, to->node_count * dim, error);
+    memcpy(within, to->x, (size_t)(to->node_count * dim) * sizeof *within);
+    for (int64_t i = to->count * (dim + 1) - 1; i >= 0; i--) { /* towards the middle of its first cell */
+        double middle[3];
+        int64_t node = to->node[i];
+        cell_centroid(to, i / (dim + 1), middle);
+        vector_between(dim, to->x + node * dim, middle, into_cell, within + node * dim);
+    }
+    return interpolate(from, cols, values, to->node_count, within, to->x, result, error);
 }

@@ -29,6 +29,11 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
 MUST_CHECK enum status field_linear(const struct cells *cells, int64_t cols, const double *values,
                                     int64_t count, const double *x, double *result, struct error *error);
 
+/* The same at the nodes of other cells of about the same body: result[to->node_count * cols]. Where lips or
+ * bodies touch, each node takes the value on the side of its own cells. */
+MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const double *values,
+                                   const struct cells *to, double *result, struct error *error);
+
 /* Lists and values of shape functions at points. */
 struct field_table {
     struct support_lists lists;

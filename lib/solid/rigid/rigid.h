@@ -71,6 +71,15 @@ struct rigid_contact rigid_closest(const struct rigid_surface *surface, const do
 struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, const double *x, double reach,
                                          const struct rigid_filter *filter);
 
+/* The nearest point of the surface within reach, also where x lies beyond an open rim. */
+struct rigid_foot {
+    bool rim;        /* the nearest point is on an open rim */
+    double point[3]; /* m */
+    double normal[3]; /* of the facet, edge or vertex there, unit */
+};
+bool rigid_nearest(const struct rigid_surface *surface, const double *x, double reach,
+                   struct rigid_foot *foot);
+
 /* Whether x lies behind the surface, not on the side that the normals point to. For a closed surface by its
  * winding number about x, which edges of four facets, and facets that pass through each other, do not deceive
  * (Jacobson, Kavan and Sorkine-Hornung, ACM Trans. Graph. 32 (2013), 33); else by the closest point. */

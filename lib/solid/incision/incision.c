@@ -1,0 +1,204 @@
+#include "solid/incision/incision_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A node on a lip along which the blade goes, to this cosine, is on the blade within this share of its
+ * shortest edge: the lip was made along it before. */
+static const double along_lip = 0.7, near_lip = 0.5;
+
+/* ---- values at nodes ---- */
+
+void cut_free(struct cut *cut)
+{
+    FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->lip);
+}
+
+/* The lips of a cut that goes on. */
+static enum status find_lips(struct cut *cut, int32_t front, int32_t back, struct error *error)
+{
+    const struct division *body = cut->body;
+    int dim = body->dim;
+    RETURN_IF_ERROR(NEW_ARRAY(&cut->lip, body->node_count * dim, error));
+    for (int64_t f = 0; f < body->facet_count; f++) {
+        double normal[3], way = body->group[f] == front ? 1.0 : body->group[f] == back ? -1.0 : 0.0;
+        face_area_vector(dim, body->at, body->facet + f * dim, normal);
+        for (int k = 0; k < dim; k++) {
+            add_scaled(dim, way, normal, cut->lip + (int64_t)body->facet[f * dim + k] * dim);
+        }
+    }
+    cut->old = body->node_count;
+    for (int64_t n = 0; n < cut->old; n++) {
+        vector_normalise(dim, cut->lip + n * dim);
+    }
+    return STATUS_OK;
+}
+
+static void measure_edges(struct cut *cut)
+{
+    const struct division *body = cut->body;
+    int dim = body->dim, corners = dim + 1;
+    for (int64_t n = 0; n < body->node_count; n++) {
+        cut->shortest[n] = INFINITY;
+        cut->longest[n] = 0.0;
+    }
+    for (int64_t i = 0; i < body->cell_count * corners; i++) {
+        const int32_t *node = body->node + i / corners * corners;
+        int32_t a = body->node[i];
+        for (int k = 0; k < corners; k++) {
+            double length =
+                vector_distance(dim, body->at + (int64_t)a * dim, body->at + (int64_t)node[k] * dim);
+            if (node[k] != a) {
+                cut->shortest[a] = fmin(cut->shortest[a], length);
+                cut->longest[a] = fmax(cut->longest[a], length);
+            }
+        }
+    }
+}
+
+void cut_evaluate_node(struct cut *cut, int64_t n)
+{
+    struct sheet_place place;
+    double reach = 1.5 * cut->longest[n];
+    bool near = sheet_at(cut->sheet, cut->body->at + n * cut->body->dim, reach, &place);
+    double least = CUT_ROUND_OFF * cut->longest[n];
+    int dim = cut->body->dim;
+    if (near && n < cut->old && fabs(vector_dot(dim, cut->lip + n * dim, place.normal)) > along_lip) {
+        least = near_lip * cut->shortest[n];
+    }
+    double value[2] = {near ? place.height : NAN, near ? place.extent : NAN};
+    for (int level = 0; level < 2; level++) {
+        cut->value[level][n] = fabs(value[level]) <= least ? 0.0 : value[level];
+    }
+}
+
+enum status cut_evaluate(struct cut *cut, struct error *error)
+{
+    int64_t needed = cut->body->node_count;
+    if (needed > cut->room) {
+        int64_t room = needed + needed / 4;
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[0], room, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->value[1], room, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->shortest, room, error));
+        RETURN_IF_ERROR(RESIZE_ARRAY(&cut->longest, room, error));
+        cut->room = room;
+    }
+    measure_edges(cut);
+    for (; cut->known < needed; cut->known++) {
+        cut_evaluate_node(cut, cut->known);
+    }
+    return STATUS_OK;
+}
+
+/* ---- cells and faces ---- */
+
+bool cut_is_near(const struct cut *cut, int64_t cell)
+{
+    int corners = cut->body->dim + 1;
+    for (int k = 0; k < corners; k++) {
+        if (!isnan(cut->value[LEVEL_HEIGHT][cut->body->node[cell * corners + k]])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int cut_side(const struct cut *cut, int64_t cell)
+{
+    const struct division *body = cut->body;
+    int corners = body->dim + 1, side = 0;
+    double middle[3], reach = 0.0;
+    struct sheet_place place;
+    for (int k = 0; k < corners; k++) {
+        int32_t node = body->node[cell * corners + k];
+        double height = cut->value[LEVEL_HEIGHT][node];
+        int own = height > 0 ? 1 : height < 0 ? -1 : 0;
+        if (isnan(height) || own * side < 0) {
+            return 0;
+        }
+        side = own != 0 ? own : side;
+        reach = fmax(reach, cut->longest[node]);
+    }
+    if (side != 0) {
+        return side;
+    }
+    vector_middle(body->dim, body->at, corners, body->node + cell * corners, middle);
+    return sheet_at(cut->sheet, middle, 2.0 * reach, &place) && place.height < 0 ? -1 : 1;
+}
+
+enum status cut_faces(const struct cut *cut, struct near_faces *faces, struct error *error)
+{
+    const struct division *body = cut->body;
+    int corners = body->dim + 1;
+    int64_t cells = 0;
+    near_faces_free(faces);
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        cells += cut_is_near(cut, c);
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&faces->keyed, cells * corners, error));
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        for (int k = 0; k < corners && cut_is_near(cut, c); k++) {
+            int32_t face[3];
+            simplex_face(body->dim, body->node + c * corners, k, face);
+            face_key(body->dim, face, faces->keyed[faces->count].key);
+            faces->keyed[faces->count++].item = c * corners + k;
+        }
+    }
+    keyed_sort(faces->count, faces->keyed);
+    return STATUS_OK;
+}
+
+void near_faces_free(struct near_faces *faces)
+{
+    free(faces->keyed);
+    *faces = (struct near_faces){0};
+}
+
+bool cut_parts(const struct cut *cut, const struct near_faces *faces, int64_t i)
+{
+    int corners = cut->body->dim + 1;
+    for (int k = 0; k < cut->body->dim; k++) {
+        if (cut->value[LEVEL_HEIGHT][faces->keyed[i].key[k]] != 0.0) {
+            return false;
+        }
+    }
+    return cut_side(cut, faces->keyed[i].item / corners) * cut_side(cut, faces->keyed[i + 1].item / corners) <
+           0;
+}
+
+/* ---- the cut ---- */
+
+/* Split the edges where the level is 0; the nodes there are on it. */
+static enum status divide_at(struct cut *cut, enum level level, struct near_faces *faces, struct error *error)
+{
+    FREED_BY(crossings_free) struct crossings crossings = {0};
+    struct division *body = cut->body;
+    int64_t first = body->node_count;
+    RETURN_IF_ERROR(cut_faces(cut, faces, error));
+    RETURN_IF_ERROR(cut_crossings(cut, level, faces, &crossings, error));
+    RETURN_IF_ERROR(cut_snap(cut, level, faces, &crossings, error));
+    RETURN_IF_ERROR(cut_crossings(cut, level, faces, &crossings, error));
+    NEW_SCRATCH(struct split, split, crossings.count, error);
+    for (int64_t i = 0; i < crossings.count; i++) {
+        split[i] = crossings.item[i].split;
+    }
+    RETURN_IF_ERROR(division_split(body, crossings.count, split, error));
+    RETURN_IF_ERROR(cut_evaluate(cut, error));
+    for (int64_t n = first; n < body->node_count; n++) {
+        cut->value[LEVEL_HEIGHT][n] = 0.0;
+        cut->value[level][n] = 0.0;
+    }
+    return cut_faces(cut, faces, error);
+}
+
+enum status incision_cut(struct division *body, const struct sheet *sheet, int32_t front, int32_t back,
+                         int64_t *opened, struct error *error)
+{
+    FREED_BY(cut_free) struct cut cut = {.body = body, .sheet = sheet};
+    FREED_BY(near_faces_free) struct near_faces faces = {0};
+    RETURN_IF_ERROR(find_lips(&cut, front, back, error));
+    RETURN_IF_ERROR(cut_evaluate(&cut, error));
+    RETURN_IF_ERROR(divide_at(&cut, LEVEL_HEIGHT, &faces, error));
+    RETURN_IF_ERROR(divide_at(&cut, LEVEL_EXTENT, &faces, error));
+    return cut_open(&cut, &faces, front, back, opened, error);
+}

@@ -1,0 +1,79 @@
+/* One sheet in a body; private to lib/solid/incision. */
+#pragma once
+
+#include "solid/incision/incision.h"
+
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+
+/* Heights and extents that are so small a part of the edges are 0. */
+#define CUT_ROUND_OFF 1e-9
+
+/* What edges are split at. */
+enum level { LEVEL_HEIGHT, LEVEL_EXTENT };
+
+/* Of nodes: arrays of `room`. */
+struct cut {
+    struct division *body;
+    const struct sheet *sheet;
+    int64_t room, known, old;   /* the first `known` nodes have values */
+    double *value[2];           /* by level, m; 0: on it; NAN: farther than the longest edge */
+    double *shortest, *longest; /* edges at the node, m */
+    double
+        *lip; /* old nodes * dim: mean normal of the front lip, reversed of the back, of a cut that goes on */
+};
+
+/* The faces of cells with a node that is near, by their nodes; item = cell * (dim + 1) + vertex opposite. */
+struct near_faces {
+    int64_t count;
+    struct keyed *keyed;
+};
+
+/* An edge between values of different signs. */
+struct crossing {
+    struct split split;
+    double extent; /* at the place of the split */
+    bool used;     /* found to be split */
+};
+
+struct crossings {
+    int64_t count, room;
+    struct crossing *item; /* sorted by nodes */
+};
+
+/* Measure edges and evaluate the nodes that have no values yet. */
+MUST_CHECK enum status cut_evaluate(struct cut *cut, struct error *error);
+void cut_evaluate_node(struct cut *cut, int64_t node);
+void cut_free(struct cut *cut);
+
+bool cut_is_near(const struct cut *cut, int64_t cell);
+
+/* On which side of the sheet a cell is: 1 in front, -1 behind, 0: both, or far. */
+int cut_side(const struct cut *cut, int64_t cell);
+
+MUST_CHECK enum status cut_faces(const struct cut *cut, struct near_faces *faces, struct error *error);
+void near_faces_free(struct near_faces *faces);
+
+/* Whether face i of two, with the next one, parts a cell in front from one behind, all its nodes on the
+ * sheet. */
+bool cut_parts(const struct cut *cut, const struct near_faces *faces, int64_t i);
+
+/* The edges to be split: with different signs of the height, in cells that the sheet meets; or of the extent,
+ * of faces on the sheet. */
+MUST_CHECK enum status cut_crossings(const struct cut *cut, enum level level, const struct near_faces *faces,
+                                     struct crossings *crossings, struct error *error);
+void crossings_free(struct crossings *crossings);
+
+/* Where the value on an edge is 0. False: nowhere, where it jumps. */
+bool cut_root(const struct cut *cut, enum level level, const int32_t node[2], double *share,
+              struct sheet_place *place);
+
+/* Move nodes near the zero of the level onto it. */
+MUST_CHECK enum status cut_snap(struct cut *cut, enum level level, const struct near_faces *faces,
+                                const struct crossings *crossings, struct error *error);
+
+/* Open the faces within the border. */
+MUST_CHECK enum status cut_open(struct cut *cut, const struct near_faces *faces, int32_t front, int32_t back,
+                                int64_t *opened, struct error *error);

@@ -1,0 +1,221 @@
+#include "stages/incise_private.h"
+
+#include "approx/cells/parts.h"
+#include "approx/cells/quality.h"
+#include "base/box.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+static void patient_free(struct patient *patient)
+{
+    cell_regions_free(&patient->regions);
+    named_facets_free(&patient->facets);
+    named_sets_free(&patient->sets);
+    division_free(&patient->body);
+}
+
+/* ---- groups ---- */
+
+bool incise_is_name(const char *text, const char *name, const char *ending)
+{
+    size_t length = strlen(name);
+    return strncmp(text, name, length) == 0 && strcmp(text + length, ending) == 0;
+}
+
+/* The number of the group NAME|ENDING, which may be new. */
+static int32_t find_group(struct patient *patient, const char *ending)
+{
+    const struct names *names = &patient->facets.names;
+    for (int64_t g = 0; g < names->count; g++) {
+        if (incise_is_name(names->name[g], patient->options->name, ending)) {
+            return (int32_t)g;
+        }
+    }
+    patient->added[patient->groups - names->count] = ending;
+    return (int32_t)patient->groups++;
+}
+
+static enum status read_body(const struct stream *stream, struct patient *patient, struct error *error)
+{
+    const struct incise_options *options = patient->options;
+    struct cells *cells = &patient->cells;
+    RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, cells, &patient->facets, error));
+    if (stream_find(stream, "cells.region") != NULL) {
+        RETURN_IF_ERROR(stream_regions(stream, &patient->regions, error));
+    }
+    if (stream_find(stream, "sets.ptr") != NULL) {
+        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &patient->sets, error));
+    }
+    RETURN_IF_ERROR(division_begin(cells, options->at, patient->regions.of_cell, patient->facets.count,
+                                   patient->facets.facet, patient->facets.group, &patient->body, error));
+    for (int64_t s = 0; s < patient->sets.names.count; s++) {
+        const struct neighbours *lists = &patient->sets.lists;
+        for (int64_t i = lists->ptr[s]; i < lists->ptr[s + 1]; i++) {
+            patient->body.sets[lists->idx[i]] |= (uint64_t)1 << s % 64;
+        }
+    }
+    patient->groups = patient->facets.names.count;
+    patient->front = options->blade != NULL ? find_group(patient, "|front") : -1;
+    patient->back = options->blade != NULL ? find_group(patient, "|back") : -1;
+    patient->wall = options->region != NULL ? find_group(patient, "|wall") : -1;
+    return STATUS_OK;
+}
+
+/* ---- the cut ---- */
+
+/* A box in the message of an error. */
+static const char *box_text(const struct box *box, char text[128])
+{
+    text[0] = '\0';
+    for (int end = 0; end < 2; end++) {
+        for (int a = 0; a < box->dim; a++) {
+            text_append(text, 128, "%s%.4g",
+                        a > 0     ? " "
+                        : end > 0 ? " to "
+                                  : "",
+                        end > 0 ? box->high[a] : box->low[a]);
+        }
+    }
+    text_append(text, 128, " m");
+    return text;
+}
+
+static enum status fail_outside(const struct patient *patient, struct error *error)
+{
+    const struct blade *blade = patient->options->blade;
+    int dim = patient->cells.dim;
+    struct box of_blade = box_of(dim, 0, NULL),
+               own = box_of(dim, patient->cells.node_count, patient->body.at);
+    char text[2][128];
+    for (int64_t s = 0; s < blade->count; s++) {
+        box_add(&of_blade, blade->sheet[s].surface.vertex_count, blade->sheet[s].surface.vertex);
+    }
+    return fail(error, STATUS_INPUT, "%s: its box is %s, that of the body %s: is the unit right?",
+                box_meets(&of_blade, &own)
+                    ? "opens nothing: it lies within a cell, along the surface, or outside of the body"
+                    : "is outside of the body",
+                box_text(&of_blade, text[0]), box_text(&own, text[1]));
+}
+
+static enum status cut_along_blade(struct patient *patient, struct error *error)
+{
+    const struct blade *blade = patient->options->blade;
+    struct incise_report *report = patient->report;
+    struct division *body = &patient->body;
+    if (blade != NULL && patient->options->excise && !blade_is_closed(blade)) {
+        return fail(error, STATUS_INPUT, "is open: what lies behind it has no end");
+    }
+    for (int64_t s = 0; blade != NULL && s < blade->count; s++) {
+        int64_t opened = 0;
+        RETURN_IF_ERROR(incision_cut(body, &blade->sheet[s], patient->front, patient->back, &opened, error));
+        report->opened += opened;
+        report->unopened += opened == 0;
+    }
+    for (int64_t n = 0; n < body->node_count; n++) {
+        bool old = n < patient->cells.node_count,
+             copy = !old && body->parent[2 * n] == body->parent[2 * n + 1];
+        report->moved += old && vector_distance2(body->dim, body->x + n * body->dim,
+                                                 patient->cells.x + n * body->dim) > 0.0;
+        report->doubled += copy;
+        report->split += !old && !copy;
+    }
+    return blade != NULL && report->opened == 0 ? fail_outside(patient, error) : STATUS_OK;
+}
+
+/* ---- pieces ---- */
+
+/* Of a connected piece. */
+struct piece {
+    double volume;
+    bool front, back; /* has facets of that lip */
+    bool taken_out;
+};
+
+static enum status list_pieces(const struct patient *patient, int32_t *part, struct piece **piece,
+                               int32_t *count, struct error *error)
+{
+    const struct division *body = &patient->body;
+    struct cells cells = division_cells(body);
+    FREED_BY(faces_free) struct faces boundary = {0};
+    NEW_SCRATCH(int64_t, face, body->facet_count, error);
+    RETURN_IF_ERROR(cells_parts(&cells, part, count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(piece, *count, error));
+    RETURN_IF_ERROR(faces_build(&cells, true, &boundary, error));
+    RETURN_IF_ERROR(faces_find(&boundary, body->facet_count, body->facet, face, error));
+    for (int64_t c = 0; c < cells.count; c++) {
+        (*piece)[part[c]].volume += cell_volume(&cells, c);
+    }
+    for (int64_t f = 0; f < body->facet_count; f++) {
+        if (face[f] >= 0 && body->group[f] == patient->front) {
+            (*piece)[part[boundary.cell[2 * face[f]]]].front = true;
+        } else if (face[f] >= 0 && body->group[f] == patient->back) {
+            (*piece)[part[boundary.cell[2 * face[f]]]].back = true;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Decide which pieces are taken out. */
+static enum status judge_pieces(const struct patient *patient, int32_t count, struct piece *piece,
+                                struct error *error)
+{
+    const struct incise_options *options = patient->options;
+    struct incise_report *report = patient->report;
+    report->smallest = INFINITY;
+    for (int32_t p = 0; p < count; p++) {
+        report->volume += piece[p].volume;
+    }
+    for (int32_t p = 0; p < count; p++) {
+        if (!piece[p].front && !piece[p].back) {
+            continue;
+        }
+        bool excised = options->excise && piece[p].back && !piece[p].front;
+        piece[p].taken_out = excised || piece[p].volume < options->least * report->volume;
+        report->pieces++;
+        report->taken_out += piece[p].taken_out;
+        report->taken += piece[p].taken_out ? piece[p].volume : 0.0;
+        report->smallest = piece[p].taken_out ? report->smallest : fmin(report->smallest, piece[p].volume);
+    }
+    return options->excise && report->taken_out == 0
+               ? fail(error, STATUS_INPUT, "parts nothing behind it from the body")
+               : STATUS_OK;
+}
+
+/* kept[cells]: all but pieces to be taken out, and the region. */
+static enum status choose_cells(struct patient *patient, bool *kept, struct error *error)
+{
+    const struct division *body = &patient->body;
+    const char *name = patient->options->region;
+    SCRATCH struct piece *piece = NULL;
+    int32_t count = 0;
+    int64_t left = 0, region = name != NULL ? names_find(&patient->regions.names, name) : -1;
+    NEW_SCRATCH(int32_t, part, body->cell_count, error);
+    if (name != NULL && region < 0) {
+        return fail(error, STATUS_INPUT, "no region '%s'; there are: %s", name,
+                    patient->regions.names.count > 0 ? patient->regions.names.list : "none");
+    }
+    RETURN_IF_ERROR(list_pieces(patient, part, &piece, &count, error));
+    RETURN_IF_ERROR(judge_pieces(patient, count, piece, error));
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        kept[c] =
+            !piece[part[c]].taken_out && (region < 0 || patient->regions.of_cell[body->of_cell[c]] != region);
+        left += kept[c];
+    }
+    return left > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "nothing is left of the body");
+}
+
+enum status stage_incise(struct stream *stream, const struct incise_options *options,
+                         struct incise_report *report, struct error *error)
+{
+    FREED_BY(patient_free) struct patient patient = {.options = options, .report = report};
+    *report = (struct incise_report){0};
+    RETURN_IF_ERROR(read_body(stream, &patient, error));
+    RETURN_IF_ERROR(cut_along_blade(&patient, error));
+    NEW_SCRATCH(bool, kept, patient.body.cell_count, error);
+    RETURN_IF_ERROR(choose_cells(&patient, kept, error));
+    return patient_put(&patient, kept, stream, error);
+}

@@ -1,0 +1,25 @@
+/* The steps of stage_incise. */
+#pragma once
+
+#include "stages/incise.h"
+
+/* The body of a stream. */
+struct patient {
+    const struct incise_options *options;
+    struct cells cells;
+    struct cell_regions regions; /* none: no names */
+    struct named_facets facets;
+    struct named_sets sets;
+    struct division body;
+    int32_t front, back, wall; /* groups of facets, -1: none */
+    int64_t groups;            /* those of the stream and new ones */
+    const char *added[3];      /* the endings of the new ones */
+    struct incise_report *report;
+};
+
+/* Whether a text is the name of a group NAME|ENDING. */
+bool incise_is_name(const char *text, const char *name, const char *ending);
+
+/* Put the cells that are kept[body.cell_count], with their groups, into the stream, and report on them. */
+MUST_CHECK enum status patient_put(struct patient *patient, const bool *kept, struct stream *stream,
+                                   struct error *error);

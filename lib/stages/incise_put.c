@@ -1,0 +1,216 @@
+/* The sections of a body that has been cut. */
+#include "stages/incise_private.h"
+
+#include "approx/cells/quality.h"
+#include "base/memory.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* *text = "names=A,B,NAME|front", to be freed: of names but that number `without`, and NAME with the endings.
+ */
+static enum status make_names(const struct names *names, int64_t without, const char *name, int64_t count,
+                              const char *const endings[], char **text, struct error *error)
+{
+    size_t size = sizeof "names=" + (names->list != NULL ? strlen(names->list) : 0) +
+                  (size_t)count * (strlen(name) + sizeof ",|front");
+    RETURN_IF_ERROR(NEW_ARRAY(text, (int64_t)size, error));
+    char *at = stpcpy(*text, "names=");
+    for (int64_t i = 0; i < names->count; i++) {
+        at = i != without ? stpcpy(stpcpy(at, at[-1] == '=' ? "" : ","), names->name[i]) : at;
+    }
+    for (int64_t i = 0; i < count; i++) {
+        at = stpcpy(stpcpy(stpcpy(at, at[-1] == '=' ? "" : ","), name), endings[i]);
+    }
+    return STATUS_OK;
+}
+
+/* Put an array of the body, which the stream takes, with the attributes that the section has. */
+static enum status put(struct stream *stream, const char *name, enum element_type type, int64_t rows,
+                       int64_t cols, void *array, struct error *error)
+{
+    const struct section *before = stream_find(stream, name);
+    SCRATCH char *attributes = strdup(before != NULL ? before->attributes : "");
+    void *data = array_take(array);
+    if (attributes == NULL) {
+        free(data);
+        return fail_memory(error, name);
+    }
+    return stream_put(stream, name, type, rows, cols, attributes, data, true, error);
+}
+
+/* ---- node sets ---- */
+
+/* edge[nodes]: the nodes of both lips, which meet there. */
+static enum status mark_edge(const struct patient *patient, bool *edge, struct error *error)
+{
+    const struct division *body = &patient->body;
+    NEW_SCRATCH(bool, front, body->node_count, error);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t i = 0; i < body->facet_count * body->dim; i++) {
+            int32_t group = body->group[i / body->dim], node = body->facet[i];
+            front[node] = front[node] || group == patient->front;
+            edge[node] = pass == 1 && (edge[node] || (front[node] && group == patient->back));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* in[nodes]: a node on an edge is in a set if both ends are, a copy if its original is. */
+static void mark_members(const struct patient *patient, int64_t set, bool *in)
+{
+    const struct division *body = &patient->body;
+    const struct neighbours *lists = &patient->sets.lists;
+    memset(in, false, (size_t)body->node_count * sizeof *in);
+    for (int64_t i = lists->ptr[set]; i < lists->ptr[set + 1]; i++) {
+        in[lists->idx[i]] = true;
+    }
+    for (int64_t n = patient->cells.node_count; n < body->node_count; n++) {
+        in[n] = in[body->parent[2 * n]] && in[body->parent[2 * n + 1]];
+    }
+}
+
+/* Node sets in the numbers kept_as[]; `edge` last, or in place of the set that has its name. */
+static enum status put_sets(const struct patient *patient, const bool *edge, const int32_t *kept_as,
+                            int64_t node_count, struct stream *stream, struct error *error)
+{
+    static const char *const endings[] = {"|edge"};
+    const struct names *names = &patient->sets.names;
+    int64_t own = -1, room = 0, count = 0, lists = 0;
+    SCRATCH int64_t *ptr = NULL;
+    SCRATCH int32_t *idx = NULL;
+    SCRATCH char *text = NULL;
+    bool any = patient->report->edge > 0;
+    for (int64_t s = 0; s < names->count && patient->options->blade != NULL; s++) {
+        own = incise_is_name(names->name[s], patient->options->name, endings[0]) ? s : own;
+    }
+    NEW_SCRATCH(bool, in, node_count, error);
+    RETURN_IF_ERROR(NEW_ARRAY(&ptr, names->count + 2, error));
+    for (int64_t s = 0; s < names->count + any; s++) {
+        if (s == own) {
+            continue;
+        }
+        if (s < names->count) {
+            mark_members(patient, s, in);
+        }
+        for (int64_t n = 0; n < node_count; n++) {
+            if (kept_as[n] >= 0 && (s < names->count ? in[n] : edge[n])) {
+                RETURN_IF_ERROR(GROW_ARRAY(&idx, count + 1, &room, error));
+                idx[count++] = kept_as[n];
+            }
+        }
+        ptr[++lists] = count;
+    }
+    if (lists == 0) {
+        stream_remove(stream, "sets.ptr");
+        stream_remove(stream, "sets.idx");
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&idx, count > 0 ? count : 1, error));
+    RETURN_IF_ERROR(make_names(names, own, patient->options->name, any, endings, &text, error));
+    RETURN_IF_ERROR(
+        stream_put(stream, "sets.ptr", TYPE_I8, lists + 1, 1, text, array_take(&ptr), true, error));
+    return stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error);
+}
+
+/* ---- cells and facets ---- */
+
+static enum status put_regions(const struct patient *patient, struct stream *stream, struct error *error)
+{
+    const struct division *body = &patient->body;
+    const struct names *names = &patient->regions.names;
+    const char *without = patient->options->region;
+    int64_t region = without != NULL ? names_find(names, without) : -1;
+    SCRATCH char *text = NULL;
+    if (patient->regions.of_cell == NULL) {
+        return STATUS_OK;
+    }
+    NEW_SCRATCH(int32_t, of_cell, body->cell_count, error);
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        int32_t own = patient->regions.of_cell[body->of_cell[c]];
+        of_cell[c] = own - (region >= 0 && own > region);
+    }
+    RETURN_IF_ERROR(make_names(names, region, "", 0, NULL, &text, error));
+    return stream_put(stream, "cells.region", TYPE_I4, body->cell_count, 1, text, array_take(&of_cell), true,
+                      error);
+}
+
+static enum status put_facets(struct patient *patient, struct stream *stream, struct error *error)
+{
+    struct division *body = &patient->body;
+    const struct names *names = &patient->facets.names;
+    SCRATCH char *text = NULL;
+    if (body->facet_count == 0) {
+        stream_remove(stream, "facets");
+        stream_remove(stream, "facets.set");
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(make_names(names, -1, patient->options->name, patient->groups - names->count,
+                               patient->added, &text, error));
+    RETURN_IF_ERROR(put(stream, "facets", TYPE_I4, body->facet_count, body->dim, &body->facet, error));
+    return stream_put(stream, "facets.set", TYPE_I4, body->facet_count, 1, text, array_take(&body->group),
+                      true, error);
+}
+
+/* A region that bordered on no other leaves no wall. */
+static void drop_empty_wall(struct patient *patient)
+{
+    bool any = false;
+    for (int64_t f = 0; f < patient->body.facet_count; f++) {
+        any = any || patient->body.group[f] == patient->wall;
+    }
+    patient->groups -= !any && patient->wall >= patient->facets.names.count;
+}
+
+static void report_result(struct patient *patient)
+{
+    const struct division *body = &patient->body;
+    struct cells cells = division_cells(body);
+    struct incise_report *report = patient->report;
+    report->poorest = INFINITY;
+    for (int64_t f = 0; f < body->facet_count; f++) {
+        double normal[3];
+        face_area_vector(body->dim, body->x, body->facet + f * body->dim, normal);
+        report->lips += body->group[f] == patient->front ? vector_length(body->dim, normal) : 0.0;
+    }
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        report->poorest = fmin(report->poorest, cell_quality(&cells, c));
+    }
+}
+
+/* Remove what later stages have made, of frames as well. */
+static void remove_later(struct stream *stream)
+{
+    sections_remove(stream, MADE_WITH_POINTS, MADE_WITH_RESULTS);
+    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
+        const struct section_kind *kind = section_kind_of(stream->sections[i].name);
+        if (kind != NULL && kind->stage > MADE_WITH_CLOUD) {
+            stream_remove(stream, stream->sections[i].name);
+        }
+    }
+}
+
+enum status patient_put(struct patient *patient, const bool *kept, struct stream *stream, struct error *error)
+{
+    struct division *body = &patient->body;
+    int64_t nodes = body->node_count;
+    NEW_SCRATCH(bool, edge, nodes, error);
+    NEW_SCRATCH(int32_t, kept_as, nodes, error);
+    RETURN_IF_ERROR(mark_edge(patient, edge, error));
+    RETURN_IF_ERROR(division_take_out(body, kept, patient->wall, kept_as, error));
+    drop_empty_wall(patient);
+    report_result(patient);
+    for (int64_t n = 0; n < nodes; n++) {
+        patient->report->edge += edge[n] && kept_as[n] >= 0;
+    }
+    /* The old cells may be views of what is replaced, so what is made of them comes first. */
+    RETURN_IF_ERROR(put_sets(patient, edge, kept_as, nodes, stream, error));
+    RETURN_IF_ERROR(put_regions(patient, stream, error));
+    RETURN_IF_ERROR(put_facets(patient, stream, error));
+    RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
+    RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
+    remove_later(stream);
+    return STATUS_OK;
+}

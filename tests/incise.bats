@@ -1,0 +1,114 @@
+# incise: bodies cut along surfaces in 2D and 3D, pieces and regions taken out, and what is refused.
+
+load common.bash
+
+setup() { enter_alone; }
+
+# stl CORNER... > FILE: triangles, the nine numbers of each in turn
+stl() {
+    printf '%s ' "$@" | awk '{ print "solid blade"; for (i = 0; i < NF; i += 9) {
+        print "facet normal 0 0 0 outer loop"
+        for (k = 1; k <= 9; k += 3) print "vertex", $(i + k), $(i + k + 1), $(i + k + 2)
+        print "endloop endfacet" } print "endsolid blade" }'
+}
+
+# panel X Y Z UX UY UZ VX VY VZ: the parallelogram at a point, along two directions; its front is where u x v points to
+panel() {
+    awk -v n="$*" 'BEGIN { split(n, p, " "); for (i = 1; i <= 3; i++) { a[i] = p[i]; b[i] = a[i] + p[3 + i]; d[i] = a[i] + p[6 + i]; c[i] = b[i] + p[6 + i] }
+        print a[1], a[2], a[3], b[1], b[2], b[3], c[1], c[2], c[3], a[1], a[2], a[3], c[1], c[2], c[3], d[1], d[2], d[3] }'
+}
+
+# A body of .1 x .06 x .05 m in two regions, and its nodes in a set.
+body() {
+    cloud -d 3 -k jittered -n 13,9,8 --box 0,0.1,0,0.06,0,0.05 --jitter 0.14 | tag -r 'lump=box:0.04,0.02,0.02,0.07,0.04,0.05' -n 'near=box:0,0,0,0.05,0.06,0.05'
+}
+
+# size_of NAME FILE: the area of a group of facets, or volume of a region, as tag tells it
+size_of() {
+    tag -v "$2" 2>&1 > /dev/null | sed -nE "s/^tag: (facets|region) ${1//|/[|]}: [^,]*, [a-z]+ ([^ ]+) m.*/\2/p"
+}
+
+@test "a cut ends inside: two lips of its area on it, an edge around it; nothing lost of the body, its regions and groups" {
+    body > body.mts
+    stl "$(panel .03 .01 .012 .04 0 .004 0 .035 .02)" > blade.stl
+    incise -v -s blade.stl -n knife -o cut.mts body.mts 2> said
+    [[ "$(cat said)" == "incise: knife: lips of "*"pieces: 1, "* ]]
+    mts check cut.mts
+    # .04 x .035 along: |u x v| = .0016148 m2; its corners are cut off within a cell
+    for lip in front back; do
+        awk -v a="$(size_of "knife|$lip" cut.mts)" 'BEGIN { exit !(a > .97 * .0016148 && a < 1.01 * .0016148) }'
+    done
+    for group in body lump xmin xmax ymin ymax zmin zmax; do
+        awk -v a="$(size_of $group body.mts)" -v b="$(size_of $group cut.mts)" 'BEGIN { exit !(a > 0 && a / b - 1 < 1e-3 && 1 - a / b < 1e-3) }'
+    done
+    # no node of a lip is off the plane by a tenth of a spacing; (-.14, -.8, 1.4) is its normal
+    mts text cut.mts > cut.txt
+    rows facets cut.txt > facets
+    paste <(rows facets.set cut.txt) facets | awk -v front=6 '$1 >= front { print $2; print $3; print $4 }' | sort -nu > lips
+    rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = (-.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012)) / 1.6185; if (d * d > 1e-6) { print; exit 1 } n++ } END { exit !(n > 60) }' lips -
+    # most lie on it exactly
+    [ "$(rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = -.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012); n++; on += d * d < 1e-20 } END { print (on > .8 * n) }' lips -)" = 1 ]
+    # the same input, the same bytes, with any number of threads
+    OMP_NUM_THREADS=3 incise -s blade.stl -n knife -v -o again.mts body.mts 2> again
+    cmp said again
+    diff <(bare cut.txt) <(mts text again.mts | bare)
+    refused 2 "opens nothing" incise -s blade.stl -n knife cut.mts
+    # set members: copies are members, new nodes where both ends are
+    tag -v cut.mts 2>&1 > /dev/null | grep -q 'nodes near: .* 0 0 0 to 0.05 '
+}
+
+@test "a body cut through is its two parts, each computed alone" {
+    body | tag -r 'body=all' --replace > body.mts 2> note
+    stl "$(panel .03 -.01 -.01 .02 0 .08 0 .09 0)" > blade.stl
+    incise -s blade.stl body.mts | tag -r other=body:2 > cut.mts
+    mts check cut.mts
+    {
+        pressed_cube zmin zmax .004
+        printf '[material other]\nregion = other\nE = 3000\nnu = 0.45\nrho = 1000\n'
+    } > whole.scene
+    incise -r other -o one.mts cut.mts
+    incise -r body -o two.mts cut.mts
+    sed '/material other/,$d' whole.scene > one.scene
+    awk '/^\[material body\]/ { off = 1; next } /^\[/ { off = 0 } !off' whole.scene > two.scene
+    for part in cut:whole one:one two:two; do
+        mtled -q "${part#*:}.scene" "${part%:*}.mts" 2> note | mts text > "${part%:*}.dat"
+    done
+    rows cells.region <(mts text cut.mts) > region
+    paste region <(rows cells <(mts text cut.mts)) | awk '{ for (i = 2; i <= 5; i++) of[$i] = $1 } END { for (n = 0; n in of; n++) print of[n] }' > of
+    for part in 0:one 1:two; do
+        paste of <(rows u cut.dat) | awk -v part="${part%:*}" '$1 == part { print $2, $3, $4 }' |
+            paste - <(rows u "${part#*:}.dat") | awk '{ for (i = 1; i <= 3; i++) { d = $i - $(i + 3); if (d * d > 1e-14) exit 1 } n++ } END { exit !(NF == 6 && n > 200) }'
+    done
+}
+
+@test "a slit in plane strain opens by 4 (1 - nu^2) sigma a / E in its middle, within 2 %" {
+    # a = 10 mm in 80 x 80 mm, h = 1 mm about the slit; on the rim the displacements of the infinite plate (Westergaard)
+    cat > slit.geo << 'END'
+SetFactory("OpenCASCADE");
+Rectangle(1) = {-40, -40, 0, 80, 80};
+Physical Surface("body") = {1};
+Physical Curve("rim") = {1, 2, 3, 4};
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MeshSizeFromPoints = 0;
+Field[1] = MathEval;
+Field[1].F = "1 + 0.0625 * (Sqrt(x * x + y * y) - 13 + Fabs(Sqrt(x * x + y * y) - 13))";
+Background Field = 1;
+END
+    gmsh -2 -v 1 slit.geo -o slit.msh
+    awk 'function put(x, y,  r, t, zr, zi, m, e) { # w = sqrt(z^2 - a^2) on the side of z; 2 G u = (k - 1) / 2 Re s w - y Im Z, 2 G v = (k + 1) / 2 Im s w - y Re Z
+            zr = x * x - y * y - 100; zi = 2 * x * y; m = sqrt(sqrt(zr * zr + zi * zi)); t = atan2(zi, zr) / 2
+            r = m * cos(t); e = m * sin(t); if (r * x + e * y < 0) { r = -r; e = -e }
+            m = r * r + e * e; zr = (x * r + y * e) / m; zi = (y * r - x * e) / m
+            print x, y, s * (.4 * r - y * zi) / (2 * G), s * (1.4 * e - y * zr) / (2 * G) }
+        BEGIN { OFMT = "%.17g"; OFS = "\t"; s = .3; G = 3000 / 2.6
+            for (i = -200; i <= 200; i++) { put(i / 5, -40); put(i / 5, 40); if (i * i < 40000) { put(-40, i / 5); put(40, i / 5) } } }' > rim.tsv
+    { block quasi-static | sed 's/nu = .*/nu = 0.3/'; printf '[displacement rim]\nfacets = rim\ntable = rim.tsv\nunit = mm\n[solver]\ntolerance = 1e-5\n'; } > slit.scene
+    printf '%s\n' '-10 0' '10 0' > slit.txt
+    nodes -u mm slit.msh | incise -s slit.txt -u mm > slit.mts
+    [ "$(mts list slit.mts | awk '$1 == "sets.idx" { print $3 }')" = 2 ]
+    mtled -q slit.scene slit.mts 2> note > slit.dat
+    rows facets.set <(mts text slit.mts) > set
+    paste set <(rows facets <(mts text slit.mts)) | awk '$1 > 0 { print $2, $1; print $3, $1 }' | sort -un > lips
+    paste <(rows nodes.x slit.dat) <(rows u slit.dat) | awk 'NR == FNR { lip[$1] = $2; next } (FNR - 1) in lip { l = lip[FNR - 1]; x = $1 * $1; if (!(l in best) || x < best[l]) { best[l] = x; v[l] = $4 } }
+        END { w = v[1] - v[2]; if (w < 0) w = -w; error = w / (4 * .91 * 1e-4 * .01) - 1; print error; exit !(error < 0 && error > -.02) }' lips -
+}
