@@ -126,9 +126,13 @@ denied() {
     for command in 'list table.mts' 'print u u.mts' 'text table.mts' 'binary u.mts' 'keep u u.mts' 'check table.mts'; do denied mts $command; done
     denied tag -n tip=side:1,30 -r lump=ball:0,0,0.05 --replace -f xmin=plane:0,0,1,0 cloud.mts
     denied interp u.mts
+    printf '%s\n' '-1 .03' '.06 .03' > cut.txt
+    denied incise -s cut.txt -d u.mts -l 1% cloud.mts
     printf '{"markups": [{"controlPoints": [{"label": "a", "position": [-50, -50, 50]}]}]}' > point.mrk.json
     mtled cube.scene cube.mts > u.cube.mts
     denied interp -p point.mrk.json u.cube.mts
+    printf '.04 -1 -1 .04 2 -1 .04 0 3\n' > cut.tsv
+    denied incise -s cut.tsv -d u.cube.mts cube.mts
     printf '[displacement seen]\npoints = point.mrk.json\nmoved = point.mrk.json\n' | cat cube.scene - > seen.scene
     denied mtled seen.scene cube.mts
     denied fieldcmp u.mts u.coarse.mts

@@ -36,7 +36,7 @@ size_of() {
     mts check cut.mts
     # .04 x .035 along: |u x v| = .0016148 m2; its corners are cut off within a cell
     for lip in front back; do
-        awk -v a="$(size_of "knife|$lip" cut.mts)" 'BEGIN { exit !(a > .97 * .0016148 && a < 1.01 * .0016148) }'
+        awk -v a="$(size_of "knife|$lip" cut.mts)" 'BEGIN { exit !(a > .95 * .0016148 && a < 1.01 * .0016148) }'
     done
     for group in body lump xmin xmax ymin ymax zmin zmax; do
         awk -v a="$(size_of $group body.mts)" -v b="$(size_of $group cut.mts)" 'BEGIN { exit !(a > 0 && a / b - 1 < 1e-3 && 1 - a / b < 1e-3) }'
@@ -111,4 +111,65 @@ END
     paste set <(rows facets <(mts text slit.mts)) | awk '$1 > 0 { print $2, $1; print $3, $1 }' | sort -un > lips
     paste <(rows nodes.x slit.dat) <(rows u slit.dat) | awk 'NR == FNR { lip[$1] = $2; next } (FNR - 1) in lip { l = lip[FNR - 1]; x = $1 * $1; if (!(l in best) || x < best[l]) { best[l] = x; v[l] = $4 } }
         END { w = v[1] - v[2]; if (w < 0) w = -w; error = w / (4 * .91 * 1e-4 * .01) - 1; print error; exit !(error < 0 && error > -.02) }' lips -
+}
+
+@test "a region is taken out, what lies behind a closed blade, and small pieces; the walls have names" {
+    body > body.mts
+    incise -r lump body.mts > left.mts
+    mts check left.mts
+    mts list left.mts | grep -q '^cells.region.*names=body$'
+    # five of the six sides of the lump of .03 x .02 x .03 m are within; cells are jittered
+    awk -v a="$(size_of 'lump|wall' left.mts)" -v body="$(size_of body body.mts)" -v b="$(size_of body left.mts)" 'BEGIN { exit !(a > 2e-3 && a < 6e-3 && body / b - 1 < 1e-12) }'
+    # an octahedron about (.05, .03, .025) of radius .024 m, closed: its inside is taken out, its front lip stays
+    awk 'BEGIN { r = .024; c[0] = .05; c[1] = .03; c[2] = .025
+        for (k = 0; k < 8; k++) { s[0] = k % 2 ? -1 : 1; s[1] = int(k / 2) % 2 ? -1 : 1; s[2] = k > 3 ? -1 : 1; flip = s[0] * s[1] * s[2] < 0
+            for (v = 0; v < 3; v++) { i = flip ? 2 - v : v; for (a = 0; a < 3; a++) printf "%g ", c[a] + (a == i ? s[i] * r : 0) } print "" } }' > closed.tsv
+    incise -x -s closed.tsv -n bite -v body.mts > bitten.mts 2> said
+    grep -q 'incise: pieces taken out: 1, ' said
+    mts check bitten.mts
+    [ -z "$(size_of 'bite|back' bitten.mts)" ]
+    awk -v a="$(size_of 'bite|front' bitten.mts)" -v taken="$(sed -n 's/.*taken out: 1, \([^ ]*\).*/\1/p' said)" 'BEGIN { exit !(a > .88 * .00399 && a < .00399 && taken > .88 * 1.843e-5 && taken < 1.843e-5) }'
+    # without -x both lips stay
+    [ "$(incise -s closed.tsv body.mts 2> note | mts check | grep -c '2 connected bodies')" = 1 ]
+    # a corner of 1 % of the body is cut off: kept, noted where it is less than .1 %, taken out by -l
+    printf '%s\n' '.02 -.02 0 -.01 .02 0 -.01 -.01 .03' > corner.tsv
+    incise -s corner.tsv body.mts 2> said | mts list > list
+    incise -l 2% -s corner.tsv body.mts 2> said > left.mts
+    grep -qE 'incise: pieces taken out: 1, ' said
+    run -0 mts check left.mts
+    refused 2 "nothing is left of the body" incise -l 100% -s corner.tsv body.mts
+}
+
+@test "bad blades, and what does not fit: one line each" {
+    cloud -d 3 -k regular -n 5 --box 0,0.1,0,0.1,0,0.1 > body.mts
+    cloud -d 2 -k regular -n 5 --box 0,0.1,0,0.1 > flat.mts
+    try() { # TEXT BLADE ARGUMENT...
+        printf '%s\n' "$2" > blade.tsv
+        refused 2 "$1" incise -s blade.tsv "${@:3}"
+    }
+    good='.03 .01 .015 .08 .01 .015 .05 .09 .03'
+    try "is outside of the body: its box is 1 " "1 0 0 1 1 0 1 0 1" body.mts
+    try "opens nothing" "$good" -u mm body.mts
+    try "opens nothing" "0 -1 -1 0 3 -1 0 -1 3" body.mts
+    try "'furlong'" "$good" -u furlong body.mts
+    try "'0'" "$good" -u 0 body.mts
+    try "is open" "$good" -x body.mts
+    try "tsv:1: column 7: 'nan' is not a finite number" '.03 .01 .01 .05 .01 .01 nan .05 .03' body.mts
+    try "tsv:1: triangle without area" '.03 .01 .01 .05 .01 .01 .03 .01 .01' body.mts
+    try "facets 1 and 2 cross" '0 0 .02 .1 0 .02 .05 .06 .02
+.04 .01 0 .06 .01 .01 .05 .03 .05' body.mts
+    try "disagree on the side" '0 0 .02 .1 0 .02 .05 .06 .02
+0 0 .02 .1 0 .02 .05 -.06 .02' body.mts
+    try "has 9 columns, not 2" "$good" flat.mts
+    try "cross" $'0 0\n1 1\n0 1\n1 0' flat.mts
+    try "repeats the point" $'0 0\n1 1\n1 1' flat.mts
+    try "no section u" "$good" -d body.mts body.mts
+    try "percentage" "$good" -l 3 body.mts
+    try "no blanks" "$good" -n 'a b' body.mts
+    refused 2 "no region 'lump'; there are: body" incise -r lump body.mts
+    refused 2 "nothing is left of the body" incise -r body body.mts
+    refused 2 "nothing to do" incise body.mts
+    refused 2 "-x goes with -s" incise -x -r body body.mts
+    mts drop cells body.mts > nodes.mts
+    try "no section cells" "$good" nodes.mts
 }

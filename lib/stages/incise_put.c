@@ -154,14 +154,21 @@ static enum status put_facets(struct patient *patient, struct stream *stream, st
                       true, error);
 }
 
-/* A region that bordered on no other leaves no wall. */
-static void drop_empty_wall(struct patient *patient)
+/* Drop the new groups without facets, as the wall of a region that bordered on no other. */
+static void drop_empty_groups(struct patient *patient)
 {
-    bool any = false;
-    for (int64_t f = 0; f < patient->body.facet_count; f++) {
-        any = any || patient->body.group[f] == patient->wall;
+    struct division *body = &patient->body;
+    int64_t old = patient->facets.names.count, kept = old;
+    for (int64_t g = old; g < patient->groups; g++) {
+        bool any = false;
+        for (int64_t f = 0; f < body->facet_count; f++) {
+            any = any || body->group[f] == g;
+            body->group[f] = body->group[f] == g ? (int32_t)kept : body->group[f];
+        }
+        patient->added[kept - old] = patient->added[g - old];
+        kept += any;
     }
-    patient->groups -= !any && patient->wall >= patient->facets.names.count;
+    patient->groups = kept;
 }
 
 static void report_result(struct patient *patient)
@@ -200,8 +207,8 @@ enum status patient_put(struct patient *patient, const bool *kept, struct stream
     NEW_SCRATCH(int32_t, kept_as, nodes, error);
     RETURN_IF_ERROR(mark_edge(patient, edge, error));
     RETURN_IF_ERROR(division_take_out(body, kept, patient->wall, kept_as, error));
-    drop_empty_wall(patient);
     report_result(patient);
+    drop_empty_groups(patient);
     for (int64_t n = 0; n < nodes; n++) {
         patient->report->edge += edge[n] && kept_as[n] >= 0;
     }

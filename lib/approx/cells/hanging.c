@@ -68,16 +68,6 @@ static enum status mark_named(struct search *search, int64_t count, const int32_
     return STATUS_OK;
 }
 
-/* Whether a facet is a lip, and the node on another one. */
-static bool is_lip(const struct search *search, int64_t facet, int32_t node)
-{
-    bool other = false;
-    for (int64_t i = search->face_ptr[node]; i < search->face_ptr[node + 1]; i++) {
-        other = other || search->named[search->face_idx[i]];
-    }
-    return other && search->named[facet];
-}
-
 /* Whether all nodes but one of a face are among corner[count]. */
 static bool borders(int dim, const int32_t *face, int count, const int32_t *corner)
 {
@@ -88,6 +78,39 @@ static bool borders(int dim, const int32_t *face, int count, const int32_t *corn
         }
     }
     return common >= dim - 1;
+}
+
+/* Whether a node is on an edge of the facet, within `near`, that is an edge of a named facet as well: at the
+ * rim of a lip, where the surface beyond may have no name. */
+static bool is_on_rim(const struct search *search, int64_t facet, int32_t node, double near)
+{
+    int dim = search->cells->dim;
+    const int32_t *corner = search->boundary->node + facet * dim;
+    for (int k = 0; k < 3 && dim == 3; k++) {
+        const int32_t edge[2] = {corner[k], corner[(k + 1) % 3]};
+        const double *end[2] = {search->cells->x + (int64_t)edge[0] * 3,
+                                search->cells->x + (int64_t)edge[1] * 3};
+        bool rim = false;
+        for (int64_t i = search->face_ptr[edge[0]]; i < search->face_ptr[edge[0] + 1]; i++) {
+            int32_t other = search->face_idx[i];
+            rim = rim ||
+                  (search->named[other] && borders(3, search->boundary->node + (int64_t)other * 3, 2, edge));
+        }
+        if (rim && simplex_distance2(3, 1, end, search->cells->x + (int64_t)node * 3) <= near * near) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether a facet is a lip, and the node on another one. */
+static bool is_lip(const struct search *search, int64_t facet, int32_t node, double near)
+{
+    bool other = false;
+    for (int64_t i = search->face_ptr[node]; i < search->face_ptr[node + 1]; i++) {
+        other = other || search->named[search->face_idx[i]];
+    }
+    return other && (search->named[facet] || is_on_rim(search, facet, node, near));
 }
 
 /* Whether a node is near the facet as a corner of its cell, or of a facet beside it: of a flat one. */
@@ -156,7 +179,7 @@ static void mark_hanging(const struct search *search, int64_t facet, int32_t bod
         if (!out && simplex_distance2(dim, dim - 1, corner, x) <= near * near &&
             !is_beside(search, facet, n)) {
             bool one_body = set_first(body, n) == set_first(body, node[0]);
-            mark[n] |= one_body && !is_lip(search, facet, n) ? JOINED : APART;
+            mark[n] |= one_body && !is_lip(search, facet, n, near) ? JOINED : APART;
         }
     }
 }

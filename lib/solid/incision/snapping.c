@@ -7,14 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A node is near a place on an edge within this share of it, as in isosurface stuffing (0.25). */
-static const double near_share = 0.3;
-
-/* A node that cannot move is taken to be on the blade within this share of its shortest edge. */
-static const double near_enough = 0.12;
+/* By level: a node is near a place on an edge within this share of it (isosurface stuffing: 0.25); and a node
+ * that cannot move is taken to be on the blade within this share of its shortest edge. */
+static const double near_share[] = {0.3, 0.4}, near_enough[] = {0.12, 0.24};
 
 /* A cell stays good with this quality, or with this part of what it had. */
-static const double good_quality = 0.15, good_part = 0.3;
+static const double good_quality = 0.2, good_part = 0.3;
 
 /* A node may leave the boundaries on which it lies by this share of its shortest edge, where they are curved.
  */
@@ -239,7 +237,7 @@ static enum status snap_node(const struct snapping *snapping, int32_t node, int6
             double length = vector_distance(cut->body->dim, cut->body->at + (int64_t)end[0] * cut->body->dim,
                                             cut->body->at + (int64_t)end[1] * cut->body->dim);
             way[near] = (struct placed){share * length, near};
-            near += share < near_share;
+            near += share < near_share[snapping->level];
         }
     }
     qsort(way, (size_t)near, sizeof *way, compare_placed);
@@ -251,7 +249,7 @@ static enum status snap_node(const struct snapping *snapping, int32_t node, int6
         cut_evaluate_node(cut, node);
         cut->value[LEVEL_HEIGHT][node] = 0.0;
     }
-    if (moved || (near > 0 && fabs(had) <= near_enough * cut->shortest[node])) {
+    if (moved || (near > 0 && fabs(had) <= near_enough[snapping->level] * cut->shortest[node])) {
         value[node] = 0.0;
     }
     return STATUS_OK;
