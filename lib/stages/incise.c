@@ -123,7 +123,7 @@ static enum status cut_along_blade(struct patient *patient, struct error *error)
         report->doubled += copy;
         report->split += !old && !copy;
     }
-    return blade != NULL && report->opened == 0 ? fail_outside(patient, error) : STATUS_OK;
+    return blade != NULL && report->doubled == 0 ? fail_outside(patient, error) : STATUS_OK;
 }
 
 /* ---- pieces ---- */

@@ -7,6 +7,9 @@
 /* New nodes stay so far from the ends of their edges. */
 static const double least_share = 0.01;
 
+/* The middle of an edge between nodes on the border is within it by this share of the shortest edge. */
+static const double least_within = 0.1;
+
 /* A value that changes its sign by a jump beyond this share of the edge is not 0 there. */
 static const double most_jump = 0.05;
 
@@ -58,12 +61,24 @@ bool cut_root(const struct cut *cut, enum level level, const int32_t node[2], do
     return fabs(here) <= most_jump * size;
 }
 
-static enum status add_pair(struct crossings *list, const double *value, int32_t a, int32_t b,
+static enum status add_pair(struct crossings *list, const double *value, bool always, int32_t a, int32_t b,
                             struct error *error)
 {
-    if (value[a] * value[b] < 0) {
+    if (always || value[a] * value[b] < 0) {
         RETURN_IF_ERROR(GROW_ARRAY(&list->item, list->count + 1, &list->room, error));
         list->item[list->count++].split = (struct split){.node = {a < b ? a : b, a < b ? b : a}};
+    }
+    return STATUS_OK;
+}
+
+/* The edges of a face on the sheet whose extents have different signs. Of a face with all nodes on the
+ * border, as in a corner of it, all edges: where one is within, a node is put that can be doubled. */
+static enum status add_face(struct crossings *list, int dim, const double *extent, const int32_t *node,
+                            struct error *error)
+{
+    bool on_border = dim == 3 && extent[node[0]] == 0 && extent[node[1]] == 0 && extent[node[2]] == 0;
+    for (int k = 0; k < dim; k++) {
+        RETURN_IF_ERROR(add_pair(list, extent, on_border, node[k], node[(k + 1) % dim], error));
     }
     return STATUS_OK;
 }
@@ -78,16 +93,14 @@ static enum status list_pairs(const struct cut *cut, enum level level, const str
         const int32_t *node = body->node + c * corners;
         for (int i = 0; i < corners * corners; i++) {
             if (i / corners < i % corners) {
-                RETURN_IF_ERROR(add_pair(list, value, node[i / corners], node[i % corners], error));
+                RETURN_IF_ERROR(add_pair(list, value, false, node[i / corners], node[i % corners], error));
             }
         }
     }
     for (int64_t f = 0, end; f < faces->count && level == LEVEL_EXTENT; f = end) {
-        const int32_t *node = faces->keyed[f].key;
         end = keyed_end(faces->count, faces->keyed, f);
-        bool parts = end - f == 2 && cut_parts(cut, faces, f);
-        for (int k = 0; k < body->dim && parts; k++) {
-            RETURN_IF_ERROR(add_pair(list, value, node[k], node[(k + 1) % body->dim], error));
+        if (end - f == 2 && cut_parts(cut, faces, f)) {
+            RETURN_IF_ERROR(add_face(list, body->dim, value, faces->keyed[f].key, error));
         }
     }
     qsort(list->item, (size_t)list->count, sizeof *list->item, split_compare);
@@ -101,17 +114,36 @@ static enum status list_pairs(const struct cut *cut, enum level level, const str
     return STATUS_OK;
 }
 
+/* The place on an edge where the extent is 0; or, between two nodes on the border, the middle, if it is
+ * within. */
+static void find_border(const struct cut *cut, struct crossing *item)
+{
+    const int32_t *node = item->split.node;
+    struct sheet_place place = {0};
+    item->extent = 0.0;
+    item->used = true;
+    if (cut->value[LEVEL_EXTENT][node[0]] == 0 && cut->value[LEVEL_EXTENT][node[1]] == 0) {
+        item->split.share = 0.5;
+        item->extent = value_between(cut, LEVEL_EXTENT, node, 0.5, &place);
+        item->used = item->extent < -least_within * fmin(cut->shortest[node[0]], cut->shortest[node[1]]);
+    } else if (!cut_root(cut, LEVEL_EXTENT, node, &item->split.share, &place)) {
+        item->split.share = 0.5;
+    }
+}
+
 static void find_roots(const struct cut *cut, enum level level, struct crossings *list)
 {
     for (int64_t i = 0; i < list->count; i++) {
         struct crossing *item = &list->item[i];
         struct sheet_place place = {0};
-        bool found = cut_root(cut, level, item->split.node, &item->split.share, &place);
-        item->extent = found ? place.extent : INFINITY;
-        item->used = level == LEVEL_EXTENT;
-        item->split.share = level == LEVEL_EXTENT && !found
-                                ? 0.5
-                                : fmin(fmax(item->split.share, least_share), 1.0 - least_share);
+        if (level == LEVEL_EXTENT) {
+            find_border(cut, item);
+        } else {
+            bool found = cut_root(cut, level, item->split.node, &item->split.share, &place);
+            item->extent = found ? place.extent : INFINITY;
+            item->used = false;
+        }
+        item->split.share = fmin(fmax(item->split.share, least_share), 1.0 - least_share);
     }
 }
 

@@ -186,7 +186,9 @@ static enum status divide_at(struct cut *cut, enum level level, struct near_face
     RETURN_IF_ERROR(cut_evaluate(cut, error));
     for (int64_t n = first; n < body->node_count; n++) {
         cut->value[LEVEL_HEIGHT][n] = 0.0;
-        cut->value[level][n] = 0.0;
+        if (level == LEVEL_EXTENT) {
+            cut->value[level][n] = crossings.item[n - first].extent;
+        }
     }
     return cut_faces(cut, faces, error);
 }

@@ -34,7 +34,7 @@ struct near_faces {
 /* An edge between values of different signs. */
 struct crossing {
     struct split split;
-    double extent; /* at the place of the split */
+    double extent; /* at the place of the split; HEIGHT: INFINITY: there is none */
     bool used;     /* found to be split */
 };
 
@@ -61,7 +61,7 @@ void near_faces_free(struct near_faces *faces);
 bool cut_parts(const struct cut *cut, const struct near_faces *faces, int64_t i);
 
 /* The edges to be split: with different signs of the height, in cells that the sheet meets; or of the extent,
- * of faces on the sheet. */
+ * of faces on the sheet; and what is within the border between nodes on it. */
 MUST_CHECK enum status cut_crossings(const struct cut *cut, enum level level, const struct near_faces *faces,
                                      struct crossings *crossings, struct error *error);
 void crossings_free(struct crossings *crossings);

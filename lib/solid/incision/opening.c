@@ -6,44 +6,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A face whose nodes are all on the border is opened where its middle is so far within, as a share of edges.
- */
-static const double within_border = 0.05;
-
-/* Whether face i, with the next one, is opened. */
+/* Whether face i, with the next one, is opened: it is within the border, not all on it. */
 static bool is_opened(const struct cut *cut, const struct near_faces *faces, int64_t i)
 {
-    const int32_t *node = faces->keyed[i].key;
     bool within = false;
-    int dim = cut->body->dim;
-    if (!cut_parts(cut, faces, i)) {
-        return false;
-    }
-    for (int k = 0; k < dim; k++) {
-        double extent = cut->value[LEVEL_EXTENT][node[k]];
+    for (int k = 0; k < cut->body->dim; k++) {
+        double extent = cut->value[LEVEL_EXTENT][faces->keyed[i].key[k]];
         if (!(extent <= 0.0)) {
             return false;
         }
         within = within || extent < 0.0;
     }
-    if (!within) {
-        struct sheet_place place;
-        double middle[3], reach = cut->longest[node[0]];
-        vector_middle(dim, cut->body->at, dim, node, middle);
-        within = sheet_at(cut->sheet, middle, reach, &place) &&
-                 place.extent < -within_border * cut->shortest[node[0]];
-    }
-    return within;
+    return within && cut_parts(cut, faces, i);
 }
 
 struct opening {
     struct cut *cut;
     const struct near_faces *faces;
     int8_t
-        *opened;   /* faces->count: 0, or with the next face: the side of the first one's cell, 1: in front */
+        *opened; /* faces->count: the side, 1 or -1, of the cell of a face that is opened with the next one */
     bool *touched; /* node_count: node of an opened face */
     int32_t
-        *first; /* of each corner cell * (dim + 1) + k: of those of a node that stay connected, the first */
+        *first; /* of each corner, cell * (dim + 1) + k: the first of its node's that stay connected to it */
 };
 
 static void opening_free(struct opening *opening)
