@@ -291,3 +291,43 @@ blades() {
     mtled -q cut.scene cut.mts 2> note | mts print reactions > cut
     paste whole cut | awk 'NR < 3 { d = $6 / $3 - 1; if (d > .005 || d < -.005) exit 1; n++ } END { exit n != 2 }'
 }
+
+# pulled_apart DIM > SCENE
+pulled_apart() {
+    block quasi-static | sed "s/^dim = 2/dim = $1/"
+    printf '[displacement %s]\nfacets = %s\ncomponents = %s0.005, free%s\n' left xmin - "${2:-}" right xmax '' "${2:-}"
+    printf '[displacement low]\nfacets = ymin\nnormal = 0\n'
+}
+
+@test "a cut goes on in the deformed body, from the state before: one edge, where the blade ends; the state of a run from rest" {
+    cloud -d 2 -k jittered -n 27,17 --jitter .3 --box 0,.1,0,.06 > body.mts
+    pulled_apart 2 > scene
+    mtled -q scene body.mts 2> note > u.dat
+    for y in .05 .04 .03 .02; do
+        printf '%s\n' '.052 .07' ".052 $y" > blade.txt
+        incise -s blade.txt -n knife -d u.dat -o cut.mts body.mts
+        mts check cut.mts
+        # its edge is where the blade ends, in the state before
+        interp -f u -u m -p <(mts print nodes.x cut.mts | sed -n "$(($(mts print sets.idx cut.mts) + 1))p") --deformed u.dat |
+            mts print x.deformed | awk -v y=$y '{ dx = $1 - .052; dy = $2 - y; if (dx * dx + dy * dy > 1e-6) { print; exit 1 } n++ } END { exit n != 1 }'
+        mtled -q -s u.dat scene cut.mts 2> note > next.dat
+        mv next.dat u.dat
+        mv cut.mts body.mts
+    done
+    mtled -q scene body.mts 2> note > cold.dat
+    fieldcmp cold.dat u.dat | awk -F '\t' '$1 == "max_relative" { exit !($2 < 1e-5) }'
+    cloud -d 3 -k jittered -n 11,7,8 --box 0,0.1,0,0.06,0,0.07 --jitter 0.15 > body.mts
+    pulled_apart 3 ', free' | sed 's/^facets = ymin/facets = ymin, zmin/' > scene
+    mtled -q scene body.mts 2> note > u.dat
+    for z in .06 .048 .036; do
+        stl "$(panel .047 -.01 $z .001 .1 0 .004 0 .1)" > blade.stl
+        incise -s blade.stl -n knife -d u.dat -o cut.mts body.mts
+        mts check cut.mts
+        # all nodes of the edge are near the end of this blade, none where the last one ended
+        mts print sets.idx cut.mts > edge
+        mts print nodes.x cut.mts | awk -v z=$z 'NR == FNR { edge[$1]; next } (FNR - 1) in edge { n++; d = $3 - z; if (d * d > .004 ^ 2) { print; exit 1 } } END { exit !(n > 5) }' edge -
+        mtled -q -s u.dat scene cut.mts 2> note > next.dat
+        mv next.dat u.dat
+        mv cut.mts body.mts
+    done
+}

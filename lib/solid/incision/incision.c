@@ -4,8 +4,9 @@
 #include <string.h>
 
 /* A node on a lip along which the blade goes, to this cosine, is on the blade within this share of its
- * shortest edge: the lip was made along it before. */
-static const double along_lip = 0.7, near_lip = 0.5;
+ * longest edge: a cut goes on from its edge, although a deformed body, or a blade that has moved, is off it a
+ * little. */
+static const double along_lip = 0.87, near_lip = 0.4;
 
 /* ---- values at nodes ---- */
 
@@ -64,7 +65,7 @@ void cut_evaluate_node(struct cut *cut, int64_t n)
     double least = CUT_ROUND_OFF * cut->longest[n];
     int dim = cut->body->dim;
     if (near && n < cut->old && fabs(vector_dot(dim, cut->lip + n * dim, place.normal)) > along_lip) {
-        least = near_lip * cut->shortest[n];
+        least = near_lip * cut->longest[n];
     }
     double value[2] = {near ? place.height : NAN, near ? place.extent : NAN};
     for (int level = 0; level < 2; level++) {

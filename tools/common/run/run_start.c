@@ -1,5 +1,5 @@
-/* The start of a run from the field of another one, near its result: of a coarser mesh, or with other
- * materials or loads. */
+/* The start of a run from the field of another one, near its result: of a coarser mesh, before a cut, or with
+ * other materials or loads. */
 #include "run/run.h"
 
 #include <math.h>
@@ -38,8 +38,8 @@ void run_start(struct run *run)
     }
     const double *values = field->parameters != NULL ? field->parameters : field->values;
     TOOL_TRY(run->tool, fail_in(&error,
-                                field_linear(&field->cells, field->cols, values, system->node_count,
-                                             system->X, run->u, &error),
+                                field_carry(&field->cells, field->cols, values, &run->model->assembly.cells,
+                                            run->u, &error),
                                 "--start: %s", run->start.name));
     if (!isfinite(field_largest(system->node_count, system->dim, run->u))) {
         tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
