@@ -49,7 +49,7 @@ static const char usage[] =
     "  -v, --verbose        a report on standard error: steps, error, costs\n"
     "  -q, --quiet          no progress\n"
     "  -b, --binary         write binary instead of text\n"
-    "  -s, --start FILE     begin at the whole load from u of this stream, as of a coarser mesh\n"
+    "  -s, --start FILE     begin at the whole load from u of this stream: of a coarser mesh, before a cut\n"
     "  -c, --checkpoint FILE\n"
     "                       keep the state of the run in FILE, and go on from what is there\n"
     "  -e, --every SECONDS  with -c: how often (default 60)\n"

@@ -202,16 +202,26 @@ bool sheet_at(const struct sheet *sheet, const double *x, double reach, struct s
     }
     vector_subtract(dim, x, near.point, away);
     place->height = vector_dot(dim, away, near.normal);
+    place->beyond = near.rim;
+    memcpy(place->near, near.point, sizeof place->near);
     memcpy(place->foot, near.point, sizeof place->foot);
     memcpy(place->normal, near.normal, sizeof place->normal);
     if (near.rim) {
         add_scaled(dim, -place->height, near.normal, away);
         add_scaled(dim, 1.0, away, place->foot);
-        place->extent = vector_length(dim, away);
-        memcpy(place->border, near.point, sizeof place->border);
     } else {
         place->height = copysign(vector_length(dim, away), place->height);
-        place->extent = -nearest_border(sheet, near.point, place->border);
     }
     return true;
+}
+
+double sheet_extent(const struct sheet *sheet, struct sheet_place *place)
+{
+    if (place->beyond) {
+        memcpy(place->border, place->near, sizeof place->border);
+        place->extent = vector_distance(sheet->surface.dim, place->foot, place->near);
+    } else {
+        place->extent = -nearest_border(sheet, place->near, place->border);
+    }
+    return place->extent;
 }

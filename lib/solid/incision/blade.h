@@ -33,9 +33,13 @@ struct sheet_place {
     double height;    /* signed distance from it, m, positive in front */
     double extent;    /* distance along it from its border, m, negative within; closed: -INFINITY */
     double normal[3]; /* unit, of the sheet there */
-    double foot[3];   /* the nearest point of the sheet and its continuation */
-    double border[3]; /* the nearest point of the border to that */
+    bool beyond;      /* beyond the border, or on it */
+    double near[3];   /* the nearest point of the sheet, */
+    double foot[3];   /* the nearest point of the sheet and its continuation, */
+    double border[3]; /* and of the border to the nearest of the sheet */
 };
 
-/* False: farther than `reach`. */
+/* False: farther than `reach`. The extent and the border are found by sheet_extent, which takes longer; it
+ * returns the extent. */
 bool sheet_at(const struct sheet *sheet, const double *x, double reach, struct sheet_place *place);
+double sheet_extent(const struct sheet *sheet, struct sheet_place *place);

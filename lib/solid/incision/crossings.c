@@ -29,7 +29,7 @@ static double value_between(const struct cut *cut, enum level level, const int32
     double reach = 2.0 * fmax(cut->longest[node[0]], cut->longest[node[1]]);
     return !sheet_at(cut->sheet, x, reach, place) ? NAN
            : level == LEVEL_HEIGHT                ? place->height
-                                                  : place->extent;
+                                                  : sheet_extent(cut->sheet, place);
 }
 
 /* By the Illinois method (Dowell and Jarratt, BIT 11, 1971). */
@@ -140,7 +140,7 @@ static void find_roots(const struct cut *cut, enum level level, struct crossings
             find_border(cut, item);
         } else {
             bool found = cut_root(cut, level, item->split.node, &item->split.share, &place);
-            item->extent = found ? place.extent : INFINITY;
+            item->extent = found ? sheet_extent(cut->sheet, &place) : INFINITY;
             item->used = false;
         }
         item->split.share = fmin(fmax(item->split.share, least_share), 1.0 - least_share);

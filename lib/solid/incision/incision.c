@@ -57,7 +57,17 @@ static void measure_edges(struct cut *cut)
     }
 }
 
-void cut_evaluate_node(struct cut *cut, int64_t n)
+void cut_lay(struct cut *cut, int64_t n)
+{
+    struct sheet_place place;
+    bool near = sheet_at(cut->sheet, cut->body->at + n * cut->body->dim, INFINITY, &place);
+    double extent = near ? sheet_extent(cut->sheet, &place) : NAN;
+    cut->value[LEVEL_HEIGHT][n] = 0.0;
+    cut->value[LEVEL_EXTENT][n] = fabs(extent) <= CUT_ROUND_OFF * cut->longest[n] ? 0.0 : extent;
+}
+
+/* Evaluate a node by its place. */
+static void evaluate_node(struct cut *cut, int64_t n)
 {
     struct sheet_place place;
     double reach = 1.5 * cut->longest[n];
@@ -67,9 +77,10 @@ void cut_evaluate_node(struct cut *cut, int64_t n)
     if (near && n < cut->old && fabs(vector_dot(dim, cut->lip + n * dim, place.normal)) > along_lip) {
         least = near_lip * cut->longest[n];
     }
-    double value[2] = {near ? place.height : NAN, near ? place.extent : NAN};
-    for (int level = 0; level < 2; level++) {
-        cut->value[level][n] = fabs(value[level]) <= least ? 0.0 : value[level];
+    cut->value[LEVEL_HEIGHT][n] = near ? place.height : NAN;
+    cut->value[LEVEL_EXTENT][n] = NAN;
+    if (near && fabs(place.height) <= least) {
+        cut_lay(cut, n);
     }
 }
 
@@ -86,7 +97,7 @@ enum status cut_evaluate(struct cut *cut, struct error *error)
     }
     measure_edges(cut);
     for (; cut->known < needed; cut->known++) {
-        cut_evaluate_node(cut, cut->known);
+        evaluate_node(cut, cut->known);
     }
     return STATUS_OK;
 }
@@ -186,7 +197,7 @@ static enum status divide_at(struct cut *cut, enum level level, struct near_face
     RETURN_IF_ERROR(division_split(body, crossings.count, split, error));
     RETURN_IF_ERROR(cut_evaluate(cut, error));
     for (int64_t n = first; n < body->node_count; n++) {
-        cut->value[LEVEL_HEIGHT][n] = 0.0;
+        cut_lay(cut, n);
         if (level == LEVEL_EXTENT) {
             cut->value[level][n] = crossings.item[n - first].extent;
         }

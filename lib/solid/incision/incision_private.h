@@ -18,8 +18,8 @@ enum level { LEVEL_HEIGHT, LEVEL_EXTENT };
 struct cut {
     struct division *body;
     const struct sheet *sheet;
-    int64_t room, known, old;   /* the first `known` nodes have values */
-    double *value[2];           /* by level, m; 0: on it; NAN: farther than the longest edge */
+    int64_t room, known, old; /* the first `known` nodes have values */
+    double *value[2]; /* by level, m; 0: on it; heights NAN: far; extents only of nodes on the sheet */
     double *shortest, *longest; /* edges at the node, m */
     double
         *lip; /* old nodes * dim: mean normal of the front lip, reversed of the back, of a cut that goes on */
@@ -45,7 +45,10 @@ struct crossings {
 
 /* Measure edges and evaluate the nodes that have no values yet. */
 MUST_CHECK enum status cut_evaluate(struct cut *cut, struct error *error);
-void cut_evaluate_node(struct cut *cut, int64_t node);
+
+/* Take a node to be on the sheet, at the extent of its place. */
+void cut_lay(struct cut *cut, int64_t node);
+
 void cut_free(struct cut *cut);
 
 bool cut_is_near(const struct cut *cut, int64_t cell);

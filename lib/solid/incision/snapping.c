@@ -198,10 +198,12 @@ static bool move_to_foot(const struct snapping *snapping, int32_t node)
 {
     const struct cut *cut = snapping->cut;
     struct sheet_place place;
-    return is_free(snapping, node) &&
-           sheet_at(cut->sheet, cut->body->at + (int64_t)node * cut->body->dim, 2.0 * cut->longest[node],
-                    &place) &&
-           move_within(snapping, node, snapping->level == LEVEL_HEIGHT ? place.foot : place.border);
+    if (!is_free(snapping, node) || !sheet_at(cut->sheet, cut->body->at + (int64_t)node * cut->body->dim,
+                                              2.0 * cut->longest[node], &place)) {
+        return false;
+    }
+    (void)sheet_extent(cut->sheet, &place);
+    return move_within(snapping, node, snapping->level == LEVEL_HEIGHT ? place.foot : place.border);
 }
 
 static bool move_along(const struct snapping *snapping, int32_t node, const struct split *edge)
@@ -245,11 +247,8 @@ static enum status snap_node(const struct snapping *snapping, int32_t node, int6
     for (int64_t i = 0; i < near && !moved; i++) {
         moved = move_along(snapping, node, &edge[way[i].item]);
     }
-    if (moved) {
-        cut_evaluate_node(cut, node);
-        cut->value[LEVEL_HEIGHT][node] = 0.0;
-    }
     if (moved || (near > 0 && fabs(had) <= near_enough[snapping->level] * cut->shortest[node])) {
+        cut_lay(cut, node);
         value[node] = 0.0;
     }
     return STATUS_OK;
