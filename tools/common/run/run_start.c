@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+/* The least share of a field that a run begins at. */
+static const double least_start = 0.05;
+
 void run_start_read(struct run *run)
 {
     const struct scene *scene = run->scene;
@@ -29,6 +32,25 @@ void run_start_read(struct run *run)
     }
 }
 
+/* A body that has been cut may be inverted, at the edge of an earlier cut, in a field that was none of its own:
+ * then the run begins at half of that, and so on. */
+static void halve_inverted(struct run *run)
+{
+    struct solid_system *system = &run->model->system;
+    int64_t size = system->node_count * system->dim;
+    SCRATCH double *force = run_new_values(run, size);
+    double share = 1.0;
+    while (share > least_start && !(body_force(&system->body, run->u, force).least_jacobian > 0.0)) {
+        share *= 0.5;
+        for (int64_t i = 0; i < size; i++) {
+            run->u[i] *= 0.5;
+        }
+    }
+    if (share < 1.0) {
+        tool_note(run->tool, "--start: %s: inverts a cell: begun at %g of u", run->start.name, share);
+    }
+}
+
 void run_start(struct run *run)
 {
     struct solid_system *system = &run->model->system;
@@ -45,5 +67,6 @@ void run_start(struct run *run)
         tool_fail(run->tool, STATUS_INPUT, "--start: %s: u has values that are not finite numbers",
                   run->start.name);
     }
+    halve_inverted(run);
     TOOL_TRY(run->tool, system_start(system, run->u, &error));
 }
