@@ -7,6 +7,7 @@ README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error
     brain2d-convergence/brain2d-convergence
 # Others, and what they are called there.
 NEURO_PICTURES := slices=slices resection/slices=resection
+LIVER_PICTURES := profile=openings advances=cut
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
 RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d brain3d/meshes=brain3d-meshes table1/beside=table1 speed-error/speed-error=speed-error \
@@ -17,7 +18,7 @@ RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d
     neurosurgery/seconds=neurosurgery-seconds uncertainty/uncertainty=uncertainty scale/stages=scale \
     scale/64000/pipe=scale-64000 scale/1000000/pipe=scale-1000000 scale/brain-64000/pipe=scale-brain-64000 \
     scale/brain-1000000/pipe=scale-brain-1000000 \
-    voxels/voxels=voxels voxels/meshes=voxels-meshes neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
+    incision/incision=incision voxels/voxels=voxels voxels/meshes=voxels-meshes neurosurgery/resection/neurosurgery=neurosurgery-resection neurosurgery/electrodes/neurosurgery=neurosurgery-electrodes
 
 .PHONY: readme results
 # Only what is newer than the file that is kept.
@@ -35,8 +36,8 @@ readme: all results
 	    KEEP=1 bash pipelines/readme.sh < $$text > $(BUILD)/$$text; \
 	    cp $(BUILD)/$$text $$text; \
 	done
-	for picture in $(README_PICTURES) $(NEURO_PICTURES); do \
+	for picture in $(README_PICTURES) $(NEURO_PICTURES) $(LIVER_PICTURES:%=incision/%); do \
 	    made=$(OUT)/$$picture.png; kept=examples/brain2d/pictures/$$(basename $$picture).png; \
-	    case $$picture in *=*) made=$(OUT)/neurosurgery/$${picture%=*}.png; kept=examples/neurosurgery/pictures/$${picture#*=}.png ;; esac; \
+	    case $$picture in incision/*) made=$(OUT)/$${picture%=*}.png; kept=examples/liver/pictures/$${picture#*=}.png ;; *=*) made=$(OUT)/neurosurgery/$${picture%=*}.png; kept=examples/neurosurgery/pictures/$${picture#*=}.png ;; esac; \
 	    [ ! $$made -nt $$kept ] || ! command -v convert > /dev/null || convert $$made -resize 70% -colors 128 -strip PNG8:$$kept; \
 	done

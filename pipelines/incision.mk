@@ -1,0 +1,74 @@
+# make incision: cuts with known answers: a slit and a penny-shaped crack that open, a body cut through beside its parts, a cut that contact closes; and a cut that goes on through a liver in five advances
+#
+# incision.tsv has a row for each, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh).
+
+INCISION := $(OUT)/incision
+INCISION_SCRIPTS := pipelines/incision
+INCISION_SIZES := 5 10 20
+INCISION_OPENINGS := $(foreach case,slit penny,$(INCISION_SIZES:%=$(case)-%))
+INCISION_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud nodes tag incise shapefn mtled mts)
+INCISION_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
+# 4 (1 - nu^2) sigma a / E and 8 (1 - nu^2) sigma a / (pi E), a = 10 mm, sigma = E / 10000
+slit.exact := 0.00364
+penny.exact := 0.0023172960
+
+.PHONY: incision
+incision: $(INCISION)/incision.tsv $(INCISION)/profile.png $(INCISION)/advances.png
+	@awk -F '\t' '{ printf "%-22s %5s %6s %-38s %11s %11s %8s %6s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $<
+	$(PICTURES)
+
+$(INCISION)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
+
+$(INCISION_SIZES:%=$(INCISION)/slit-%.msh): $(INCISION)/slit-%.msh: $(INCISION_SCRIPTS)/slit.geo
+	@mkdir -p $(@D)
+	gmsh -2 -v 1 -setnumber h $$(echo $* | awk '{ print 10 / $$1 }') $< -o $@
+$(INCISION_SIZES:%=$(INCISION)/penny-%.msh): $(INCISION)/penny-%.msh: $(INCISION_SCRIPTS)/penny.geo
+	@mkdir -p $(@D)
+	gmsh -3 -nt 1 -v 1 -setnumber h $$(echo $* | awk '{ print 10 / $$1 }') $< -o $@
+
+$(INCISION)/rim.tsv: $(INCISION_SCRIPTS)/rim.awk
+	@mkdir -p $(@D)
+	awk -f $< > $@
+
+$(INCISION)/slit-%.mts: $(INCISION)/slit-%.msh $(INCISION_PROGRAMS)
+	printf '%s\n' '-10 0' '10 0' > $(@:.mts=.txt)
+	nodes -u mm $< | incise -v -s $(@:.mts=.txt) -u mm -o $@
+$(INCISION)/penny-%.mts: $(INCISION)/penny-%.msh $(INCISION_SCRIPTS)/disc.awk $(INCISION_PROGRAMS)
+	awk -f $(INCISION_SCRIPTS)/disc.awk -v n=$$((8 * $*)) > $(@:.mts=.tsv)
+	nodes -u mm $< | tag -f x0=low:x,0.01% -f y0=low:y,0.01% -f bottom=low:z,0.01% -f top=high:z,0.01% | incise -v -s $(@:.mts=.tsv) -u mm -o $@
+
+$(INCISION)/%.scene: $(INCISION_SCRIPTS)/%.scene
+	@mkdir -p $(@D)
+	cp $< $@
+
+$(INCISION_SIZES:%=$(INCISION)/slit-%.dat): $(INCISION)/slit.scene $(INCISION)/rim.tsv
+$(INCISION_SIZES:%=$(INCISION)/penny-%.dat): $(INCISION)/penny.scene
+$(INCISION_OPENINGS:%=$(INCISION)/%.dat): %.dat: %.mts
+	mtled -v $(@D)/$(firstword $(subst -, ,$(notdir $*))).scene $< > $@ $(INCISION_LOG)
+
+# The lips are the last two groups.
+$(INCISION_OPENINGS:%=$(INCISION)/%.row): %.row: %.dat %.mts $(INCISION_SCRIPTS)/opening.awk
+	bash -c 'paste <(mts print facets.set $*.mts) <(mts print facets $*.mts)' | awk '{ for (i = 2; i <= NF; i++) lip[$$i] = $$1; if ($$1 > last) last = $$1 } \
+	    END { for (n in lip) if (lip[n] >= last - 1) print lip[n], n }' > $*.lips
+	bash -c 'paste <(mts print nodes.x $*.mts) <(mts print u $*.dat)' | awk -f $(INCISION_SCRIPTS)/opening.awk -v case=$(firstword $(subst -, ,$(notdir $*))) \
+	    -v size=$(lastword $(subst -, ,$(notdir $*))) -v exact=$($(firstword $(subst -, ,$(notdir $*))).exact) -v profile=$*.profile $*.lips - > $@
+
+$(INCISION)/parts.row: $(INCISION_SCRIPTS)/parts.sh $(INCISION_PROGRAMS)
+	@mkdir -p $(@D)/parts
+	bash $< $(@D)/parts > $@
+
+$(INCISION)/incision.tsv: $(INCISION_OPENINGS:%=$(INCISION)/%.row) $(INCISION)/parts.row pipelines/incision.mk
+	(printf 'case\tnodes_a_radius\tnodes\tquantity\tvalue\treference\terror\torder\n'; cat $(filter %.row,$^) | awk -F '\t' -v OFS='\t' '{ \
+	    print $$0, $$2 != "-" && $$1 == before ? sprintf("%.2f", log(error / $$7) / log(2)) : "-"; before = $$1; error = $$7 }') > $@
+
+$(INCISION)/profile.png: $(INCISION)/incision.tsv $(INCISION_SCRIPTS)/profile.gp
+	gnuplot -e "folder='$(@D)'; out='$@'" $(INCISION_SCRIPTS)/profile.gp
+
+$(INCISION)/advances/u5.dat: $(addprefix examples/liver/,cut.sh cut.scene labels.nii.gz labels.tsv) $(INCISION_PROGRAMS) $(BUILD)/bin/voxels
+	@mkdir -p $(@D)
+	examples/liver/cut.sh $(@D)
+
+# Without ImageMagick the last picture alone.
+$(INCISION)/advances.png: $(INCISION)/advances/u5.dat pipelines/render.py
+	for i in 1 2 3 4 5; do pipelines/render.py --view=-0.3,1,0.25 --title "advance $$i" $(<D)/u$$i.dat $(<D)/$$i.png || exit; done
+	if command -v convert > /dev/null; then convert $(foreach i,1 2 3 4 5,\( $(<D)/$(i).png -crop 640x610+30+0 +repage \)) +append -resize 50% $@; else cp $(<D)/5.png $@; fi
