@@ -26,7 +26,7 @@
 
 /* In (11b): c by W_iso, and the square of the slope of g by its bound. */
 #define COUPLING_OF_ENERGY (2.0 / 3.0)
-#define COUPLING_CURVE 16.0
+#define COUPLING_CURVE 4.0
 
 struct body;
 
