@@ -22,7 +22,7 @@ static void require_loads(const struct scene_load *loads, int64_t count)
         for (int k = 0; k < 3; k++) {
             REQUIRE(isfinite(loads[i].components[k]));
         }
-        REQUIRE((loads[i].curve.file != NULL) == (loads[i].curve.kind == SCENE_CURVE_FILE));
+        REQUIRE((loads[i].curve.file != NULL) == (loads[i].curve.kind == CURVE_TABLE));
     }
 }
 
@@ -53,7 +53,7 @@ static void require_scene(const struct scene *scene)
         require_names(&displacement->facets);
         require_names(&displacement->nodes);
         REQUIRE((displacement->facets.count > 0) != (displacement->nodes.count > 0));
-        REQUIRE((displacement->kind == SCENE_TABLE) == (displacement->table != NULL));
+        REQUIRE((displacement->kind == CONDITION_TABLE) == (displacement->table != NULL));
         REQUIRE(isfinite(displacement->normal));
     }
     for (int64_t i = 0; i < scene->contact_count; i++) {

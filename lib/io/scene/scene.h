@@ -6,23 +6,16 @@
 
 #include "base/memory.h"
 #include "solid/material/law.h"
+#include "solid/system/kinds.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 enum scene_analysis { SCENE_QUASI_STATIC, SCENE_DYNAMIC };
 
-enum scene_prescription { SCENE_TABLE, SCENE_COMPONENTS, SCENE_NORMAL, SCENE_POINTS };
-
-enum scene_curve_kind { SCENE_CURVE_SMOOTH, SCENE_CURVE_LINEAR, SCENE_CURVE_STEP, SCENE_CURVE_FILE };
-
 /* The body lies left or right of the rigid curve, walked in the order of its points (2D), or in front of
  * (where the right-hand normal points) or behind the rigid triangles (3D). */
 enum scene_side { SCENE_LEFT, SCENE_RIGHT, SCENE_FRONT, SCENE_BACK };
-
-enum scene_constraints { SCENE_EBCIEM, SCENE_DIRECT };
-enum scene_constraint_points { SCENE_NODAL_AVERAGES, SCENE_NODE_VALUES };
-enum scene_volume { SCENE_NODAL_VOLUME, SCENE_POINTWISE_VOLUME };
 
 /* Different names of groups; count 0: the key is absent. */
 struct name_list {
@@ -36,8 +29,8 @@ struct scene_label {
 };
 
 struct scene_curve {
-    enum scene_curve_kind kind;
-    const char *file; /* SCENE_CURVE_FILE: rows (time, factor); else NULL */
+    enum curve_kind kind;
+    const char *file; /* CURVE_TABLE: rows (time, factor); else NULL */
 };
 
 /* Terms of a Prony series; none: elastic. */
@@ -65,19 +58,19 @@ struct scene_material {
 
 struct scene_displacement {
     struct scene_label label;
-    struct name_list facets, nodes; /* exactly one is given, none with SCENE_POINTS; nodes never with
-                                       SCENE_NORMAL */
-    enum scene_prescription kind;
+    struct name_list facets, nodes; /* exactly one is given, none with CONDITION_POINTS; nodes never with
+                                       CONDITION_NORMAL */
+    enum condition_kind kind;
     const char
-        *table; /* SCENE_TABLE: rows (dim coordinates, dim displacement components); SCENE_POINTS: the same of
-                   measured points, with an optional standard deviation; components may be unknown */
-    const char *moved;    /* SCENE_POINTS: NULL, or where they are moved to: both tables are coordinates */
-    double table_unit;    /* m per unit of the table */
-    double components[3]; /* SCENE_COMPONENTS: m, dim of them */
-    bool is_free[3];      /* SCENE_COMPONENTS: this component is not prescribed; never all of them */
-    double normal;        /* SCENE_NORMAL: m, along the outward reference normal */
-    double reach;         /* SCENE_POINTS: largest distance of a point from the body, m; 0: not given */
-    double model_error;   /* SCENE_POINTS: error of the scene without the points, m; 0: not given */
+        *table; /* CONDITION_TABLE: rows (dim coordinates, dim displacement components); CONDITION_POINTS: the
+                   same of measured points, with an optional standard deviation; components may be unknown */
+    const char *moved; /* CONDITION_POINTS: NULL, or where they are moved to: both tables are coordinates */
+    double table_unit; /* m per unit of the table */
+    double components[3]; /* CONDITION_COMPONENTS: m, dim of them */
+    bool is_free[3];      /* CONDITION_COMPONENTS: this component is not prescribed; never all of them */
+    double normal;        /* CONDITION_NORMAL: m, along the outward reference normal */
+    double reach;         /* CONDITION_POINTS: largest distance of a point from the body, m; 0: not given */
+    double model_error;   /* CONDITION_POINTS: error of the scene without the points, m; 0: not given */
     struct scene_curve curve;
 };
 
@@ -99,10 +92,6 @@ struct scene_contact {
     struct scene_curve curve, angle_curve;
 };
 
-/* The part of a fluid whose pressure acts: below its level, above it (where the pressure is negative), or
- * all. */
-enum scene_level_side { SCENE_BELOW, SCENE_ABOVE, SCENE_BELOW_AND_ABOVE };
-
 /* A pressure, traction or force. */
 struct scene_load {
     struct scene_label label;
@@ -112,7 +101,7 @@ struct scene_load {
     double density;          /* pressure: of a fluid, kg/m3; 0: none */
     double level[3];         /* of a fluid: a place at its level, m */
     double gravity[3];       /* of a fluid: m/s2; zeros: that of the scene */
-    enum scene_level_side level_side;
+    enum fluid_part part;
     double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
     struct scene_curve curve;
 };
@@ -153,16 +142,16 @@ enum scene_method { SCENE_NEWTON, SCENE_RELAXATION };
 
 struct scene_solver {
     enum scene_method method; /* quasi-static */
-    enum scene_constraints constraints;
-    enum scene_constraint_points constraint_points;
-    enum scene_volume volume;
-    double tolerance;        /* estimated remaining error relative to the displacement; default 1e-5 */
-    int64_t max_steps;       /* 0: not given */
-    int64_t ramp_steps;      /* steps over which a quasi-static load is applied; 0: not given */
-    int64_t time_steps;      /* of a quasi-static scene with duration or friction; 0: of others */
-    double end_time;         /* s, dynamic */
-    double time_step_margin; /* share of the estimated critical step; default .9, dynamic .8 */
-    double damping;          /* 1/s, dynamic; default 0 */
+    bool direct;              /* conditions prescribe the parameters of nodes */
+    bool node_values;         /* conditions prescribe values at nodes, not averages */
+    bool pointwise_volume;    /* no nodal volumes */
+    double tolerance;         /* estimated remaining error relative to the displacement; default 1e-5 */
+    int64_t max_steps;        /* 0: not given */
+    int64_t ramp_steps;       /* steps over which a quasi-static load is applied; 0: not given */
+    int64_t time_steps;       /* of a quasi-static scene with duration or friction; 0: of others */
+    double end_time;          /* s, dynamic */
+    double time_step_margin;  /* share of the estimated critical step; default .9, dynamic .8 */
+    double damping;           /* 1/s, dynamic; default 0 */
 };
 
 struct scene {

@@ -24,7 +24,7 @@ static enum status check_displacement(const struct place *place, struct scene *s
     const bool *is_free = displacement->is_free;
     RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
-        displacement->kind = SCENE_POINTS;
+        displacement->kind = CONDITION_POINTS;
         return place_only_keys(place, KEYS{"points", "moved", "unit", "reach", "model_error", "curve", NULL});
     }
     RETURN_IF_ERROR(
@@ -32,9 +32,9 @@ static enum status check_displacement(const struct place *place, struct scene *s
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     if (place_has(place, "normal")) {
         RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
-        displacement->kind = SCENE_NORMAL;
-    } else if (place_has(place, "components")) {
-        displacement->kind = SCENE_COMPONENTS;
+        displacement->kind = CONDITION_NORMAL;
+    } else if (place_has(place, "table")) {
+        displacement->kind = CONDITION_TABLE;
     }
     if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
         return place_fail(place, "components", "all are free: nothing is prescribed");
@@ -73,7 +73,7 @@ static enum status check_motion(const struct place *place, int dim, struct scene
         contact->angle_curve = contact->curve;
     }
     for (int i = 0; i < 2; i++) {
-        if ((i == 0 ? contact->curve : contact->angle_curve).kind == SCENE_CURVE_STEP) {
+        if ((i == 0 ? contact->curve : contact->angle_curve).kind == CURVE_STEP) {
             return place_fail(place, i == 0 ? "curve" : "angle_curve",
                               "step jumps: a rigid surface moves by smooth, linear, or a file");
         }
@@ -245,7 +245,7 @@ static const struct scene_key pressure_keys[] = {
     {"value", VALUE_NUMBER, AT(scene_load, pressure)},
     {"density", VALUE_POSITIVE, AT(scene_load, density)},
     {"level", VALUE_VECTOR, AT(scene_load, level)},
-    {"side", VALUE_CHOICE, AT(scene_load, level_side), WORDS("below", "above", "both")},
+    {"side", VALUE_CHOICE, AT(scene_load, part), WORDS("below", "above", "both")},
     {"gravity", VALUE_VECTOR, AT(scene_load, gravity)},
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
@@ -300,9 +300,9 @@ static const struct scene_key output_keys[] = {
 
 static const struct scene_key solver_keys[] = {
     {"method", VALUE_CHOICE, AT(scene, solver.method), WORDS("newton", "relaxation")},
-    {"constraints", VALUE_CHOICE, AT(scene, solver.constraints), WORDS("ebciem", "direct")},
-    {"constraint_points", VALUE_CHOICE, AT(scene, solver.constraint_points), WORDS("hat", "node")},
-    {"volume", VALUE_CHOICE, AT(scene, solver.volume), WORDS("nodal", "pointwise")},
+    {"constraints", VALUE_YES, AT(scene, solver.direct), WORDS("ebciem", "direct")},
+    {"constraint_points", VALUE_YES, AT(scene, solver.node_values), WORDS("hat", "node")},
+    {"volume", VALUE_YES, AT(scene, solver.pointwise_volume), WORDS("nodal", "pointwise")},
     {"tolerance", VALUE_SHARE, AT(scene, solver.tolerance)},
     {"max_steps", VALUE_COUNT, AT(scene, solver.max_steps), .most = MOST_STEPS},
     {"ramp_steps", VALUE_COUNT, AT(scene, solver.ramp_steps), .most = MOST_STEPS},

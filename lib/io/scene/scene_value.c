@@ -334,11 +334,11 @@ static enum status read_curve(const struct place *place, const char *text, struc
     static const char *const words[] = {"smooth", "linear", "step"};
     for (int i = 0; i < 3; i++) {
         if (strcmp(text, words[i]) == 0) {
-            curve->kind = (enum scene_curve_kind)i;
+            curve->kind = (enum curve_kind)i;
             return STATUS_OK;
         }
     }
-    curve->kind = SCENE_CURVE_FILE;
+    curve->kind = CURVE_TABLE;
     place->scene->tabulated = true;
     return read_file(place, text, &curve->file);
 }

@@ -3,8 +3,7 @@
 
 #include "approx/shape/boundary.h"
 #include "solid/constraint/measured.h"
-
-enum condition_kind { CONDITION_COMPONENTS, CONDITION_NORMAL, CONDITION_TABLE, CONDITION_POINTS };
+#include "solid/system/kinds.h"
 
 /* A prescribed displacement, of averages over facets or of values at nodes. */
 struct condition {

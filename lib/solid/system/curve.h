@@ -2,16 +2,10 @@
 #pragma once
 
 #include "base/status.h"
+#include "solid/system/kinds.h"
 
 #include <gsl/gsl_interp.h>
 #include <stdint.h>
-
-enum curve_kind {
-    CURVE_SMOOTH, /* 10 s^3 - 15 s^4 + 6 s^5: no velocity and acceleration at s = 0 and 1 */
-    CURVE_LINEAR, /* s */
-    CURVE_STEP,   /* 1 from s = 0 on */
-    CURVE_TABLE   /* through given points, monotone between them */
-};
 
 struct load_curve {
     enum curve_kind kind;

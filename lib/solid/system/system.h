@@ -15,10 +15,6 @@ struct dead_load {
     int32_t curve;
 };
 
-/* The part of a fluid whose pressure acts: below its level; above it, where the pressure is negative; or
- * all. */
-enum fluid_part { FLUID_BELOW, FLUID_ABOVE, FLUID_ALL };
-
 /* A following pressure: it acts on the deformed facets, whose corners move with the field at the nodes. The
  * quadrature of the faces (6) transfers it to the parameters, so that the linear patch test holds under a
  * constant pressure. */

@@ -11,16 +11,12 @@
 enum status model_add_curve(struct model *model, const struct scene_label *label,
                             const struct scene_curve *curve, int32_t *index, struct error *error)
 {
-    static const enum curve_kind kinds[] = {[SCENE_CURVE_SMOOTH] = CURVE_SMOOTH,
-                                            [SCENE_CURVE_LINEAR] = CURVE_LINEAR,
-                                            [SCENE_CURVE_STEP] = CURVE_STEP,
-                                            [SCENE_CURVE_FILE] = CURVE_TABLE};
     struct assembly *input = &model->assembly;
     FREED_BY(table_free) struct table table = {0};
     RETURN_IF_ERROR(RESIZE_ARRAY(&input->curves, input->curve_count + 1, error));
     struct load_curve *added = &input->curves[input->curve_count];
-    if (curve->kind != SCENE_CURVE_FILE) {
-        *added = curve_of_kind(kinds[curve->kind]);
+    if (curve->kind != CURVE_TABLE) {
+        *added = curve_of_kind(curve->kind);
     } else {
         double end = input->in_time                 ? model->scene->solver.end_time
                      : model->scene->duration > 0.0 ? model->scene->duration
@@ -37,25 +33,21 @@ enum status model_add_curve(struct model *model, const struct scene_label *label
 static enum status add_displacement(struct model *model, const struct scene_displacement *section,
                                     struct condition *condition, struct error *error)
 {
-    static const enum condition_kind kinds[] = {[SCENE_COMPONENTS] = CONDITION_COMPONENTS,
-                                                [SCENE_NORMAL] = CONDITION_NORMAL,
-                                                [SCENE_TABLE] = CONDITION_TABLE,
-                                                [SCENE_POINTS] = CONDITION_POINTS};
     int dim = model->assembly.cells.dim;
     FREED_BY(table_free) struct table table = {0};
     *condition = (struct condition){.name = section->label.name,
                                     .where = section->label.where,
-                                    .kind = kinds[section->kind],
+                                    .kind = section->kind,
                                     .normal = section->normal,
                                     .unit = section->table_unit,
                                     .table = section->table};
     memcpy(condition->components, section->components, sizeof section->components);
     memcpy(condition->is_free, section->is_free, sizeof section->is_free);
     RETURN_IF_ERROR(model_add_curve(model, &section->label, &section->curve, &condition->curve, error));
-    if (section->kind == SCENE_POINTS) {
+    if (section->kind == CONDITION_POINTS) {
         return model_points(model, section, condition, error);
     }
-    if (section->kind == SCENE_TABLE) {
+    if (section->kind == CONDITION_TABLE) {
         RETURN_IF_ERROR(table_read(section->table, 2 * dim, 2 * dim, &table, error));
         condition->row_count = table.rows;
         condition->rows = table.values;
@@ -75,8 +67,6 @@ static enum status add_displacement(struct model *model, const struct scene_disp
 static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
                              struct error *error)
 {
-    static const enum fluid_part parts[] = {
-        [SCENE_BELOW] = FLUID_BELOW, [SCENE_ABOVE] = FLUID_ABOVE, [SCENE_BELOW_AND_ABOVE] = FLUID_ALL};
     double length = hypot(hypot(section->gravity[0], section->gravity[1]), section->gravity[2]);
     const double *gravity = length > 0.0 ? section->gravity : model->scene->gravity;
     if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
@@ -89,7 +79,7 @@ static enum status set_fluid(const struct model *model, const struct scene_load 
         load->level[a] = section->level[a];
     }
     load->is_fluid = true;
-    load->part = parts[section->level_side];
+    load->part = section->part;
     return STATUS_OK;
 }
 
@@ -125,7 +115,7 @@ static enum status add_loads(struct model *model, struct error *error)
                  {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
     /* In time gravity acts from the start; in other scenes it grows smoothly. */
     bool from_start = input->in_time || scene->duration > 0.0;
-    const struct scene_curve curve = {.kind = from_start ? SCENE_CURVE_STEP : SCENE_CURVE_SMOOTH};
+    const struct scene_curve curve = {.kind = from_start ? CURVE_STEP : CURVE_SMOOTH};
     struct load *loads;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
                                 scene->traction_count + scene->force_count + scene->pressure_count, error));
@@ -197,7 +187,7 @@ static enum status add_supports(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
-    const struct scene_curve any = {.kind = SCENE_CURVE_SMOOTH};
+    const struct scene_curve any = {.kind = CURVE_SMOOTH};
     struct support_condition *supports;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &supports, scene->support_count, error));
     input->supports = supports;
@@ -239,9 +229,9 @@ enum status model_conditions(struct model *model, struct error *error)
     struct assembly *input = &model->assembly;
     struct condition *conditions;
     input->in_time = scene->analysis == SCENE_DYNAMIC;
-    input->pointwise_volume = scene->solver.volume == SCENE_POINTWISE_VOLUME;
-    input->node_values = scene->solver.constraint_points == SCENE_NODE_VALUES;
-    input->direct = scene->solver.constraints == SCENE_DIRECT;
+    input->pointwise_volume = scene->solver.pointwise_volume;
+    input->node_values = scene->solver.node_values;
+    input->direct = scene->solver.direct;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
     input->conditions = conditions;
     for (; input->condition_count < scene->displacement_count; input->condition_count++) {
