@@ -277,12 +277,22 @@ END
 
 # bats test_tags=thorough
 @test "make refine: of a label image, by voxels" {
-    "$BUILD/tests/helper/phantom" sphere > sphere.nii.gz
+    "$BUILD/tests/helper/phantom" sphere > ball.nii.gz
+    # Parts of the boundary as labels, so that their rims are the same on every lattice.
+    /usr/bin/python3 - << 'END'
+import nibabel as nib, numpy as np
+image = nib.load("ball.nii.gz")
+value = np.asarray(image.dataobj).copy()
+x = (image.affine @ np.vstack([np.indices(value.shape).reshape(3, -1), np.ones((1, value.size))]))[:3].reshape(3, *value.shape)
+for label, z, radius in (2, -24, 14), (3, 24, 12):
+    value[(value > 0) & (x[0] ** 2 + x[1] ** 2 + (x[2] - z) ** 2 < radius ** 2)] = label
+nib.save(nib.Nifti1Image(value, None, image.header), "sphere.nii.gz")
+END
     {
         printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = label_1\nE = 3000\nnu = 0.49\nrho = 1000\n'
         printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.002\n'
     } > press.scene
-    parts='-u mm -f held=ball:0,0,-24,14 -f pushed=ball:0,0,24,12'
+    parts='-r label_1=all --replace -m label_2|outside=held -m label_3|outside=pushed'
     run -2 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.1mm out
     [[ $output == "refine: SPACING: '' is not a positive length, such as 6mm" ]]
     export SPACING=8mm REFINE_GROUPS=$parts
@@ -297,7 +307,7 @@ END
     # shellcheck disable=SC2086 # several arguments
     voxels -h 3mm sphere.nii.gz | tag $parts | shapefn 2> log | mtled -q press.scene -o fine.dat
     fieldcmp --skip-outside --tol-avg 0.05mm fine.dat out/u.dat
-    run -1 --separate-stderr env VOXELS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
+    run -1 --separate-stderr env REFINE_GROUPS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
     [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
     run -1 --separate-stderr env VOXELS=--wrong bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
     [[ $stderr == "refine: round 1: voxels: voxels: "*"kept: none" ]]
