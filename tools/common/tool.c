@@ -21,6 +21,7 @@ static char **command;           /* the command line for the provenance, up to N
 static const char *main_input;   /* the operand that replaces standard input, or NULL */
 static bool stdin_read;          /* standard input has been read */
 static bool stdout_closed;       /* standard output has been closed, its errors reported */
+static bool ending;              /* this program ends the process, not a library */
 
 static void print_message(const struct tool *tool, const char *format, va_list values)
 {
@@ -45,6 +46,7 @@ _Noreturn void tool_fail(const struct tool *tool, enum status status, const char
 
 void tool_exit(enum status status)
 {
+    ending = true;
     (void)process_fails_alone();
     process_end();
     exit((int)status);
@@ -123,6 +125,15 @@ static void parse_options(struct tool *tool, int argc)
     tool->text = options_has(&tool->options, "text") && tool_given(tool, "text");
 }
 
+/* libgomp ends the process with status 1 if it gets no memory; here 1 would be a verdict. */
+static void on_foreign_exit(int status, void *unused)
+{
+    (void)status, (void)unused;
+    if (!ending) {
+        _exit((int)STATUS_SYSTEM);
+    }
+}
+
 void tool_begin(struct tool *tool, const char *usage, int least, int most, int argc, char *argv[])
 {
     const char *slash = argc > 0 ? strrchr(argv[0], '/') : NULL;
@@ -136,6 +147,7 @@ void tool_begin(struct tool *tool, const char *usage, int least, int most, int a
     /* Return arrays from this size on to the system when they are freed; by default the bound grows. */
     (void)mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
+    (void)on_exit(on_foreign_exit, NULL);
     arguments = tool_memory(tool, array_new(argc + 1, sizeof *arguments));
     memcpy(arguments, argv, (size_t)argc * sizeof *arguments);
     command = tool_memory(tool, array_new(argc + 1, sizeof *command));
@@ -283,6 +295,7 @@ void tool_copy(const struct tool *tool, const struct stream *stream)
 int tool_end(const struct tool *tool)
 {
     bool failed = !stdout_closed && ferror(stdout) != 0;
+    ending = true;
     errno = 0;
     if (!stdout_closed && (fflush(stdout) != 0 || failed)) {
         tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
