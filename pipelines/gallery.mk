@@ -1,5 +1,5 @@
 # make gallery: examples that others can judge, each with a picture: a liver (make liver), a bar of silicone whose bending was
-# measured (make phantom), and a probe pressed into tissue beside Hertz (make indentation).
+# measured (make phantom), a probe pressed into tissue beside Hertz (make indentation), and a needle with friction (make needle).
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
@@ -8,8 +8,8 @@ PHANTOM_SIZES := 3.5 2.5 1.8
 GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: gallery liver phantom indentation
-gallery: liver phantom indentation
+.PHONY: gallery liver phantom indentation needle
+gallery: liver phantom indentation needle
 
 $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -64,3 +64,27 @@ $(GALLERY)/indentation.tsv: $(GALLERY)/indentation.dat pipelines/gallery/hertz.a
 
 $(GALLERY)/indentation.png: $(GALLERY)/indentation.tsv pipelines/gallery/indentation.gp
 	gnuplot -e "data='$<'; out='$@'" pipelines/gallery/indentation.gp
+
+# ---- needle ----------------------------------------------------------------------------------------------------------
+
+NEEDLE := examples/needle
+
+needle: $(GALLERY)/needle.tsv $(GALLERY)/needle.png
+	@cat $<
+	$(PICTURES)
+
+$(GALLERY)/needle.dat $(GALLERY)/needle-smooth.dat: $(addprefix $(NEEDLE)/,needle.geo needle.scene needle.tsv middle.tsv stroke.tsv) $(GALLERY_PROGRAMS)
+	@mkdir -p $(@D)
+	gmsh -2 -v 2 $< -o $(@:.dat=.msh)
+	cp $(NEEDLE)/*.tsv $(@D)
+	sed '$(if $(findstring smooth,$@),/^friction/d; /^time_steps/d)' $(NEEDLE)/needle.scene > $(@:.dat=.scene)
+	(nodes -u mm $(@:.dat=.msh) | shapefn | mtled -v $(@:.dat=.scene)) > $@ $(GALLERY_LOG)
+
+# The depth of the tip and the force on both halves, with friction and without.
+$(GALLERY)/needle.tsv: $(GALLERY)/needle.dat $(GALLERY)/needle-smooth.dat
+	(printf 'depth_mm\tforce_N_per_m\twithout_friction\n'; paste <(grep -v '#' $(NEEDLE)/stroke.tsv) <(mts print reactions.frames $<) \
+	    <(mts print reactions.frames $(word 2,$^)) | awk '{ printf "%.6g\t%.5g\t%.5g\n", 50 * $$2 - 1, 2 * $$8, 2 * $$15 }') > $@
+
+$(GALLERY)/needle.png: $(GALLERY)/needle.tsv $(GALLERY)/needle.dat pipelines/gallery/needle.awk pipelines/gallery/needle.gp
+	awk -f pipelines/stream.awk -f pipelines/gallery/needle.awk -v field=$(word 2,$^) -v frame=24 > $(@:.png=.rows)
+	gnuplot -e "data='$<'; tissue='$(@:.png=.rows)'; out='$@'" pipelines/gallery/needle.gp

@@ -53,3 +53,11 @@ END
     mts print reactions.frames u.dat | awk -f "$top/pipelines/gallery/hertz.awk" | tee rows
     awk 'NR > 1 { for (i = 4; i <= 5; i++) good += $i > 0.98 && $i < 1.02 } END { exit !(good == 8 && NR == 5) }' rows
 }
+
+@test "needle: on its cone the force along is (tan a + mu) / (1 - mu tan a) of that across; it is held back as it leaves" {
+    gmsh -2 -v 1 "$top/examples/needle/needle.geo" -setnumber h 3 -o needle.msh
+    cp "$top/examples/needle/"*.tsv .
+    nodes -u mm needle.msh | shapefn 2> said | mtled "$top/examples/needle/needle.scene" > u.dat
+    rows reactions.frames u.dat | awk '{ print $6, $7 } NR == 4 { cone = $6 / $7 } NR == 25 { in_ = $6 } NR == 41 { out = $6 }
+        END { print cone, in_, out; c = cone / (0.4 / 0.97) - 1; exit !(c * c < 1e-8 && in_ > 2.5 && out < -0.5) }'
+}

@@ -1,0 +1,15 @@
+// Half of a block of tissue, 70 x 60 mm, with a channel along its middle, y = 0: gmsh -2 needle.geo
+DefineConstant[h = 1.5];
+Point(1) = {0, 0, 0, h};
+Point(2) = {70, 0, 0, h};
+Point(3) = {70, 30, 0, 3 * h};
+Point(4) = {0, 30, 0, 3 * h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("tissue") = {1};
+Physical Curve("channel") = {1};
+Physical Curve("far") = {2, 3};
