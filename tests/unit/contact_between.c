@@ -194,7 +194,7 @@ TEST(friction)
         memset(aside, 0, (size_t)size * sizeof *aside);
         contact_force(contact, u, aside);
         for (int64_t i = 0; i < size; i++) {
-            NEAR_TO(aside[i], force[i], 0.02 * most);
+            NEAR_TO(aside[i], force[i], 2e-3 * most);
         }
         pair_free(pair);
     }

@@ -125,13 +125,19 @@ static void place_on_facet(const struct contact *contact, int64_t facet, const d
     }
 }
 
+/* The normal across which point p slips. */
+static const double *slip_normal(const struct contact *contact, int64_t p)
+{
+    return contact->friction->follows ? contact->view[p].normal : contact->checked_normal + p * contact->dim;
+}
+
 /* slip[dim] = from the anchor to point p, across the normal. */
 static void measure_slip(const struct contact *contact, int64_t p, double *slip)
 {
     const struct contact_friction *friction = contact->friction;
     int dim = contact->dim;
     const double *x = contact->view[p].x;
-    const double *normal = friction->follows ? contact->view[p].normal : contact->checked_normal + p * dim;
+    const double *normal = slip_normal(contact, p);
     if (contact->between == NULL) {
         vector_subtract(dim, x, friction->anchor + p * dim, slip);
     } else {
@@ -261,6 +267,22 @@ static void weigh_behind(const struct contact *contact, int64_t p, const double 
     }
 }
 
+/* in_plane[dim]: from the anchor to the place opposite to point p, in the plane of its facet, such that the
+ * slip across the normal is `way`. */
+static void turn_into_facet(const struct contact *contact, int64_t p, const double *way, double *in_plane)
+{
+    const struct between_view *here = &contact->between->view[p];
+    const double *normal = slip_normal(contact, p);
+    int dim = contact->dim;
+    const double *plane = contact->between->opposite.surface.normal + here->facet * dim;
+    double offset[3], place[3];
+    place_on_facet(contact, here->facet, here->weight, place);
+    vector_subtract(dim, contact->view[p].x, place, offset);
+    vector_subtract(dim, way, offset, in_plane);
+    add_scaled(dim, vector_dot(dim, offset, normal), normal, in_plane);
+    add_scaled(dim, -vector_dot(dim, in_plane, plane) / vector_dot(dim, normal, plane), normal, in_plane);
+}
+
 /* Move the anchor of point p to `way` behind it; false where nothing is opposite to it. */
 static void move_anchor(struct contact *contact, int64_t p, const double *way)
 {
@@ -274,7 +296,9 @@ static void move_anchor(struct contact *contact, int64_t p, const double *way)
     bool found = contact->view[p].searched && contact->between->view[p].facet >= 0;
     friction->facet[p] = found ? contact->between->view[p].facet + 1 : 0;
     if (found) {
-        weigh_behind(contact, p, way, anchor);
+        double in_plane[3];
+        turn_into_facet(contact, p, way, in_plane);
+        weigh_behind(contact, p, in_plane, anchor);
     }
 }
 
