@@ -497,7 +497,8 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
     int64_t most = n->options->most_steps > 0 ? n->options->most_steps : usual_most_steps;
     while (n->report->steps < most) {
         if (!step(n, error)) {
-            return n->failure == STATUS_OK ? STATICS_INVERTED : STATICS_STOPPED;
+            bool slides = n->slides && n->report->least_jacobian > 0.0;
+            return n->failure != STATUS_OK ? STATICS_STOPPED : slides ? STATICS_STALLED : STATICS_INVERTED;
         }
         augment(n);
         estimate(n);
