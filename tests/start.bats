@@ -123,7 +123,7 @@ begin_from_coarse() {
     pressed_block > push.scene
     mtled -q -o coarse.dat push.scene coarse.mts
     { cat push.scene && printf '[output]\nframes = 3\n'; } > frames.scene
-    refused 2 "--start: the run begins at the whole load: a scene in time, or that asks for frames, has states before" \
+    refused 2 "--start: the run begins at the whole load: a scene in time, with friction, or that asks for frames, has states before" \
         mtled -s coarse.dat frames.scene fine.mts
     swinging_block > swing.scene
     refused 2 "--start: the run begins at the whole load" mtled -s coarse.dat swing.scene fine.mts

@@ -131,7 +131,8 @@ quantity() {
 keep() {
     local file
     cp "$work/u.dat" "$work/last.dat"
-    [ -n "${AFRESH-}" ] || last=$work/last.dat
+    # The state of a scene in time or with friction depends on the way there.
+    [ -n "${AFRESH-}" ] || grep -qE '^(friction|duration|frames) *=' "$scene" || last=$work/last.dat
     holds "$estimate < ${least_estimate:-1e300}" || return 0
     least_estimate=$estimate kept="round $round, $nodes nodes, $(calc "1000 * $estimate") mm"
     for file in "$body" u.dat coarse.dat errors.tsv "$sizes"; do
