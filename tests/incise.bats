@@ -58,6 +58,25 @@ size_of() {
     grep -q 'nodes near: .* 0 0 0 to 0.05 ' said
 }
 
+@test "a blade that branches, through the body: three pieces, four where two cross; no node is on an edge of the cut" {
+    body > body.mts
+    # panels from the line through (.052, *, .026): two in one sheet, one or two others
+    a='.052 -.02 .026' b='.052 .09 .026'
+    half() { printf '%s %s %s\n%s %s %s\n' "$a" "$b" "$2" "$a" "$2" "$1"; }       # to the right of a and b
+    back() { printf '%s %s %s\n%s %s %s\n' "$a" "$2" "$b" "$a" "$1" "$2"; }
+    { half '-.018 -.02 .006' '-.018 .09 .006'; back '.132 -.02 .051' '.132 .09 .051'; } > across.tsv
+    { half '.062 -.02 -.034' '.062 .09 -.034'; back '.032 -.02 .096' '.032 .09 .096'; } > down.tsv
+    { cat across.tsv; head -2 down.tsv; } > branch.tsv
+    cat across.tsv down.tsv > cross.tsv
+    for blade in branch:3 cross:4; do
+        incise -v -s "${blade%:*}.tsv" -o cut.mts body.mts 2> said
+        grep -q ' 0 nodes on the edge.*pieces: '"${blade#*:}, " said
+        mts check cut.mts | grep -q "${blade#*:} connected bodies"
+    done
+    incise -s across.tsv body.mts | incise -v -s down.tsv 2> said | mts check | grep -q '4 connected bodies'
+    grep -q ' 0 nodes on the edge.*pieces: 4, ' said
+}
+
 @test "a body cut through is its two parts, each computed alone" {
     body | tag -r 'body=all' --replace > body.mts 2> note
     stl "$(panel .03 -.01 -.01 .02 0 .08 0 .09 0)" > blade.stl
@@ -191,7 +210,7 @@ flat_blade() {
 # pressed_open DIM REGION... > SCENE: the lips of the cut k are pushed apart, the rest of the boundary is on springs
 pressed_open() {
     printf '[scene]\ndim = %s\nanalysis = quasi-static\n' "$1"
-    printf '[material %s]\nregion = %s\nE = 3000\nnu = 0.45\nrho = 1000\n' $(printf '%s %s ' $(printf '%s\n%s ' "${@:2}" "${@:2}" | sort))
+    for region in "${@:2}"; do printf '[material %s]\nregion = %s\nE = 3000\nnu = 0.45\nrho = 1000\n' "$region" "$region"; done
     printf '[support outer]\nfacets = outer\nnormal = 1e5\ntangential = 1e5\n[pressure lips]\nfacets = k|front, k|back\nvalue = 30\n'
 }
 
@@ -277,7 +296,7 @@ blades() {
     { cat whole.scene; printf '[contact lips]\nfacets = cut|front\nagainst = cut|back\n'; } > cut.scene
     mtled -q whole.scene body.mts 2> note | mts print reactions > whole
     for ends in '.02 .0513 .08 .0513' '-.02 .0513 .18 .0513'; do
-        printf '%s %s\n' $ends > blade.txt
+        xargs -n 2 <<< "$ends" > blade.txt
         incise -s blade.txt body.mts | mtled -q cut.scene 2> note | mts print reactions > cut
         paste whole cut | awk 'NR < 3 { d = $4 / $2 - 1; if (d > .005 || d < -.005) exit 1 } NR == 3 { if ($2 * $2 < 100) exit 1; n++ } END { exit !n }'
     done

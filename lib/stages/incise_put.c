@@ -43,21 +43,6 @@ static enum status put(struct stream *stream, const char *name, enum element_typ
 
 /* ---- node sets ---- */
 
-/* edge[nodes]: the nodes of both lips, which meet there. */
-static enum status mark_edge(const struct patient *patient, bool *edge, struct error *error)
-{
-    const struct division *body = &patient->body;
-    NEW_SCRATCH(bool, front, body->node_count, error);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t i = 0; i < body->facet_count * body->dim; i++) {
-            int32_t group = body->group[i / body->dim], node = body->facet[i];
-            front[node] = front[node] || group == patient->front;
-            edge[node] = pass == 1 && (edge[node] || (front[node] && group == patient->back));
-        }
-    }
-    return STATUS_OK;
-}
-
 /* in[nodes]: a node on an edge is in a set if both ends are, a copy if its original is. */
 static void mark_members(const struct patient *patient, int64_t set, bool *in)
 {
@@ -72,20 +57,62 @@ static void mark_members(const struct patient *patient, int64_t set, bool *in)
     }
 }
 
+/* The set NAME|edge of the stream, or -1. */
+static int64_t find_edge(const struct patient *patient)
+{
+    int64_t own = -1;
+    for (int64_t s = 0; s < patient->sets.names.count && patient->options->blade != NULL; s++) {
+        own = incise_is_name(patient->sets.names.name[s], patient->options->name, "|edge") ? s : own;
+    }
+    return own;
+}
+
+/* of_lip[nodes], bits: 1 for a node of the front lip, 2 of the back. */
+static void mark_lips(int dim, int64_t count, const int32_t *facet, const int32_t *group, int32_t front,
+                      int32_t back, int8_t *of_lip)
+{
+    for (int64_t i = 0; i < count * dim; i++) {
+        of_lip[facet[i]] |= group[i / dim] == front ? 1 : group[i / dim] == back ? 2 : 0;
+    }
+}
+
+/* edge[nodes]: nodes of both lips, where the cells go round: which have no copy, as they have in the corner
+ * of a piece between lips of two sheets. Old nodes that were on a lip before are judged as they were then. */
+static enum status mark_edge(const struct patient *patient, bool *edge, struct error *error)
+{
+    const struct division *body = &patient->body;
+    int64_t old = patient->cells.node_count, own = find_edge(patient);
+    NEW_SCRATCH(int8_t, of_lip, body->node_count, error);
+    NEW_SCRATCH(int8_t, before, body->node_count, error);
+    NEW_SCRATCH(bool, copied, body->node_count, error);
+    if (own >= 0) {
+        mark_members(patient, own, edge);
+    }
+    mark_lips(body->dim, body->facet_count, body->facet, body->group, patient->front, patient->back, of_lip);
+    mark_lips(body->dim, patient->facets.count, patient->facets.facet, patient->facets.group, patient->front,
+              patient->back, before);
+    for (int64_t n = old; n < body->node_count; n++) {
+        const int32_t *parent = &body->parent[2 * n];
+        copied[n] = parent[0] == parent[1];
+        copied[parent[0]] = copied[parent[0]] || copied[n];
+    }
+    for (int64_t n = 0; n < body->node_count; n++) {
+        edge[n] = of_lip[n] == 3 && !copied[n] && (edge[n] || n >= old || before[n] == 0);
+    }
+    return STATUS_OK;
+}
+
 /* Node sets in the numbers kept_as[]; `edge` last, or in place of the set that has its name. */
 static enum status put_sets(const struct patient *patient, const bool *edge, const int32_t *kept_as,
                             int64_t node_count, struct stream *stream, struct error *error)
 {
     static const char *const endings[] = {"|edge"};
     const struct names *names = &patient->sets.names;
-    int64_t own = -1, room = 0, count = 0, lists = 0;
+    int64_t own = find_edge(patient), room = 0, count = 0, lists = 0;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
     SCRATCH char *text = NULL;
     bool any = patient->report->edge > 0;
-    for (int64_t s = 0; s < names->count && patient->options->blade != NULL; s++) {
-        own = incise_is_name(names->name[s], patient->options->name, endings[0]) ? s : own;
-    }
     NEW_SCRATCH(bool, in, node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&ptr, names->count + 2, error));
     for (int64_t s = 0; s < names->count + any; s++) {

@@ -42,7 +42,7 @@ block 2 '0, -0.005' body > flat.scene
 { cat flat.scene; closed; } > flat.closed.scene
 whole=$(mtled -q flat.scene flat.mts 2> note | mts print reactions | awk 'NR == 1 { print $2 }')
 for ends in '.02 .0513 .08 .0513' '-.02 .0513 .18 .0513'; do
-    printf '%s %s\n' $ends > flat.txt
+    xargs -n 2 <<< "$ends" > flat.txt
     incise -s flat.txt flat.mts > flat.cut.mts
     row "closed by contact" "$(count flat.cut.mts)" "force, N/m" "$(mtled -q flat.closed.scene flat.cut.mts 2> note | mts print reactions | awk 'NR == 1 { print $2 }')" "$whole"
 done
