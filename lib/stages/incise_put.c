@@ -69,7 +69,7 @@ static int64_t find_edge(const struct patient *patient)
 
 /* of_lip[nodes], bits: 1 for a node of the front lip, 2 of the back. */
 static void mark_lips(int dim, int64_t count, const int32_t *facet, const int32_t *group, int32_t front,
-                      int32_t back, int8_t *of_lip)
+                      int32_t back, int32_t *of_lip)
 {
     for (int64_t i = 0; i < count * dim; i++) {
         of_lip[facet[i]] |= group[i / dim] == front ? 1 : group[i / dim] == back ? 2 : 0;
@@ -82,8 +82,8 @@ static enum status mark_edge(const struct patient *patient, bool *edge, struct e
 {
     const struct division *body = &patient->body;
     int64_t old = patient->cells.node_count, own = find_edge(patient);
-    NEW_SCRATCH(int8_t, of_lip, body->node_count, error);
-    NEW_SCRATCH(int8_t, before, body->node_count, error);
+    NEW_SCRATCH(int32_t, of_lip, body->node_count, error);
+    NEW_SCRATCH(int32_t, before, body->node_count, error);
     NEW_SCRATCH(bool, copied, body->node_count, error);
     if (own >= 0) {
         mark_members(patient, own, edge);
