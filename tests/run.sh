@@ -36,7 +36,7 @@ export -f run
 
 rm -rf "$logs" "$BUILD/check.result"
 mkdir -p "$logs"
-slow=(mpi deny touching faults warp conditions voxels nodes fielderr plates hard make python pipelines numbers install)
+slow=(mpi incise deny touching faults warp conditions voxels nodes fielderr plates hard make python pipelines numbers install)
 slow=("${slow[@]/%/.bats}" unit/label_cells)
 mapfile -t units < <(cd tests && printf '%s\n' unit/*.c | sed 's/\.c$//')
 mapfile -t suites < <(cd tests && printf '%s\n' *.bats)
