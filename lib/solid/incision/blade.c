@@ -21,19 +21,26 @@ static const double round_off = 1e-9;
 static enum status check_crossings(int dim, int64_t count, const double *corners, struct error *error)
 {
     struct box all = box_of(dim, count * dim, corners);
+    int axis = 0; /* the longest, along which they are sorted */
     NEW_SCRATCH(int32_t, facet, count * dim, error);
     NEW_SCRATCH(struct facet_box, boxes, count, error);
+    NEW_SCRATCH(double, x, count * dim * dim, error);
+    for (int a = 1; a < dim; a++) {
+        axis = all.high[a] - all.low[a] > all.high[axis] - all.low[axis] ? a : axis;
+    }
     for (int64_t i = 0; i < count * dim; i++) {
         facet[i] = (int32_t)i;
         boxes[i / dim].facet.item = i / dim;
+        for (int a = 0; a < dim; a++) {
+            x[i * dim + a] = corners[i * dim + (a + axis) % dim];
+        }
     }
-    facet_boxes_sort(dim, corners, facet, count, boxes);
+    facet_boxes_sort(dim, x, facet, count, boxes);
     for (int64_t i = 0; i < count; i++) {
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
             int64_t f = boxes[i].facet.item, g = boxes[k].facet.item;
             if (box_meets(&boxes[i].box, &boxes[k].box) &&
-                facets_cross(dim, corners, facet + f * dim, facet + g * dim,
-                             round_off * box_diagonal(&all))) {
+                facets_cross(dim, x, facet + f * dim, facet + g * dim, round_off * box_diagonal(&all))) {
                 return fail(error, STATUS_INPUT,
                             "its facets %lld and %lld cross each other: cut along two blades in turn",
                             (long long)(f < g ? f : g) + 1, (long long)(f < g ? g : f) + 1);
