@@ -9,10 +9,8 @@ struct incise_options {
     const double *at;          /* nodes * dim, m: where the blade meets the nodes; NULL: nodes.x */
     const char *name;          /* of the lips, NAME|front and NAME|back, and of the set NAME|edge */
     bool excise;               /* take out what lies behind the blade */
-    double least; /* pieces with a lip that are smaller than this share of the body are taken out */
-    const char
-        *region; /* to take out, NULL: none; the wall that it leaves becomes facets of the group NAME|wall
-                  */
+    double least;       /* pieces with a lip that are smaller than this share of the body are taken out */
+    const char *region; /* to take out, NULL: none; the wall that it leaves is facets NAME|wall */
 };
 
 struct incise_report {
@@ -23,6 +21,7 @@ struct incise_report {
     int32_t pieces;                 /* connected pieces with a lip */
     int32_t taken_out;              /* of these: as too small, or as excised */
     double smallest, taken, volume; /* of the smallest piece left, of those taken out, of the body, m3 (m2) */
+    int64_t region_cells;           /* of the region, taken out */
     double poorest;                 /* quality of the poorest cell */
 };
 
