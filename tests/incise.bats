@@ -190,6 +190,11 @@ END
     refused 2 "nothing is left of the body" incise -r body body.mts
     refused 2 "nothing to do" incise body.mts
     refused 2 "-x goes with -s" incise -x -r body body.mts
+    # a part that nothing holds is mtled's to refuse
+    printf '%s\n' '.05 -1' '.05 1' > blade.txt
+    incise -s blade.txt -o cut.mts flat.mts
+    { block quasi-static 'gravity = 0, -1'; printf '[displacement left]\nfacets = xmin\ncomponents = 0, 0\n'; } > scene
+    refused 1 "nothing holds body 2" mtled scene cut.mts
     mts drop cells body.mts > nodes.mts
     try "no section cells" "$good" nodes.mts
 }
