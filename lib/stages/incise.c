@@ -9,12 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-static void patient_free(struct patient *patient)
+static void cut_body_free(struct cut_body *whole)
 {
-    cell_regions_free(&patient->regions);
-    named_facets_free(&patient->facets);
-    named_sets_free(&patient->sets);
-    division_free(&patient->body);
+    cell_regions_free(&whole->regions);
+    named_facets_free(&whole->facets);
+    named_sets_free(&whole->sets);
+    division_free(&whole->body);
 }
 
 /* ---- groups ---- */
@@ -26,42 +26,42 @@ bool incise_is_name(const char *text, const char *name, const char *ending)
 }
 
 /* The number of the group NAME|ENDING, which may be new. */
-static int32_t find_group(struct patient *patient, const char *ending)
+static int32_t find_group(struct cut_body *whole, const char *ending)
 {
-    const struct names *names = &patient->facets.names;
+    const struct names *names = &whole->facets.names;
     for (int64_t g = 0; g < names->count; g++) {
-        if (incise_is_name(names->name[g], patient->options->name, ending)) {
+        if (incise_is_name(names->name[g], whole->options->name, ending)) {
             return (int32_t)g;
         }
     }
-    patient->added[patient->groups - names->count] = ending;
-    return (int32_t)patient->groups++;
+    whole->added[whole->groups - names->count] = ending;
+    return (int32_t)whole->groups++;
 }
 
-static enum status read_body(const struct stream *stream, struct patient *patient, struct error *error)
+static enum status read_body(const struct stream *stream, struct cut_body *whole, struct error *error)
 {
-    const struct incise_options *options = patient->options;
-    struct cells *cells = &patient->cells;
+    const struct incise_options *options = whole->options;
+    struct cells *cells = &whole->cells;
     RETURN_IF_ERROR(stream_cells(stream, true, cells, error));
-    RETURN_IF_ERROR(stream_facets(stream, false, cells, &patient->facets, error));
+    RETURN_IF_ERROR(stream_facets(stream, false, cells, &whole->facets, error));
     if (stream_find(stream, "cells.region") != NULL) {
-        RETURN_IF_ERROR(stream_regions(stream, &patient->regions, error));
+        RETURN_IF_ERROR(stream_regions(stream, &whole->regions, error));
     }
     if (stream_find(stream, "sets.ptr") != NULL) {
-        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &patient->sets, error));
+        RETURN_IF_ERROR(stream_sets(stream, false, cells->node_count, &whole->sets, error));
     }
-    RETURN_IF_ERROR(division_begin(cells, options->at, patient->regions.of_cell, patient->facets.count,
-                                   patient->facets.facet, patient->facets.group, &patient->body, error));
-    for (int64_t s = 0; s < patient->sets.names.count; s++) {
-        const struct neighbours *lists = &patient->sets.lists;
+    RETURN_IF_ERROR(division_begin(cells, options->at, whole->regions.of_cell, whole->facets.count,
+                                   whole->facets.facet, whole->facets.group, &whole->body, error));
+    for (int64_t s = 0; s < whole->sets.names.count; s++) {
+        const struct neighbours *lists = &whole->sets.lists;
         for (int64_t i = lists->ptr[s]; i < lists->ptr[s + 1]; i++) {
-            patient->body.sets[lists->idx[i]] |= (uint64_t)1 << s % 64;
+            whole->body.sets[lists->idx[i]] |= (uint64_t)1 << s % 64;
         }
     }
-    patient->groups = patient->facets.names.count;
-    patient->front = options->blade != NULL ? find_group(patient, "|front") : -1;
-    patient->back = options->blade != NULL ? find_group(patient, "|back") : -1;
-    patient->wall = options->region != NULL ? find_group(patient, "|wall") : -1;
+    whole->groups = whole->facets.names.count;
+    whole->front = options->blade != NULL ? find_group(whole, "|front") : -1;
+    whole->back = options->blade != NULL ? find_group(whole, "|back") : -1;
+    whole->wall = options->region != NULL ? find_group(whole, "|wall") : -1;
     return STATUS_OK;
 }
 
@@ -84,12 +84,11 @@ static const char *box_text(const struct box *box, char text[128])
     return text;
 }
 
-static enum status fail_outside(const struct patient *patient, struct error *error)
+static enum status fail_outside(const struct cut_body *whole, struct error *error)
 {
-    const struct blade *blade = patient->options->blade;
-    int dim = patient->cells.dim;
-    struct box of_blade = box_of(dim, 0, NULL),
-               own = box_of(dim, patient->cells.node_count, patient->body.at);
+    const struct blade *blade = whole->options->blade;
+    int dim = whole->cells.dim;
+    struct box of_blade = box_of(dim, 0, NULL), own = box_of(dim, whole->cells.node_count, whole->body.at);
     char text[2][128];
     for (int64_t s = 0; s < blade->count; s++) {
         box_add(&of_blade, blade->sheet[s].surface.vertex_count, blade->sheet[s].surface.vertex);
@@ -101,29 +100,28 @@ static enum status fail_outside(const struct patient *patient, struct error *err
                 box_text(&of_blade, text[0]), box_text(&own, text[1]));
 }
 
-static enum status cut_along_blade(struct patient *patient, struct error *error)
+static enum status cut_along_blade(struct cut_body *whole, struct error *error)
 {
-    const struct blade *blade = patient->options->blade;
-    struct incise_report *report = patient->report;
-    struct division *body = &patient->body;
-    if (blade != NULL && patient->options->excise && !blade_is_closed(blade)) {
+    const struct blade *blade = whole->options->blade;
+    struct incise_report *report = whole->report;
+    struct division *body = &whole->body;
+    if (blade != NULL && whole->options->excise && !blade_is_closed(blade)) {
         return fail(error, STATUS_INPUT, "is open: what lies behind it has no end");
     }
     for (int64_t s = 0; blade != NULL && s < blade->count; s++) {
         int64_t opened = 0;
-        RETURN_IF_ERROR(incision_cut(body, &blade->sheet[s], patient->front, patient->back, &opened, error));
+        RETURN_IF_ERROR(incision_cut(body, &blade->sheet[s], whole->front, whole->back, &opened, error));
         report->opened += opened;
         report->unopened += opened == 0;
     }
     for (int64_t n = 0; n < body->node_count; n++) {
-        bool old = n < patient->cells.node_count,
-             copy = !old && body->parent[2 * n] == body->parent[2 * n + 1];
-        report->moved += old && vector_distance2(body->dim, body->x + n * body->dim,
-                                                 patient->cells.x + n * body->dim) > 0.0;
+        bool old = n < whole->cells.node_count, copy = !old && body->parent[2 * n] == body->parent[2 * n + 1];
+        report->moved +=
+            old && vector_distance2(body->dim, body->x + n * body->dim, whole->cells.x + n * body->dim) > 0.0;
         report->doubled += copy;
         report->split += !old && !copy;
     }
-    return blade != NULL && report->doubled == 0 ? fail_outside(patient, error) : STATUS_OK;
+    return blade != NULL && report->doubled == 0 ? fail_outside(whole, error) : STATUS_OK;
 }
 
 /* ---- pieces ---- */
@@ -135,10 +133,10 @@ struct piece {
     bool taken_out;
 };
 
-static enum status list_pieces(const struct patient *patient, int32_t *part, struct piece **piece,
+static enum status list_pieces(const struct cut_body *whole, int32_t *part, struct piece **piece,
                                int32_t *count, struct error *error)
 {
-    const struct division *body = &patient->body;
+    const struct division *body = &whole->body;
     struct cells cells = division_cells(body);
     FREED_BY(faces_free) struct faces boundary = {0};
     NEW_SCRATCH(int64_t, face, body->facet_count, error);
@@ -150,9 +148,9 @@ static enum status list_pieces(const struct patient *patient, int32_t *part, str
         (*piece)[part[c]].volume += cell_volume(&cells, c);
     }
     for (int64_t f = 0; f < body->facet_count; f++) {
-        if (face[f] >= 0 && body->group[f] == patient->front) {
+        if (face[f] >= 0 && body->group[f] == whole->front) {
             (*piece)[part[boundary.cell[2 * face[f]]]].front = true;
-        } else if (face[f] >= 0 && body->group[f] == patient->back) {
+        } else if (face[f] >= 0 && body->group[f] == whole->back) {
             (*piece)[part[boundary.cell[2 * face[f]]]].back = true;
         }
     }
@@ -160,11 +158,11 @@ static enum status list_pieces(const struct patient *patient, int32_t *part, str
 }
 
 /* Decide which pieces are taken out. */
-static enum status judge_pieces(const struct patient *patient, int32_t count, struct piece *piece,
+static enum status judge_pieces(const struct cut_body *whole, int32_t count, struct piece *piece,
                                 struct error *error)
 {
-    const struct incise_options *options = patient->options;
-    struct incise_report *report = patient->report;
+    const struct incise_options *options = whole->options;
+    struct incise_report *report = whole->report;
     report->smallest = INFINITY;
     for (int32_t p = 0; p < count; p++) {
         report->volume += piece[p].volume;
@@ -186,23 +184,24 @@ static enum status judge_pieces(const struct patient *patient, int32_t count, st
 }
 
 /* kept[cells]: all but pieces to be taken out, and the region. */
-static enum status choose_cells(struct patient *patient, bool *kept, struct error *error)
+static enum status choose_cells(struct cut_body *whole, bool *kept, struct error *error)
 {
-    const struct division *body = &patient->body;
-    const char *name = patient->options->region;
+    const struct division *body = &whole->body;
+    const char *name = whole->options->region;
     SCRATCH struct piece *piece = NULL;
     int32_t count = 0;
-    int64_t left = 0, region = name != NULL ? names_find(&patient->regions.names, name) : -1;
+    int64_t left = 0, region = name != NULL ? names_find(&whole->regions.names, name) : -1;
     NEW_SCRATCH(int32_t, part, body->cell_count, error);
     if (name != NULL && region < 0) {
         return fail(error, STATUS_INPUT, "no region '%s'; there are: %s", name,
-                    patient->regions.names.count > 0 ? patient->regions.names.list : "none");
+                    whole->regions.names.count > 0 ? whole->regions.names.list : "none");
     }
-    RETURN_IF_ERROR(list_pieces(patient, part, &piece, &count, error));
-    RETURN_IF_ERROR(judge_pieces(patient, count, piece, error));
+    RETURN_IF_ERROR(list_pieces(whole, part, &piece, &count, error));
+    RETURN_IF_ERROR(judge_pieces(whole, count, piece, error));
     for (int64_t c = 0; c < body->cell_count; c++) {
-        kept[c] =
-            !piece[part[c]].taken_out && (region < 0 || patient->regions.of_cell[body->of_cell[c]] != region);
+        bool in_region = region >= 0 && whole->regions.of_cell[body->of_cell[c]] == region;
+        kept[c] = !piece[part[c]].taken_out && !in_region;
+        whole->report->region_cells += in_region;
         left += kept[c];
     }
     return left > 0 ? STATUS_OK : fail(error, STATUS_INPUT, "nothing is left of the body");
@@ -211,11 +210,11 @@ static enum status choose_cells(struct patient *patient, bool *kept, struct erro
 enum status stage_incise(struct stream *stream, const struct incise_options *options,
                          struct incise_report *report, struct error *error)
 {
-    FREED_BY(patient_free) struct patient patient = {.options = options, .report = report};
+    FREED_BY(cut_body_free) struct cut_body whole = {.options = options, .report = report};
     *report = (struct incise_report){0};
-    RETURN_IF_ERROR(read_body(stream, &patient, error));
-    RETURN_IF_ERROR(cut_along_blade(&patient, error));
-    NEW_SCRATCH(bool, kept, patient.body.cell_count, error);
-    RETURN_IF_ERROR(choose_cells(&patient, kept, error));
-    return patient_put(&patient, kept, stream, error);
+    RETURN_IF_ERROR(read_body(stream, &whole, error));
+    RETURN_IF_ERROR(cut_along_blade(&whole, error));
+    NEW_SCRATCH(bool, kept, whole.body.cell_count, error);
+    RETURN_IF_ERROR(choose_cells(&whole, kept, error));
+    return cut_body_put(&whole, kept, stream, error);
 }

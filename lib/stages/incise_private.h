@@ -4,7 +4,7 @@
 #include "stages/incise.h"
 
 /* The body of a stream. */
-struct patient {
+struct cut_body {
     const struct incise_options *options;
     struct cells cells;
     struct cell_regions regions; /* none: no names */
@@ -21,5 +21,5 @@ struct patient {
 bool incise_is_name(const char *text, const char *name, const char *ending);
 
 /* Put the cells that are kept[body.cell_count], with their groups, into the stream, and report on them. */
-MUST_CHECK enum status patient_put(struct patient *patient, const bool *kept, struct stream *stream,
-                                   struct error *error);
+MUST_CHECK enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream *stream,
+                                    struct error *error);

@@ -44,25 +44,25 @@ static enum status put(struct stream *stream, const char *name, enum element_typ
 /* ---- node sets ---- */
 
 /* in[nodes]: a node on an edge is in a set if both ends are, a copy if its original is. */
-static void mark_members(const struct patient *patient, int64_t set, bool *in)
+static void mark_members(const struct cut_body *whole, int64_t set, bool *in)
 {
-    const struct division *body = &patient->body;
-    const struct neighbours *lists = &patient->sets.lists;
+    const struct division *body = &whole->body;
+    const struct neighbours *lists = &whole->sets.lists;
     memset(in, false, (size_t)body->node_count * sizeof *in);
     for (int64_t i = lists->ptr[set]; i < lists->ptr[set + 1]; i++) {
         in[lists->idx[i]] = true;
     }
-    for (int64_t n = patient->cells.node_count; n < body->node_count; n++) {
+    for (int64_t n = whole->cells.node_count; n < body->node_count; n++) {
         in[n] = in[body->parent[2 * n]] && in[body->parent[2 * n + 1]];
     }
 }
 
 /* The set NAME|edge of the stream, or -1. */
-static int64_t find_edge(const struct patient *patient)
+static int64_t find_edge(const struct cut_body *whole)
 {
     int64_t own = -1;
-    for (int64_t s = 0; s < patient->sets.names.count && patient->options->blade != NULL; s++) {
-        own = incise_is_name(patient->sets.names.name[s], patient->options->name, "|edge") ? s : own;
+    for (int64_t s = 0; s < whole->sets.names.count && whole->options->blade != NULL; s++) {
+        own = incise_is_name(whole->sets.names.name[s], whole->options->name, "|edge") ? s : own;
     }
     return own;
 }
@@ -78,19 +78,19 @@ static void mark_lips(int dim, int64_t count, const int32_t *facet, const int32_
 
 /* edge[nodes]: nodes of both lips, where the cells go round: which have no copy, as they have in the corner
  * of a piece between lips of two sheets. Old nodes that were on a lip before are judged as they were then. */
-static enum status mark_edge(const struct patient *patient, bool *edge, struct error *error)
+static enum status mark_edge(const struct cut_body *whole, bool *edge, struct error *error)
 {
-    const struct division *body = &patient->body;
-    int64_t old = patient->cells.node_count, own = find_edge(patient);
+    const struct division *body = &whole->body;
+    int64_t old = whole->cells.node_count, own = find_edge(whole);
     NEW_SCRATCH(int32_t, of_lip, body->node_count, error);
     NEW_SCRATCH(int32_t, before, body->node_count, error);
     NEW_SCRATCH(bool, copied, body->node_count, error);
     if (own >= 0) {
-        mark_members(patient, own, edge);
+        mark_members(whole, own, edge);
     }
-    mark_lips(body->dim, body->facet_count, body->facet, body->group, patient->front, patient->back, of_lip);
-    mark_lips(body->dim, patient->facets.count, patient->facets.facet, patient->facets.group, patient->front,
-              patient->back, before);
+    mark_lips(body->dim, body->facet_count, body->facet, body->group, whole->front, whole->back, of_lip);
+    mark_lips(body->dim, whole->facets.count, whole->facets.facet, whole->facets.group, whole->front,
+              whole->back, before);
     for (int64_t n = old; n < body->node_count; n++) {
         const int32_t *parent = &body->parent[2 * n];
         copied[n] = parent[0] == parent[1];
@@ -103,16 +103,16 @@ static enum status mark_edge(const struct patient *patient, bool *edge, struct e
 }
 
 /* Node sets in the numbers kept_as[]; `edge` last, or in place of the set that has its name. */
-static enum status put_sets(const struct patient *patient, const bool *edge, const int32_t *kept_as,
+static enum status put_sets(const struct cut_body *whole, const bool *edge, const int32_t *kept_as,
                             int64_t node_count, struct stream *stream, struct error *error)
 {
     static const char *const endings[] = {"|edge"};
-    const struct names *names = &patient->sets.names;
-    int64_t own = find_edge(patient), room = 0, count = 0, lists = 0;
+    const struct names *names = &whole->sets.names;
+    int64_t own = find_edge(whole), room = 0, count = 0, lists = 0;
     SCRATCH int64_t *ptr = NULL;
     SCRATCH int32_t *idx = NULL;
     SCRATCH char *text = NULL;
-    bool any = patient->report->edge > 0;
+    bool any = whole->report->edge > 0;
     NEW_SCRATCH(bool, in, node_count, error);
     RETURN_IF_ERROR(NEW_ARRAY(&ptr, names->count + 2, error));
     for (int64_t s = 0; s < names->count + any; s++) {
@@ -120,7 +120,7 @@ static enum status put_sets(const struct patient *patient, const bool *edge, con
             continue;
         }
         if (s < names->count) {
-            mark_members(patient, s, in);
+            mark_members(whole, s, in);
         }
         for (int64_t n = 0; n < node_count; n++) {
             if (kept_as[n] >= 0 && (s < names->count ? in[n] : edge[n])) {
@@ -136,7 +136,7 @@ static enum status put_sets(const struct patient *patient, const bool *edge, con
         return STATUS_OK;
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&idx, count > 0 ? count : 1, error));
-    RETURN_IF_ERROR(make_names(names, own, patient->options->name, any, endings, &text, error));
+    RETURN_IF_ERROR(make_names(names, own, whole->options->name, any, endings, &text, error));
     RETURN_IF_ERROR(
         stream_put(stream, "sets.ptr", TYPE_I8, lists + 1, 1, text, array_take(&ptr), true, error));
     return stream_put(stream, "sets.idx", TYPE_I4, count, 1, "", array_take(&idx), true, error);
@@ -144,19 +144,19 @@ static enum status put_sets(const struct patient *patient, const bool *edge, con
 
 /* ---- cells and facets ---- */
 
-static enum status put_regions(const struct patient *patient, struct stream *stream, struct error *error)
+static enum status put_regions(const struct cut_body *whole, struct stream *stream, struct error *error)
 {
-    const struct division *body = &patient->body;
-    const struct names *names = &patient->regions.names;
-    const char *without = patient->options->region;
+    const struct division *body = &whole->body;
+    const struct names *names = &whole->regions.names;
+    const char *without = whole->options->region;
     int64_t region = without != NULL ? names_find(names, without) : -1;
     SCRATCH char *text = NULL;
-    if (patient->regions.of_cell == NULL) {
+    if (whole->regions.of_cell == NULL) {
         return STATUS_OK;
     }
     NEW_SCRATCH(int32_t, of_cell, body->cell_count, error);
     for (int64_t c = 0; c < body->cell_count; c++) {
-        int32_t own = patient->regions.of_cell[body->of_cell[c]];
+        int32_t own = whole->regions.of_cell[body->of_cell[c]];
         of_cell[c] = own - (region >= 0 && own > region);
     }
     RETURN_IF_ERROR(make_names(names, region, "", 0, NULL, &text, error));
@@ -164,50 +164,50 @@ static enum status put_regions(const struct patient *patient, struct stream *str
                       error);
 }
 
-static enum status put_facets(struct patient *patient, struct stream *stream, struct error *error)
+static enum status put_facets(struct cut_body *whole, struct stream *stream, struct error *error)
 {
-    struct division *body = &patient->body;
-    const struct names *names = &patient->facets.names;
+    struct division *body = &whole->body;
+    const struct names *names = &whole->facets.names;
     SCRATCH char *text = NULL;
     if (body->facet_count == 0) {
         stream_remove(stream, "facets");
         stream_remove(stream, "facets.set");
         return STATUS_OK;
     }
-    RETURN_IF_ERROR(make_names(names, -1, patient->options->name, patient->groups - names->count,
-                               patient->added, &text, error));
+    RETURN_IF_ERROR(make_names(names, -1, whole->options->name, whole->groups - names->count, whole->added,
+                               &text, error));
     RETURN_IF_ERROR(put(stream, "facets", TYPE_I4, body->facet_count, body->dim, &body->facet, error));
     return stream_put(stream, "facets.set", TYPE_I4, body->facet_count, 1, text, array_take(&body->group),
                       true, error);
 }
 
 /* Drop the new groups without facets, as the wall of a region that bordered on no other. */
-static void drop_empty_groups(struct patient *patient)
+static void drop_empty_groups(struct cut_body *whole)
 {
-    struct division *body = &patient->body;
-    int64_t old = patient->facets.names.count, kept = old;
-    for (int64_t g = old; g < patient->groups; g++) {
+    struct division *body = &whole->body;
+    int64_t old = whole->facets.names.count, kept = old;
+    for (int64_t g = old; g < whole->groups; g++) {
         bool any = false;
         for (int64_t f = 0; f < body->facet_count; f++) {
             any = any || body->group[f] == g;
             body->group[f] = body->group[f] == g ? (int32_t)kept : body->group[f];
         }
-        patient->added[kept - old] = patient->added[g - old];
+        whole->added[kept - old] = whole->added[g - old];
         kept += any;
     }
-    patient->groups = kept;
+    whole->groups = kept;
 }
 
-static void report_result(struct patient *patient)
+static void report_result(struct cut_body *whole)
 {
-    const struct division *body = &patient->body;
+    const struct division *body = &whole->body;
     struct cells cells = division_cells(body);
-    struct incise_report *report = patient->report;
+    struct incise_report *report = whole->report;
     report->poorest = INFINITY;
     for (int64_t f = 0; f < body->facet_count; f++) {
         double normal[3];
         face_area_vector(body->dim, body->x, body->facet + f * body->dim, normal);
-        report->lips += body->group[f] == patient->front ? vector_length(body->dim, normal) : 0.0;
+        report->lips += body->group[f] == whole->front ? vector_length(body->dim, normal) : 0.0;
     }
     for (int64_t c = 0; c < body->cell_count; c++) {
         report->poorest = fmin(report->poorest, cell_quality(&cells, c));
@@ -226,23 +226,23 @@ static void remove_later(struct stream *stream)
     }
 }
 
-enum status patient_put(struct patient *patient, const bool *kept, struct stream *stream, struct error *error)
+enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream *stream, struct error *error)
 {
-    struct division *body = &patient->body;
+    struct division *body = &whole->body;
     int64_t nodes = body->node_count;
     NEW_SCRATCH(bool, edge, nodes, error);
     NEW_SCRATCH(int32_t, kept_as, nodes, error);
-    RETURN_IF_ERROR(mark_edge(patient, edge, error));
-    RETURN_IF_ERROR(division_take_out(body, kept, patient->wall, kept_as, error));
-    report_result(patient);
-    drop_empty_groups(patient);
+    RETURN_IF_ERROR(mark_edge(whole, edge, error));
+    RETURN_IF_ERROR(division_take_out(body, kept, whole->wall, kept_as, error));
+    report_result(whole);
+    drop_empty_groups(whole);
     for (int64_t n = 0; n < nodes; n++) {
-        patient->report->edge += edge[n] && kept_as[n] >= 0;
+        whole->report->edge += edge[n] && kept_as[n] >= 0;
     }
     /* The old cells may be views of what is replaced, so what is made of them comes first. */
-    RETURN_IF_ERROR(put_sets(patient, edge, kept_as, nodes, stream, error));
-    RETURN_IF_ERROR(put_regions(patient, stream, error));
-    RETURN_IF_ERROR(put_facets(patient, stream, error));
+    RETURN_IF_ERROR(put_sets(whole, edge, kept_as, nodes, stream, error));
+    RETURN_IF_ERROR(put_regions(whole, stream, error));
+    RETURN_IF_ERROR(put_facets(whole, stream, error));
     RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
     RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
     remove_later(stream);
