@@ -55,6 +55,20 @@ as_soon() {
     fieldcmp --tol-max 1e-6 cold.dat warm.dat
 }
 
+@test "a field that turns the body inside out: begun at a part of it, the same state" {
+    cloud -d 2 -k jittered -n 12 --box 0,0.1,0,0.1 --jitter 0.2 > body.mts
+    mts text body.mts | awk '
+        /^# / { on = $2 == "nodes.x" }
+        /^# end / { print "# u f8 " n " 2 enc=text unit=m cols=x,y"; for (i = 1; i <= n; i++) print u[i]; print "\n"; $3++ }
+        on && /^[-0-9]/ { u[++n] = -1.2 * $1 " 0" }
+        { print }' > inside_out.dat
+    pressed_block > push.scene
+    mtled -q -o cold.dat push.scene body.mts 2> note
+    mtled -q -s inside_out.dat -o warm.dat push.scene body.mts 2> said
+    grep -q 'inverts a cell: begun at 0.5 of u' said
+    fieldcmp cold.dat warm.dat | awk -F '\t' '$1 == "max_relative" { exit !($2 <= 2e-5) }'
+}
+
 @test "a contact: the same state, to what it may penetrate" {
     clouds 2 12 23
     { block quasi-static && printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.01\n[contact floor]\nfacets = ymin\nrigid = floor.tsv\nunit = m\nside = left\n'; } > floor.scene
