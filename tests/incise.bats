@@ -135,7 +135,8 @@ END
 
 @test "a region is taken out, what lies behind a closed blade, and small pieces; the walls have names" {
     body > body.mts
-    incise -r lump body.mts > left.mts
+    incise -v -r lump body.mts 2> said > left.mts
+    grep -qE '^incise: lump: [0-9]+ cells taken out$' said
     mts check left.mts
     mts list left.mts | grep -q '^cells.region.*names=body$'
     # five of the six sides of the lump of .03 x .02 x .03 m are within; cells are jittered

@@ -120,6 +120,9 @@ static void tell(const struct tool *tool, const struct incise_options *options,
     if (report->taken_out > 0) {
         tool_note(tool, "pieces taken out: %d, %.4g %s", (int)report->taken_out, report->taken, volume);
     }
+    if (tool_given(tool, "verbose") && options->region != NULL) {
+        tool_note(tool, "%s: %lld cells taken out", options->region, (long long)report->region_cells);
+    }
     if (tool_given(tool, "verbose") && options->blade != NULL) {
         tool_note(tool,
                   "%s: lips of %.4g %s, %lld nodes on the edge; nodes: %lld put on edges, %lld moved, %lld "
