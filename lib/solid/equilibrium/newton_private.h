@@ -96,6 +96,40 @@ double newton_square(struct newton *n, const struct newton_forces *forces);
 /* Length of the longest of the nodes' vectors, and its node. */
 double newton_longest(const struct newton *n, const double *x, int64_t *node);
 
+/* ---- newton_steps.c ---- */
+
+/* Set the load; n->factor_change becomes the change of the load curves from those at load `from`. */
+void newton_set_load(struct newton *n, double from, double load);
+
+/* Increase the load and find the step of the model there. False where that has no minimum. */
+bool newton_begin_increment(struct newton *n, double from, double change);
+
+/* Go along that step with the load, not so far that the body would move too far or cells would invert. False
+ * where no increment is small enough. */
+bool newton_take_increment(struct newton *n, double from, double change);
+
+/* A Newton step at this load. False where even a short one inverts cells. */
+bool newton_correct(struct newton *n);
+
+/* Leave a state near an equilibrium that is not stable, along the last search direction, of negative
+ * stiffness, twice as far each time while the energy falls. False where cells invert at once. */
+bool newton_leave(struct newton *n);
+
+/* Whether friction alone may hold a body, which slides if it does not. */
+bool newton_held_by_friction(const struct newton *n);
+
+/* ---- newton_ends.c ---- */
+
+/* Let the multipliers of nodal pressures and contacts advance by what was evaluated at u, and evaluate it
+ * with the new ones. */
+void newton_augment(struct newton *n);
+
+/* Estimate the error of u, with the residual of the multipliers that were advanced. */
+void newton_estimate(struct newton *n);
+
+/* Whether the run at this load ends, and its outcome. */
+bool newton_ends(struct newton *n, enum statics_outcome *outcome);
+
 /* ---- newton_stability.c ---- */
 
 /* The least eigenvalue of M^-1 K at u, into n->lowest, and whether u is stable, into system->stability:
@@ -112,15 +146,11 @@ void newton_release(struct newton *n);
 /* Visit all that the next step needs from the steps before; see base/state.h. */
 MUST_CHECK enum status newton_visit(void *run, const struct state *state, struct error *error);
 
-/* The share of the load at u. A run with a given start (system_start) has the whole load from its first step
- * on. */
-double newton_load_share(const struct newton *n);
+/* The load of the next equilibrium: that of the next frame, or 1. */
+double newton_load_to_hold(const struct newton *n);
 
 /* Call the caller's progress function; false where that ends the run. */
 bool newton_tell(struct newton *n);
-
-/* The load of the next equilibrium: that of the next frame, or 1. */
-double newton_load_to_hold(const struct newton *n);
 
 /* The forces of the conditions at u, which balance the residual along them, N (2D: N/m), into n->row_force.
  */

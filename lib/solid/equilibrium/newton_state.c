@@ -72,36 +72,14 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
     return system_state(n->system, state, error);
 }
 
-double newton_load_share(const struct newton *n)
+double newton_load_to_hold(const struct newton *n)
 {
-    return n->system->rows.start != NULL ? 1.0 : fmax(0.0, n->load);
+    return statics_load_to_hold(n->options, n->frames);
 }
 
 bool newton_tell(struct newton *n)
 {
-    struct progress progress = {.step = n->report->steps,
-                                .time = newton_load_share(n),
-                                .error = n->report->error,
-                                .remaining = -1.0,
-                                .u = n->u,
-                                .state = newton_visit,
-                                .run = n};
-    return n->options->progress == NULL || n->options->progress(n->options->context, &progress);
-}
-
-static bool gives_frames(const struct newton *n)
-{
-    return n->options->frame != NULL && n->options->frames > 0;
-}
-
-static int64_t next_frame(const struct newton *n)
-{
-    return n->frames + (n->options->in_time ? 0 : 1);
-}
-
-double newton_load_to_hold(const struct newton *n)
-{
-    return gives_frames(n) ? fmin(1.0, (double)next_frame(n) / (double)n->options->frames) : 1.0;
+    return statics_tell(n->options, n->report, statics_load_share(n->system, n->load), n->u, newton_visit, n);
 }
 
 enum status newton_row_forces(struct newton *n, struct error *error)
@@ -119,9 +97,6 @@ enum status newton_row_forces(struct newton *n, struct error *error)
 enum status newton_give_frame(struct newton *n, struct error *error)
 {
     RETURN_IF_ERROR(newton_row_forces(n, error));
-    if (gives_frames(n)) {
-        n->options->frame(n->options->context, next_frame(n), newton_load_share(n), n->u);
-        n->frames++;
-    }
+    statics_give_frame(n->options, statics_load_share(n->system, n->load), n->u, &n->frames);
     return STATUS_OK;
 }

@@ -121,38 +121,16 @@ static enum status visit(void *run, const struct state *state, struct error *err
 
 /* ---- loads and frames ---- */
 
-static bool gives_frames(const struct relaxation *r)
-{
-    return r->options->frame != NULL && r->options->frames > 0;
-}
-
-static double load_to_hold(const struct relaxation *r)
-{
-    return gives_frames(r) ? fmin(1.0, (double)(r->frames + 1) / (double)r->options->frames) : 1.0;
-}
-
-/* A run with a given start (system_start) has the whole load from its first step on. */
-static double load_share(const struct relaxation *r)
-{
-    return r->system->rows.start != NULL ? 1.0 : r->load;
-}
-
 /* Let the load grow by a step; r->factor_change: the change of the load curves. */
 static void change_load(struct relaxation *r)
 {
-    struct solid_system *system = r->system;
-    double hold = load_to_hold(r), next = r->load + 1.0 / (double)r->ramp;
-    bool holds = r->load == hold;
+    double before = r->load, hold = statics_load_to_hold(r->options, r->frames);
+    double next = before + 1.0 / (double)r->ramp;
+    bool holds = before == hold;
     r->held_steps = holds ? r->held_steps + 1 : 0;
     r->report->loading_steps += !holds;
     r->load = next < hold * (1.0 - 1e-12) ? next : hold;
-    for (int64_t i = 0; i < system->curve_count; i++) {
-        r->factor_change[i] = -system->factor[i];
-    }
-    system_load_factors(system, r->load);
-    for (int64_t i = 0; i < system->curve_count; i++) {
-        r->factor_change[i] += system->factor[i];
-    }
+    statics_change_load(r->system, before, r->load, r->factor_change);
 }
 
 /* The forces of the conditions at u, N (2D: N/m). */
@@ -170,24 +148,11 @@ static bool goes_on(struct relaxation *r, struct error *error)
 {
     bool last = r->load == 1.0;
     r->failure = find_row_forces(r, error);
-    if (r->failure == STATUS_OK && gives_frames(r)) {
-        r->frames++;
-        r->options->frame(r->options->context, r->frames, load_share(r), r->u);
+    if (r->failure == STATUS_OK) {
+        statics_give_frame(r->options, statics_load_share(r->system, r->load), r->u, &r->frames);
     }
     r->small_checks = r->augmentations = r->steady_augmentations = 0;
     return r->failure == STATUS_OK && !last;
-}
-
-static bool tell(struct relaxation *r)
-{
-    struct progress progress = {.step = r->report->steps,
-                                .time = load_share(r),
-                                .error = r->report->error,
-                                .remaining = -1.0,
-                                .u = r->u,
-                                .state = visit,
-                                .run = r};
-    return r->options->progress == NULL || r->options->progress(r->options->context, &progress);
 }
 
 /* ---- steps ---- */
@@ -303,7 +268,6 @@ static bool multipliers_hold(struct relaxation *r)
 static bool ends(struct relaxation *r, enum statics_outcome *outcome)
 {
     struct statics_report *report = r->report;
-    double own_way = report->move - STATICS_MOST_SIZES * r->body_size;
     bool small = r->held_steps > 2 * CHECK_INTERVAL && report->error <= r->options->tolerance;
     /* Just after an augmentation the error includes what the multipliers lacked. */
     bool augmented = r->augmented_step >= report->steps - 2 || !body_is_limited(&r->system->body);
@@ -313,7 +277,7 @@ static bool ends(struct relaxation *r, enum statics_outcome *outcome)
         r->best_step = report->steps;
     }
     bool found = r->small_checks >= 2 && multipliers_hold(r);
-    bool away = own_way > 0.0 && own_way > system_longest_way(r->system);
+    bool away = statics_is_away(r->system, report, r->body_size);
     *outcome = found ? STATICS_CONVERGED : away ? STATICS_AWAY : STATICS_STALLED;
     return found || away || report->steps - r->best_step > most_vain;
 }
@@ -333,7 +297,7 @@ static bool check(struct relaxation *r, enum statics_outcome *outcome, struct er
     }
     weigh(r, r->before, iterations);
     *outcome = STATICS_STOPPED;
-    return !tell(r);
+    return !statics_tell(r->options, r->report, statics_load_share(r->system, r->load), r->u, visit, r);
 }
 
 static enum statics_outcome iterate(struct relaxation *r, struct error *error)
@@ -367,7 +331,7 @@ static void begin(struct relaxation *r)
         r->options->ramp_steps > 0 ? r->options->ramp_steps : (int64_t)fmin(1e7, fmax(steps, least_ramp));
     system_load_factors(system, 0.0);
     (void)system_residual(system, r->u, r->residual);
-    if (gives_frames(r)) {
+    if (r->options->frame != NULL && r->options->frames > 0) {
         r->options->frame(r->options->context, 0, 0.0, r->u);
     }
     weigh(r, r->u, first_iterations);
@@ -410,6 +374,6 @@ enum status relaxation_run(struct solid_system *system, const struct statics_opt
     }
     report->outcome = iterate(&r, error);
     RETURN_IF_ERROR(r.failure);
-    report->load = load_share(&r);
+    report->load = statics_load_share(system, r.load);
     return report->outcome == STATICS_CONVERGED ? STATUS_OK : find_row_forces(&r, error);
 }

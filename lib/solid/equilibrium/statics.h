@@ -55,3 +55,27 @@ struct statics_report {
     int64_t inverted_point; /* the caller's index, STATICS_INVERTED */
     double least_jacobian;
 };
+
+/* ---- what both methods need ---- */
+
+/* The load of the next equilibrium, `frames` of which have been reported: that of the next frame, or 1. */
+double statics_load_to_hold(const struct statics_options *options, int64_t frames);
+
+/* The share of the load at u where it has grown to `load`. A run with a given start (system_start) has the
+ * whole load from its first step on. */
+double statics_load_share(const struct solid_system *system, double load);
+
+/* Set the load; change[curve_count]: by how much the load curves change from those at load `from`. */
+void statics_change_load(struct solid_system *system, double from, double load, double *change);
+
+/* Report u, which is in equilibrium at that share of the load, as the next frame, if there are frames. */
+void statics_give_frame(const struct statics_options *options, double share, const double *u,
+                        int64_t *frames);
+
+/* Call the caller's progress function for a run whose state `visit` visits; false where that ends it. */
+bool statics_tell(const struct statics_options *options, const struct statics_report *report, double share,
+                  const double *u, state_function *visit, void *run);
+
+/* Whether the body has moved farther than any equilibrium is. */
+bool statics_is_away(const struct solid_system *system, const struct statics_report *report,
+                     double body_size);

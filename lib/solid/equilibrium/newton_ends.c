@@ -1,0 +1,113 @@
+/* The ends of a Newton run: multipliers, the error, progress, and the outcome. */
+#include "solid/equilibrium/newton_private.h"
+
+#include <float.h>
+#include <math.h>
+
+/* With contacts, an error that stays below this is accepted: points that alternate between two facets keep it
+ * from falling. */
+static const double most_hovering = 1e-3;
+/* A body whose largest displacement grows by this factor has not come to its end; nor one whose load does by
+ * this share. */
+static const double moves_on = 1.1, least_growth = 1e-3;
+/* The pressures are augmented after steps shorter than this, by the largest displacement. */
+static const double most_length = 0.1;
+static const int64_t most_vain = 12; /* corrections in which the error has not halved */
+
+static bool contacts_lack(const struct newton *n)
+{
+    return system_contacts_give_way(n->system, n->u, n->report->move, n->options->tolerance);
+}
+
+/* What the nodal pressures may lack. */
+static double most_lack(const struct newton *n)
+{
+    return fmin(NODAL_PRESSURE_LACK, 10.0 * n->options->tolerance);
+}
+
+void newton_augment(struct newton *n)
+{
+    if (n->uphill > 0) {
+        return;
+    }
+    bool near = n->corrections > 0 && n->length < most_length * n->report->move;
+    bool pressures = near && body_is_limited(&n->system->body);
+    bool contacts = n->system->contact_count > 0 && n->corrections < NEWTON_MOST_AUGMENTATIONS &&
+                    (n->corrections <= 1 || contacts_lack(n));
+    if (pressures) {
+        n->pressures_lack =
+            body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
+    }
+    if (contacts) {
+        system_augment_contacts(n->system, false);
+    }
+    bool stiffer = system_stiffen(n->system);
+    if (stiffer || pressures || n->system->contact_count > 0) {
+        (void)newton_evaluate(n, n->u, &n->at_u);
+        preconditioner_follow(&n->preconditioner, n->system);
+    }
+}
+
+void newton_estimate(struct newton *n)
+{
+    struct statics_report *report = n->report;
+    double square = newton_square(n, &n->at_u), move = newton_longest(n, n->u, NULL);
+    n->largest_move = fmax(n->largest_move, move);
+    report->move = fmax(move, n->options->tolerance * n->largest_move);
+    double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmax(n->lowest, NEWTON_LEAST_TOLD);
+    double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
+    bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
+    report->error = at_rest ? 0.0 : error / report->move;
+}
+
+/* The error estimate that round-off alone causes, some units in the last place of positions. */
+static double round_off(const struct newton *n)
+{
+    return 32.0 * DBL_EPSILON * n->body_size / n->report->move;
+}
+
+/* Note progress at this load. Returns the steps without. */
+static int64_t note_progress(struct newton *n)
+{
+    struct statics_report *report = n->report;
+    if (n->load > n->best_load + least_growth || report->steps == 1 || report->error < 0.5 * n->best_error ||
+        report->move > moves_on * n->best_move) {
+        n->best_load = n->load;
+        n->best_error = report->error;
+        n->best_move = report->move;
+        n->best_step = report->steps;
+    }
+    return report->steps - n->best_step;
+}
+
+/* Whether u is the equilibrium at this load. */
+static bool is_found(struct newton *n, bool vain)
+{
+    struct statics_report *report = n->report;
+    double most = n->options->tolerance;
+    if (report->error <= most && !n->judged) {
+        newton_judge_stability(n);
+        n->judged = true;
+        newton_estimate(n);
+    }
+    if (vain) {
+        bool hovers = system_has_touched(n->system) && !newton_held_by_friction(n);
+        most = fmax(most, hovers ? most_hovering : round_off(n));
+    }
+    bool pressures = !body_is_limited(&n->system->body) || n->pressures_lack <= most_lack(n);
+    bool contacts = !contacts_lack(n) || n->corrections >= NEWTON_MOST_AUGMENTATIONS;
+    report->penetration = system_contact_miss(n->system);
+    report->penetration_allowed = system_penetration_allowed(report->move);
+    return report->error <= most && pressures && contacts;
+}
+
+bool newton_ends(struct newton *n, enum statics_outcome *outcome)
+{
+    int64_t vain = note_progress(n);
+    bool holds = n->slides || n->load == newton_load_to_hold(n);
+    bool found = n->corrections > 0 && holds && is_found(n, vain > most_vain);
+    *outcome = found                                                 ? STATICS_CONVERGED
+               : statics_is_away(n->system, n->report, n->body_size) ? STATICS_AWAY
+                                                                     : STATICS_STALLED;
+    return found || statics_is_away(n->system, n->report, n->body_size) || vain > 4 * most_vain;
+}
