@@ -35,7 +35,7 @@ end_time = 10
 damping = 1
 SCENE
 printf -- '-1 -0.01\n2 -0.01\n' > floor.tsv
-sed -e 's/analysis = dynamic/analysis = quasi-static/; /^gravity/d; /^end_time/d; /^damping/d; s/^\[solver\]/&\nmethod = relaxation\nramp_steps = 8000/' \
+sed -e 's/analysis = dynamic/analysis = quasi-static/; /^gravity/d; /^end_time/d; /^damping/d; s/^\[solver\]/&\nmethod = relaxation\ntolerance = 0.003\nramp_steps = 8000/' \
     dynamic.scene > quasi-static.scene
 printf '[displacement top]\nfacets = ymax\ncomponents = 0, -0.02\n' >> quasi-static.scene
 
