@@ -255,16 +255,22 @@ freed() {
     refused 1 "it may move along (1, 0, 0), may move along (0, 1, 0), may turn about the axis through (0.05, 0.05, 0.05) along (0, 0, 1): " mtled free.scene cube.mts
 }
 
-@test "what the facets of a round wall almost permit is free" {
+@test "what the facets of a round wall almost permit is free; where such a wall slides far, that is noted" {
     sleeve() { # [CHANGE]
         printf 'SetFactory("OpenCASCADE");\nCylinder(1) = {0, 0, 0, 0, 0, 0.03, 0.02};\n%s\nPhysical Volume("body") = 1;\n' "$@"
         printf 'Physical Surface("wall") = 1;\nPhysical Surface("top") = 2;\nPhysical Surface("bottom") = 3;\n'
     }
     { head3; printf '[displacement w]\nfacets = wall, bottom\nnormal = 0\n[displacement t]\nfacets = top\nnormal = -0.003\n'; } > sleeve.scene
+    sed '$s/.*/components = 0, 0, -0.003/' sleeve.scene > bonded.scene
+    sed '$s/.*/components = 0, 0, -0.00001/' sleeve.scene > little.scene
     sleeve '' > sleeve.geo
     gmsh -v 1 -3 -clmax 0.01 sleeve.geo -o sleeve.msh
     nodes -u m sleeve.msh | shapefn > sleeve.mts 2> note
     refused 1 'nothing holds the body: it may turn about the axis through (' mtled sleeve.scene sleeve.mts
+    mtled bonded.scene sleeve.mts 2> said > u.dat # the lower end turns by 15 degrees and more
+    grep -qE '\[displacement w\]: the side slides by 0.00[5-9].* m where its radius is 0.01[4-9]' said
+    mtled little.scene sleeve.mts 2> said > u.dat
+    run ! grep slides said
     sleeve 'Dilate {{0, 0, 0}, {1.1, 1, 1}} {Volume{1};}' > sleeve.geo # no circle: it cannot turn
     gmsh -v 1 -3 -clmax 0.01 sleeve.geo -o sleeve.msh
     nodes -u m sleeve.msh | shapefn > sleeve.mts 2> note

@@ -219,15 +219,17 @@ near() {
     refused 2 "load.tsv" mtled edited.scene square.mts
 }
 
-@test "a table of displacements of other facets, or of a part of them" {
+@test "a table of displacements of other facets, of a part of them, or that contradicts itself" {
     with 's/^components = 0, -0.005$/table = load.tsv\nunit = mm/'
     seq 0 10 100 | awk '{ print $1, 0, 0, -5 }' > load.tsv
     refused 2 'edited.scene:15: [displacement top]: table load.tsv: its nearest point is 0.1 m from the boundary at (' mtled edited.scene square.mts
     [[ "$stderr" == *'wrong unit or wrong place, else give rows there or leave these facets out' ]]
     seq 0 2 20 | awk '{ print $1, 100, 0, -5 }' > load.tsv
     refused 2 'its nearest point is 0.0' mtled edited.scene square.mts
-    # Two rows tell of all that is between them, and one may stand twice.
-    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -5" > load.tsv
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -4" > load.tsv
+    refused 2 'table load.tsv: rows 2 and 3, both at (0.1, 0.1), differ by 0.001 m: leave one out' mtled edited.scene square.mts
+    # The same again is no contradiction, and two rows tell of all that is between them.
+    printf '%s\n' "0 100 0 -5" "100 100 0 -5" "100 100 0 -5.000000000001" > load.tsv
     mtled edited.scene square.mts 2> note > u.dat
 }
 

@@ -92,9 +92,12 @@ for p in json.load(open("moved.mrk.json"))["markups"][0]["controlPoints"]: print
     /usr/bin/python3 -c 'import json
 a, b = ([p["label"] for p in json.load(open(f))["markups"][0]["controlPoints"]] for f in ("named.mrk.json", "again.mrk.json"))
 assert a == b and a[0].strip() == "\u00e9\U0001f600, \"a\\" and len(a[0]) == 69, (a, b)'
+    refused 2 "landmarks are places: give those that they move to, as moved" mtled alone.scene block.mts
     sed 's/moved = after.fcsv/&\nunit = cm/' seen.scene > unit.scene
     refused 2 "landmarks are in mm" mtled unit.scene block.mts
+    sort -r after.fcsv > moved.fcsv
     sed 's/after/moved/' seen.scene > moved.scene
+    refused 2 "its points have another order than those of points" mtled moved.scene block.mts
     sed '$ d' after.fcsv > moved.fcsv
     refused 2 "another number of points" mtled moved.scene block.mts
     refused 2 "-u cm: landmarks are in mm" interp -p before.mrk.json -u cm u.dat

@@ -102,13 +102,19 @@ static enum status add_rest(const struct prescription *p, const struct boundary_
 static enum status note_sliding(const struct prescription *p, const struct boundary_sides *sides,
                                 struct error *error)
 {
+    struct sliding *sliding = &p->system->sliding;
     const struct facet_set *set = &p->condition->facets;
     int dim = p->input->cells.dim;
+    int64_t first = sliding->facet_count;
     for (int64_t f = 0; f < set->count; f++) {
-        if (!sides->flat[sides->node_average_count + sides->facet_group[f]]) {
-            RETURN_IF_ERROR(sliding_add_facet(&p->system->sliding, dim, set->facet + f * dim, error));
+        int64_t side = sides->facet_group[f];
+        struct sliding_facet facet = {.side = sliding->side_count + (int32_t)side, .section = p->number};
+        memcpy(facet.node, set->facet + f * dim, (size_t)dim * sizeof *facet.node);
+        if (!sides->flat[sides->node_average_count + side]) {
+            RETURN_IF_ERROR(sliding_add_facet(sliding, &facet, error));
         }
     }
+    sliding_sort(sliding, first, sides->group_count);
     return STATUS_OK;
 }
 
@@ -273,6 +279,7 @@ static enum status add_condition(struct prescription *p, struct error *error)
                                         .unit = condition->unit,
                                         .paths = &paths};
         TRY(scattered_fit_build(&p->fit, error));
+        TRY(prescription_check_table(p, error));
         TRY(NEW_ARRAY(&p->spacing, p->input->cells.node_count, error));
         TRY(field_spacing(&p->input->cells, p->spacing, error));
     }

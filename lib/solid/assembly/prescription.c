@@ -1,5 +1,6 @@
 #include "solid/assembly/prescription.h"
 
+#include "base/lists.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
@@ -11,6 +12,10 @@
  * With rows on a square grid no place is farther than .71 spacings. With random rows on a surface, one in
  * exp(4 pi), 3e5 places, is farther than 2. */
 static const double most_spacings = 2.0;
+
+/* Values are equal if they differ by less than this share of the largest one, places if by less than this
+ * share of the body's size. */
+static const double round_off = 1e-9;
 
 /* value[dim] = the displacement of the condition's table at x, near this node, m. */
 static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
@@ -33,6 +38,52 @@ static enum status value_at(const struct prescription *p, int32_t node, const do
             "are %.3g m apart, the nodes %.3g m: wrong unit or wrong place, else give rows there or "
             "leave these facets out",
             condition->where, condition->table, distance, place, node, spacing, p->spacing[node]);
+    }
+    return STATUS_OK;
+}
+
+/* The largest difference of two rows in `count` entries. */
+static double apart(const double *row, const double *other, int count)
+{
+    double most = 0.0;
+    for (int c = 0; c < count; c++) {
+        most = fmax(most, fabs(row[c] - other[c]));
+    }
+    return most;
+}
+
+enum status prescription_check_table(const struct prescription *p, struct error *error)
+{
+    const struct condition *condition = p->condition;
+    int dim = p->input->cells.dim;
+    int64_t count = condition->row_count;
+    double largest = 0.0, same = round_off * p->input->extent / condition->unit;
+    SCRATCH struct placed *sorted = NULL; /* rows by their first coordinates */
+    char place[96];
+    RETURN_IF_ERROR(NEW_ARRAY(&sorted, count, error));
+    for (int64_t i = 0; i < count; i++) {
+        const double zeros[3] = {0.0, 0.0, 0.0};
+        sorted[i] = (struct placed){condition->rows[i * 2 * dim], i};
+        largest = fmax(largest, apart(condition->rows + i * 2 * dim + dim, zeros, dim));
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_placed);
+    for (int64_t s = 0; s < count; s++) {
+        for (int64_t t = s + 1; t < count && sorted[t].place - sorted[s].place <= same; t++) {
+            const double *a = condition->rows + sorted[s].item * 2 * dim,
+                         *b = condition->rows + sorted[t].item * 2 * dim;
+            double difference = apart(a + dim, b + dim, dim);
+            if (apart(a, b, dim) <= same && difference > round_off * largest) {
+                double at[3] = {0.0, 0.0, 0.0};
+                for (int c = 0; c < dim; c++) {
+                    at[c] = b[c] * condition->unit;
+                }
+                point_text(dim, at, place);
+                return fail(error, STATUS_INPUT,
+                            "%s: table %s: rows %lld and %lld, both at %s, differ by %.3g m: leave one out",
+                            condition->where, condition->table, (long long)sorted[s].item + 1,
+                            (long long)sorted[t].item + 1, place, difference * condition->unit);
+            }
+        }
     }
     return STATUS_OK;
 }

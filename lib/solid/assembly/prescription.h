@@ -32,6 +32,9 @@ struct demand {
 int prescription_directions(const struct condition *condition, int dim);
 bool prescription_is_full(const struct prescription *p);
 
+/* STATUS_INPUT if two rows of the condition's table have one place and different displacements. */
+MUST_CHECK enum status prescription_check_table(const struct prescription *p, struct error *error);
+
 /* The displacements that the condition prescribes for average a; with at_node, at its node along the same
  * directions. */
 MUST_CHECK enum status prescription_demand(const struct prescription *p,

@@ -121,7 +121,7 @@ static enum status measure_curved(struct parts *parts, struct error *error)
     NEW_SCRATCH(double, sum, system->node_count * modes, error);
     NEW_SCRATCH(double, weight, system->node_count, error);
     for (int64_t f = 0; f < sliding->facet_count; f++) {
-        const int32_t *node = sliding->facet[f];
+        const int32_t *node = sliding->facet[f].node;
         struct part *part = &parts->part[part_of(parts, node[0])];
         double area[3], centre[3], mode[3], v[MOST_MODES];
         face_area_vector(dim, system->X, node, area);

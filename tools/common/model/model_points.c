@@ -25,6 +25,30 @@ static enum status fail_at(const struct point_section *p, int64_t row, struct er
                 p->section->table, (long long)p->table->line[row], place, what);
 }
 
+/* "FILE:LINE: [displacement NAME]: moved TABLE: ..." */
+static enum status fail_moved(const struct point_section *p, struct error *error, const char *what)
+{
+    return fail(error, STATUS_INPUT, "%s: moved %s: %s", p->section->label.where, p->section->moved, what);
+}
+
+/* Refuse pairs whose names are those of other pairs: the two tables have another order. */
+static enum status check_pairs(const struct point_section *p, const struct table *moved, struct error *error)
+{
+    const struct table *table = p->table;
+    if (moved->rows != table->rows) {
+        return fail_moved(p, error, "another number of points than that of points");
+    }
+    for (int64_t i = 0; i < table->rows && table->label != NULL && moved->label != NULL; i++) {
+        for (int64_t k = 0; k < table->rows; k++) {
+            if (strcmp(moved->label[i], table->label[k]) == 0 &&
+                strcmp(moved->label[i], table->label[i]) != 0) {
+                return fail_moved(p, error, "its points have another order than those of points");
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 /* Read places and moved places into rows of places and displacements, m. */
 static enum status read_pairs(struct point_section *p, int dim, struct error *error)
 {
@@ -34,10 +58,7 @@ static enum status read_pairs(struct point_section *p, int dim, struct error *er
     double moved_unit = table_unit(p->section->moved, p->section->table_unit);
     RETURN_IF_ERROR(table_read(p->section->table, dim, dim, table, error));
     RETURN_IF_ERROR(table_read(p->section->moved, dim, dim, &moved, error));
-    if (moved.rows != table->rows) {
-        return fail(error, STATUS_INPUT, "%s: moved %s: another number of points than that of points",
-                    p->section->label.where, p->section->moved);
-    }
+    RETURN_IF_ERROR(check_pairs(p, &moved, error));
     SCRATCH double *x = table->values;
     table->values = NULL;
     table->cols = 2 * dim;
@@ -53,6 +74,11 @@ static enum status read_pairs(struct point_section *p, int dim, struct error *er
 /* Read rows of places and displacements. */
 static enum status read_rows(struct point_section *p, int dim, struct error *error)
 {
+    if (landmarks_named(p->section->table)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: points %s: landmarks are places: give those that they move to, as moved",
+                    p->section->label.where, p->section->table);
+    }
     RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
     for (int64_t i = 0; i < p->table->rows * p->table->cols; i++) {
         p->table->values[i] *= p->section->table_unit;

@@ -130,6 +130,10 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
 /* For the final state: notes rigid surfaces that the body has never touched. */
 void run_contacts_touch(const struct run *run);
 
+/* For the final state: notes a curved side whose displacement is prescribed along its normal, and that slides
+ * so far that it leaves its surface. */
+void run_sliding_judge(const struct run *run);
+
 /* Dynamic: step to the end time. Exits with a verdict if this fails; adds the section energy on request. */
 void run_dynamic(struct run *run);
 

@@ -1,4 +1,4 @@
-/* Notes and verdicts on contacts: where they begin, and penetration. */
+/* Notes and verdicts on contacts: where they begin, penetration, and sides that slide. */
 #include "run/run.h"
 
 #include "approx/field/field_compare.h"
@@ -11,7 +11,8 @@
 #include <string.h>
 
 /* A result of which more than this share of the forces is missing, because of the remaining penetration, is
- * refused. */
+ * refused; sliding sides are reported if they leave their surface by more than this share of how far they
+ * slide. */
 static const double most_missing = 0.01;
 
 /* The largest displacement prescribed by rows of conditions, m. */
@@ -198,5 +199,29 @@ void run_contacts_touch(const struct run *run)
                       "and place, and does it begin outside the body?",
                       run->scene->path, run->scene->contacts[contact->section].label.name);
         }
+    }
+}
+
+void run_sliding_judge(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    struct sliding_error worst;
+    char place[96];
+    if (system->sliding.facet_count == 0) {
+        return;
+    }
+    SCRATCH double *field = run_new_values(run, system->node_count * system->dim);
+    assembly_nodal_field(&run->model->assembly, run->u, field);
+    TOOL_TRY(run->tool, sliding_measure(&system->sliding, system->dim, system->node_count, system->X, field,
+                                        &worst, &error));
+    if (worst.share > most_missing) {
+        point_text(system->dim, worst.place, place);
+        tool_note(
+            run->tool,
+            "%s: [displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
+            "its surface by %.2g m, as `normal` acts along the normal at rest: use a [contact] with that "
+            "surface as rigid one, or smaller loads",
+            run->scene->path, system->conditions[worst.section].name, worst.slide,
+            0.5 * worst.slide * worst.slide / worst.distance, place, worst.distance);
     }
 }

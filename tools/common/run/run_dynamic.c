@@ -48,6 +48,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
         run_folds_judge(run);
         run_contacts_penetrate(run, largest_move, most_given * largest_move, true);
         run_contacts_touch(run);
+        run_sliding_judge(run);
         return;
     case DYNAMICS_INVERTED:
         run_fail(run, STATUS_VERDICT,

@@ -30,6 +30,7 @@ static void judge(struct run *run, const struct statics_report *report)
         run_contacts_penetrate(run, report->move, report->penetration_allowed, true);
         run_folds_judge(run);
         run_contacts_touch(run);
+        run_sliding_judge(run);
         return;
     }
     point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
