@@ -197,5 +197,5 @@ worked() {
 rod() {
     cloud -d 3 -k jittered -n "${1:-61,4,4}" --jitter 0.1 --box 0,0.2,0,0.01,0,0.01 2> note | shapefn > rod.mts 2>> note
     { block quasi-static | sed 's/dim = 2/dim = 3/; s/^nu = .*/nu = 0.49/'
-        printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.02, 0, 0\n'; } > rod.scene
+        printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.015, 0, 0\n'; } > rod.scene
 }

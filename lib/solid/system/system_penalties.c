@@ -4,6 +4,7 @@
 
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "solid/body/body_share.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -51,10 +52,13 @@ static enum status find_volumes(struct solid_system *system, struct error *error
  * h k_p < 4 p^2 / mu: the side then buckles between its nodes. */
 bool system_stiffen_penalties(struct solid_system *system)
 {
-    const struct body *body = &system->body;
+    struct body *body = &system->body;
     const double *pressure = body->volumes.pressure;
     bool stiffer = false;
     double shear = 0.0;
+    if (body->averaged && system->penalties.count > system->spring_count) {
+        body_share_collect_pressures(body);
+    }
     for (int64_t m = 0; m < body->material_count; m++) {
         shear = fmax(shear, body->materials[m].shear_modulus);
     }
