@@ -30,7 +30,7 @@ prepare_ball() {
     cp "$here/ball.scene" body.scene
     "$helpers/phantom" sphere 1 0.75 > body.nii.gz
     printf '1 ball\n' > names
-    groups=(-f top=ball:0,0,28,14 -f bottom=ball:0,0,-28,16)
+    groups=(-f 'top=ball:0,0,28,14' -f 'bottom=ball:0,0,-28,16')
     of_gmsh fine 1.8
     mv fine.dat reference.dat
 }
@@ -52,7 +52,7 @@ prepare_brain() {
     printf '1 brain\n2 tumour\n3 ventricles -\n' > names
     # gmsh's meshes are finer there, too.
     of_image=(--fine "9.5mm:ventricles,tumour")
-    groups=(-f craniotomy=along:2,craniotomy.tsv)
+    groups=(-f 'craniotomy=along:2,craniotomy.tsv')
 }
 
 # triangles NAME FIRST LAST: of the brain's surfaces of these numbers
