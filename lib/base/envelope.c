@@ -77,10 +77,10 @@ static void find_blocks(struct envelope *factor)
     factor->block_count = blocks;
 }
 
-/* The threads that are worth using for the rows from `begin` to before `end`. */
-static inline int threads_for(const struct envelope *factor, int64_t begin, int64_t end)
+/* The threads that are worth using for all rows. */
+static inline int threads_for(const struct envelope *factor)
 {
-    return begin < end ? chunks_of(factor->start[end] - factor->start[begin], ENTRIES_FOR_THREAD).threads : 1;
+    return factor->n > 0 ? chunks_of(factor->start[factor->n], ENTRIES_FOR_THREAD).threads : 1;
 }
 
 /* The envelope of the reordered matrix, filled with its lower triangle. */
@@ -163,7 +163,7 @@ bool envelope_is_dropped(const struct envelope *factor, int64_t i)
 
 static void factor_rows(struct envelope *factor, double least, double shift)
 {
-#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, 0, factor->n))
+#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor))
     for (int64_t b = 0; b < factor->block_count; b++) {
         for (int64_t i = factor->block[b]; i < factor->block[b + 1]; i++) {
             factor_row(factor, i, least, shift);
@@ -241,37 +241,12 @@ static void solve_rows(const struct envelope *factor, int64_t begin, int64_t end
 
 void envelope_solve(const struct envelope *factor, double *x)
 {
-    envelope_solve_shared(factor, NULL, NULL, x);
-}
-
-void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
-                           double *x)
-{
     double *y = factor->scratch;
-    int rank = ranks_rank(ranks);
-    int64_t begin = ranks != NULL ? first[rank] : 0, end = ranks != NULL ? first[rank + 1] : factor->n;
-    int64_t last = first_from(factor->block, 0, factor->block_count, end);
-#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor, begin, end))
-    for (int64_t b = first_from(factor->block, 0, last, begin); b < last; b++) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads_for(factor))
+    for (int64_t b = 0; b < factor->block_count; b++) {
         solve_rows(factor, factor->block[b], factor->block[b + 1], x, y);
     }
-    ranks_gather(ranks, y, sizeof *y, first);
     for (int64_t i = 0; i < factor->n; i++) {
         x[factor->order[i]] = y[i];
     }
-}
-
-enum status envelope_share(const struct envelope *factor, const struct ranks *ranks, int64_t **first,
-                           struct error *error)
-{
-    const int64_t *begin = factor->block, blocks = factor->block_count;
-    NEW_SCRATCH(double, work, blocks, error);
-    for (int64_t b = 0; b < blocks; b++) {
-        work[b] = (double)(factor->start[begin[b + 1]] - factor->start[begin[b]]);
-    }
-    RETURN_IF_ERROR(ranks_share(ranks, blocks, work, first, error));
-    for (int r = 0; r <= ranks_count(ranks); r++) {
-        (*first)[r] = begin[(*first)[r]];
-    }
-    return STATUS_OK;
 }

@@ -3,8 +3,9 @@
  * once and solved in every step. */
 #pragma once
 
-#include "base/ranks.h"
+#include "base/status.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct envelope {
@@ -31,16 +32,6 @@ void envelope_free(struct envelope *factor);
 
 /* Whether the row at place i, order[i] of the caller, was dropped. */
 bool envelope_is_dropped(const struct envelope *factor, int64_t i);
-
-/* Distribute the diagonal blocks over the processes, with about the same work for each: process r solves for
- * the rows (*first)[r] to before (*first)[r + 1] in the factor's order. (*first)[count + 1] is to be freed.
- */
-MUST_CHECK enum status envelope_share(const struct envelope *factor, const struct ranks *ranks,
-                                      int64_t **first, struct error *error);
-
-/* envelope_solve by several processes, each for its rows, with the same bits. Collective. */
-void envelope_solve_shared(const struct envelope *factor, const struct ranks *ranks, const int64_t *first,
-                           double *x);
 
 /* Solve in place, blocks by several threads: x[n] holds the right-hand side, then the solution. */
 void envelope_solve(const struct envelope *factor, double *x);

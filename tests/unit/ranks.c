@@ -324,31 +324,10 @@ static void make_chains(struct envelope *factor)
     GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, 0.0, factor, &error));
 }
 
-static void *solve_member(void *context)
-{
-    struct member *member = context;
-    const struct ranks *ranks = &member->ranks;
-    FREED_BY(envelope_free) struct envelope factor = {0};
-    SCRATCH int64_t *first = NULL;
-    double *x = member->results + ranks->rank * SOLVED;
-    make_chains(&factor);
-    GOOD(envelope_share(&factor, ranks, &first, &error));
-    assert_int_equal(first[0], 0);
-    assert_int_equal(first[ranks->count], SOLVED);
-    if (ranks->count <= BLOCKS) { /* each has some */
-        assert_true(first[ranks->rank + 1] - first[ranks->rank] >= SOLVED / BLOCKS);
-    }
-    for (int64_t i = 0; i < SOLVED; i++) {
-        x[i] = member->u[i];
-    }
-    envelope_solve_shared(&factor, ranks, first, x);
-    return NULL;
-}
-
-/* Blocks are solved by several processes to the bits of one. */
+/* Blocks that do not couple are solved each by itself. */
 TEST(solving)
 {
-    double right[SOLVED], alone[SOLVED], results[MOST * SOLVED];
+    double right[SOLVED], alone[SOLVED];
     FREED_BY(envelope_free) struct envelope factor = {0};
     make_chains(&factor);
     for (int i = 0; i < SOLVED; i++) {
@@ -359,16 +338,6 @@ TEST(solving)
     for (int i = BLOCKS; i < SOLVED - BLOCKS; i++) {
         double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
         AT_MOST(fabs(sum - right[i]), 1e-14);
-    }
-    for (int count = 2; count <= MOST; count += count == 3 ? MOST - 3 : 1) {
-        struct member members[MOST];
-        for (int r = 0; r < count; r++) {
-            members[r] = (struct member){.u = right, .results = results};
-        }
-        run_team(count, members, solve_member);
-        for (int r = 0; r < count; r++) {
-            assert_memory_equal(results + r * SOLVED, alone, sizeof alone);
-        }
     }
 }
 

@@ -139,12 +139,6 @@ static int64_t point_of_use(const struct body *body, int64_t use)
     return field_averages_cell(&body->cells.averages, body->dim, use);
 }
 
-int body_share_owner(const void *body, int64_t node)
-{
-    const struct body *of = body;
-    return ranks_owner(of->share.ranks, of->share.node_first, of->node_place[node]);
-}
-
 enum status body_share_values(const struct body *body, bool **wanted, struct error *error)
 {
     const struct body_share *share = &body->share;

@@ -42,9 +42,6 @@ MUST_CHECK enum status body_share_cut(const struct body_input *input, struct bod
 MUST_CHECK enum status body_share_volumes(struct body *body, struct error *error);
 MUST_CHECK enum status body_share_pressures(struct body *body, struct error *error);
 
-/* The process that owns a node, the caller's number. `body`: a struct body, untyped for use as a callback. */
-int body_share_owner(const void *body, int64_t node);
-
 /* wanted[rows of the operator]: those that own points or cells need. Needs of_use of smoothed cells. */
 MUST_CHECK enum status body_share_values(const struct body *body, bool **wanted, struct error *error);
 
