@@ -80,10 +80,6 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
     }
 }
 
-/* Larger or smaller bodies are probably read in a wrong unit, m. */
-#define LARGEST_DIAGONAL 10.0
-#define SMALLEST_DIAGONAL 1e-3
-
 static void report(const struct tool *tool, const struct mesh *mesh, bool verbose)
 {
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
@@ -91,7 +87,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
     struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};
     struct cell_report cell_report;
     char text[128];
-    if (diagonal > LARGEST_DIAGONAL || diagonal < SMALLEST_DIAGONAL) {
+    if (diagonal > CELL_REPORT_LARGEST || diagonal < CELL_REPORT_SMALLEST) {
         tool_note(tool, "the body is %.3g m across: is the unit of -u right?", diagonal);
     }
     tool_note_thin(tool, &cells);

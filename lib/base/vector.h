@@ -5,6 +5,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Cosine from which unit vectors have about the same direction (60 degrees): a facet's normal and another's,
+ * reversed, if the facets face each other. And from which two consecutive changes are a geometric sequence.
+ */
+#define SAME_DIRECTION 0.5
+#define GEOMETRIC_SEQUENCE 0.99
+
 static inline double vector_dot(int dim, const double *a, const double *b)
 {
     double sum = 0.0;

@@ -2,12 +2,11 @@
 
 #include "approx/cells/face_edges.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const double unity_tolerance = 1e-9;
 
 /* ---- each section by itself ---- */
 
@@ -48,7 +47,7 @@ static enum status check_unity(const struct neighbours *lists, const struct sect
         for (int64_t i = lists->ptr[row]; i < lists->ptr[row + 1]; i++) {
             sum += value[i];
         }
-        if (!(fabs(sum - 1) <= unity_tolerance)) {
+        if (!(fabs(sum - 1) <= COARSE_ROUND_OFF)) {
             return fail(error, STATUS_INPUT, "%s: list %lld: sums to 1 %+.3g", phi->name, (long long)row,
                         sum - 1);
         }

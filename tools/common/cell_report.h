@@ -9,6 +9,10 @@
 /* Most cells that are reported one by one. */
 #define CELL_REPORT_MOST 10
 
+/* Larger or smaller bodies are probably read in a wrong unit: diagonal, m. */
+#define CELL_REPORT_LARGEST 10.0
+#define CELL_REPORT_SMALLEST 1e-3
+
 struct cell_report {
     int32_t bodies;         /* connected bodies, see cells_parts */
     double volume;          /* m3; in 2D area, m2 */

@@ -1,12 +1,9 @@
 #include "approx/cells/raster.h"
 
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
-
-/* Barycentric coordinates above the negative of this count as inside, so that a point on a face is in one of
- * its cells. */
-static const double within = 1e-9;
 
 enum { SLABS_MOST = 16 }; /* of the last axis, which threads share */
 
@@ -26,8 +23,8 @@ static void range(const struct cells *cells, int64_t cell, int axis, int64_t siz
         least = fmin(least, y);
         most = fmax(most, y);
     }
-    *low = (int64_t)ceil(fmin(fmax(least - within, 0), (double)size));
-    *high = (int64_t)floor(fmax(fmin(most + within, (double)(size - 1)), -1));
+    *low = (int64_t)ceil(fmin(fmax(least - COARSE_ROUND_OFF, 0), (double)size));
+    *high = (int64_t)floor(fmax(fmin(most + COARSE_ROUND_OFF, (double)(size - 1)), -1));
 }
 
 /* Set *simplex from a cell; false if the cell is inverted or flat. */
@@ -93,7 +90,7 @@ static void draw(const struct simplex *simplex, const struct cells *cells, int64
         for (int64_t j = low[1]; j <= high[1]; j++) {
             int64_t from = low[0], to = high[0], inner_from = low[0], inner_to = high[0];
             int32_t *row = owner + (k * size[1] + j) * size[0];
-            clip_row(simplex, dim, j, k, within, &from, &to);
+            clip_row(simplex, dim, j, k, COARSE_ROUND_OFF, &from, &to);
             clip_row(simplex, dim, j, k, -1e-6, &inner_from, &inner_to);
             for (int64_t i = from; i <= to; i++) {
                 if (row[i] < 0) {

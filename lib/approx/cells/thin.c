@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A facet is opposite if the scalar product of its normal and the ray is larger than this. */
-static const double facing = 0.5;
 /* Most cells that a ray passes: round-off might lead it in a circle. */
 enum { MOST_CELLS = 1000 };
 
@@ -71,7 +69,7 @@ static double thickness(const struct cells *cells, const int32_t *across, int64_
         }
         int32_t next = across[cell * corners + out];
         if (next < 0) {
-            bool faces = vector_dot(dim, normal, inward) > facing * vector_length(dim, normal);
+            bool faces = vector_dot(dim, normal, inward) > SAME_DIRECTION * vector_length(dim, normal);
             return faces ? distance : INFINITY;
         }
         for (face = 0; across[(int64_t)next * corners + face] != cell; face++) {

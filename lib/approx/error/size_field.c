@@ -1,12 +1,13 @@
 #include "approx/error/size_field.h"
 
+#include "approx/error/field_error.h"
 #include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
 
 /* The order of the error of the gradient. */
-static const double gradient_order = 1.0;
+#define GRADIENT_ORDER (FIELD_ERROR_MOST_ORDER - 1.0)
 
 /* A node is at a corner, not on a curve, if the normals of the node and of a facet there differ by more than
  * this angle, radians, or if the least such angle at the facet's nodes is below this share of it. */
@@ -17,7 +18,7 @@ static double cell_factor(const struct cells *cells, double squared, double size
 {
     double factor = SIZE_FIELD_MOST;
     if (squared > 0.0) {
-        factor = pow(equal / sqrt(squared), 1.0 / (gradient_order + 0.5 * cells->dim));
+        factor = pow(equal / sqrt(squared), 1.0 / (GRADIENT_ORDER + 0.5 * cells->dim));
     }
     return fmin(fmax(factor, fmax(SIZE_FIELD_LEAST, least / size)), SIZE_FIELD_MOST);
 }
@@ -49,7 +50,7 @@ static double equal_error(const struct cells *cells, const double *squared, cons
             double size = cell_size(cells, spacing, q);
             bool bound = size * sqrt(request->share) < request->least;
             double factor = cell_factor(cells, squared[q], size, middle, request->least);
-            after += bound ? 0.0 : squared[q] * pow(factor, 2.0 * gradient_order);
+            after += bound ? 0.0 : squared[q] * pow(factor, 2.0 * GRADIENT_ORDER);
         }
         *(after >= wanted ? &high : &low) = middle;
     }

@@ -3,14 +3,12 @@
 #include "approx/support/support_space.h"
 #include "base/chunks.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A point nearer to a cell than this share of its size counts as inside. */
-static const double in_cell = 1e-9;
 
 /* How far into its cell a node is looked for, as a share of the way to the middle. */
 static const double into_cell = 1e-3;
@@ -78,7 +76,7 @@ static enum status nearest_cells(const struct cells *cells, const double *spacin
             const double *corner[4];
             int64_t c = near.index[i];
             cell_corners(cells, c, corner);
-            double most = (within + in_cell) * size[c];
+            double most = (within + COARSE_ROUND_OFF) * size[c];
             double distance2 = simplex_distance2(dim, dim, corner, x + p * dim);
             if (distance2 <= most * most && distance2 < least2) {
                 least2 = distance2;

@@ -10,6 +10,11 @@
 
 #include <stdint.h>
 
+/* A place is too far from the points of a table if the nearest is farther than so many spacings. With points
+ * on a square grid none is farther than .71 spacings, on a lattice than .87; with random ones on a surface,
+ * one in exp(4 pi), 3e5 places, is farther than 2. */
+#define SCATTERED_FIT_REACH 2.0
+
 /* Measured values in the caller's arrays: each row holds a point, then the values. */
 struct scattered_fit {
     int dim;

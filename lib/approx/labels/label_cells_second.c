@@ -6,10 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Least distance of a second cut from both ends, as a share of the edge; nearer to the first cut there is
- * none. */
-static const double near_cut = 0.25;
-
 /* Whether an edge between two corners of a piece leads from a cut to a third label. */
 static bool is_second(const struct cutting *cutting, int32_t cut, int32_t point)
 {
@@ -71,7 +67,7 @@ static double second_change(const struct cutting *cutting, const struct second_c
             most = fmax(most, lattice_change(lattice, from, to, a, b));
         }
     }
-    return most < near_cut ? 0 : fmin(most, 1 - near_cut);
+    return most < LATTICE_NEAR ? 0 : fmin(most, 1 - LATTICE_NEAR);
 }
 
 enum status cutting_seconds(struct cutting *cutting, struct error *error)

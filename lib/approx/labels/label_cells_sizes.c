@@ -6,11 +6,14 @@
 
 /* Mean edge of the lattice's tetrahedra, two edges along axes and four half diagonals, by the edge of a cube,
  * as cells_node_spacing computes it. */
-static const double mean_edge = 0.91068;
+static double mean_edge(void)
+{
+    return (1 + sqrt(3)) / 3;
+}
 
 int size_level(double spacing, double size)
 {
-    return (int)fmin(fmax(round(log2(mean_edge * spacing / size)), 0), OCTREE_MOST_LEVELS);
+    return (int)fmin(fmax(round(log2(mean_edge() * spacing / size)), 0), OCTREE_MOST_LEVELS);
 }
 
 /* The size at a place in a cell, linear between its nodes. */

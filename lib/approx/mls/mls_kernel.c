@@ -51,8 +51,6 @@ KERNEL_INLINE double values(int dim, int m, const double *c, bool gradients, boo
 KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_support *support, int dim, int m,
                                    bool images, double *scratch, int64_t stride, double *phi, double *dphi)
 {
-    /* With larger pivots the condition of this small matrix is good; no estimate is needed. */
-    static const double safe_pivot = 1e-5;
     /* With H pivots may be smaller, but not too small for the normal equations. */
     static const double least_pivot = 1e-9;
     static const double most_defect = 1e-13;
@@ -61,7 +59,8 @@ KERNEL_INLINE bool kernel_evaluate(const struct mls *mls, const struct mls_suppo
     double c[MLS_MAX_BASIS];
     lanes right[MLS_MAX_BASIS];
     begin(mls, support, dim, m, images, scratch, stride, &point, &system);
-    if (!factorise(dim, m, safe_pivot, mls->basis == BASIS_MODIFIED ? least_pivot : safe_pivot, &system)) {
+    if (!factorise(dim, m, MLS_SAFE_PIVOT, mls->basis == BASIS_MODIFIED ? least_pivot : MLS_SAFE_PIVOT,
+                   &system)) {
         return false;
     }
     substitute_unit(m, &system, c);

@@ -20,6 +20,11 @@ enum mls_row {
     MLS_ROWS = ROW_ORTHOGONAL + MLS_MAX_BASIS
 };
 
+/* Where all pivots are larger, the condition of this small matrix is good; a support is refused where the
+ * reciprocal condition (1-norm, of the matrix scaled to unit diagonal) is below the square of this. */
+#define MLS_SAFE_PIVOT 1e-5
+#define MLS_LEAST_CONDITION (MLS_SAFE_PIVOT * MLS_SAFE_PIVOT)
+
 /* Padding of a row beyond the number of neighbours: for the rows of H, and to whole vectors. */
 #define MLS_PADDING 16
 

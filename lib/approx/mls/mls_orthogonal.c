@@ -5,9 +5,6 @@
 #include "approx/mls/mls_vector.h"
 #include "base/dense.h"
 
-/* Reciprocal condition (1-norm, of the matrix scaled to unit diagonal) below which a support is refused. */
-static const double least_condition = 1e-10;
-
 /* sqrt(W) P D^-1 over sqrt(H) D^-1 = Q R, D = sqrt(diag M); Q is in ROW_ORTHOGONAL. */
 struct mls_factor {
     double scaling[MLS_MAX_BASIS];               /* 1 / D */
@@ -74,8 +71,8 @@ static bool is_conditioned(int m, int dim, bool modified, const struct mls_syste
         }
         scaling[k] = 1.0 / sqrt(diagonal);
     }
-    return reciprocal_condition(dim + 1, system, scaling) >= least_condition &&
-           (modified || reciprocal_condition(m, system, scaling) >= least_condition);
+    return reciprocal_condition(dim + 1, system, scaling) >= MLS_LEAST_CONDITION &&
+           (modified || reciprocal_condition(m, system, scaling) >= MLS_LEAST_CONDITION);
 }
 
 static double *row_of(const struct mls_point *point, int row)

@@ -7,9 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The longest path that connects two nodes, by their distance. */
-static const double most_detour = 2.0;
-
 static void assign_nodes(struct edge_paths *paths, int64_t stride, const double *place, double unit)
 {
     const struct cells *cells = &paths->visibility.cells;
@@ -102,7 +99,7 @@ enum status edge_paths_reach(struct edge_paths *paths, int64_t place, bool *reac
         RETURN_IF_ERROR(visibility_walk(visibility, x, visibility->star + visibility->star_ptr[from],
                                         visibility->star_ptr[from + 1] - visibility->star_ptr[from], node,
                                         &paths->work, &sees, error));
-        double limit = most_detour * vector_distance(dim, x, visibility->cells.x + (int64_t)node * dim);
+        double limit = PATH_MOST_DETOUR * vector_distance(dim, x, visibility->cells.x + (int64_t)node * dim);
         if (!sees && paths->searched < limit) {
             RETURN_IF_ERROR(
                 search(paths, 1.5 * limit, error)); /* farther than needed, for the next queries */

@@ -9,6 +9,9 @@
 #include "approx/visibility/visibility.h"
 #include "base/queue.h"
 
+/* The longest path that connects two places, by their distance. */
+#define PATH_MOST_DETOUR 2.0
+
 enum path_verdict { PATH_UNKNOWN, PATH_GOOD, PATH_NONE };
 
 struct edge_paths {

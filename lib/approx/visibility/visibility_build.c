@@ -6,6 +6,7 @@
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -110,7 +111,7 @@ static enum status list_shadows(struct visibility *visibility, struct error *err
             int32_t node = near.index[i];
             const double *x = visibility->cells.x + (int64_t)node * dim;
             double height = visibility_height_above(dim, facet, x),
-                   tolerance = VISIBILITY_ON_PLANE * visibility->grid->radius[node];
+                   tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
             if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
                                        vector_distance(dim, facet->middle, x) <= facet->radius)) {
                 visibility->shadow[visibility->shadow_count++] = (struct visibility_shadow){(int32_t)f, node};
@@ -149,7 +150,7 @@ static bool is_reentrant(const struct visibility *visibility, const struct ridge
     const double *ends[2] = {visibility->cells.x + (int64_t)first->opposite * dim,
                              visibility->cells.x + (int64_t)second->opposite * dim};
     double height = visibility_height_above(dim, &visibility->facet[first->facet], ends[1]);
-    double tolerance = VISIBILITY_ON_PLANE * visibility->grid->radius[first->node[0]], u[2][3],
+    double tolerance = COARSE_ROUND_OFF * visibility->grid->radius[first->node[0]], u[2][3],
            along[2][2] = {{0.0}};
     double edge[3] = {0.0, 0.0, 0.0}, product = 0.0;
     if (fabs(height) > tolerance) {

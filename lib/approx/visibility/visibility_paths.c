@@ -2,6 +2,7 @@
 #include "approx/visibility/visibility_private.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -71,7 +72,7 @@ enum status visibility_paths(const struct visibility *visibility, double widen, 
             double length = vector_distance(dim, work->from, visibility->cells.x + (int64_t)node * dim);
             /* A path continues from a corner only to nodes visible from it. */
             work->length[node] =
-                length > VISIBILITY_ON_PLANE * visibility->grid->radius[node] ? length : INFINITY;
+                length > COARSE_ROUND_OFF * visibility->grid->radius[node] ? length : INFINITY;
         } else {
             continue;
         }

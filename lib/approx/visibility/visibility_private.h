@@ -2,10 +2,8 @@
 #pragma once
 
 #include "approx/visibility/visibility.h"
+#include "base/round_off.h"
 #include "base/vector.h"
-
-/* A point nearer to a plane than this share of the support radius lies on it. */
-#define VISIBILITY_ON_PLANE 1e-9
 
 /* A list of pairs (row, value), from which a CSR is made. */
 struct pair_list {

@@ -6,6 +6,7 @@
 
 #include "base/box.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -101,7 +102,7 @@ static enum status list_points(const struct visibility *visibility, const struct
     int32_t node = visibility->shadow[shadow].node;
     const struct visibility_facet *facet = &visibility->facet[visibility->shadow[shadow].facet];
     const double *y = visibility->cells.x + (int64_t)node * dim;
-    double radius = visibility->grid->radius[node], tolerance = VISIBILITY_ON_PLANE * radius;
+    double radius = visibility->grid->radius[node], tolerance = COARSE_ROUND_OFF * radius;
     double of_y = visibility_height_above(dim, facet, y);
     struct box box = box_of_shadow(visibility, facet, node, of_y > tolerance);
     const struct point_grid_level *level = &points->grid.level[0];
@@ -201,8 +202,8 @@ enum status visibility_mark_shadows(const struct visibility *visibility,
         if (!holds && work->cell_count == 1 && visibility->facet[shadow.facet].cell == work->cell[0]) {
             const struct visibility_facet *facet = &visibility->facet[shadow.facet];
             const double *y = visibility->cells.x + (int64_t)shadow.node * dim;
-            holds = passage_of(dim, facet, VISIBILITY_ON_PLANE * visibility->grid->radius[shadow.node],
-                               work->x, visibility_height_above(dim, facet, work->x), true, y,
+            holds = passage_of(dim, facet, COARSE_ROUND_OFF * visibility->grid->radius[shadow.node], work->x,
+                               visibility_height_above(dim, facet, work->x), true, y,
                                visibility_height_above(dim, facet, y)) == PASSES;
         }
         if (holds && !visibility_is_hidden(work, shadow.node)) {

@@ -2,13 +2,11 @@
 #include "approx/visibility/visibility_private.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A point with a barycentric coordinate within this of 0 is on a face. */
-static const double on_face = 1e-9;
 
 /* The barycentric coordinates of two points in a cell. */
 static void barycentric(const struct cells *cells, int64_t cell, const double *x, const double *y,
@@ -51,20 +49,20 @@ static bool touches(const struct cells *cells, int64_t cell, const double *x, co
     barycentric(cells, cell, x, y, a, b);
     for (int k = 0; k < corners; k++) {
         double slope = b[k] - a[k];
-        if (a[k] < -on_face && b[k] < -on_face) {
+        if (a[k] < -COARSE_ROUND_OFF && b[k] < -COARSE_ROUND_OFF) {
             return false;
         }
-        if (a[k] < -on_face) {
-            begin = fmax(begin, (-on_face - a[k]) / slope);
-        } else if (b[k] < -on_face) {
-            end = fmin(end, (-on_face - a[k]) / slope);
+        if (a[k] < -COARSE_ROUND_OFF) {
+            begin = fmax(begin, (-COARSE_ROUND_OFF - a[k]) / slope);
+        } else if (b[k] < -COARSE_ROUND_OFF) {
+            end = fmin(end, (-COARSE_ROUND_OFF - a[k]) / slope);
         }
     }
     for (int k = 0; k < corners; k++) {
         double at_begin = a[k] + begin * (b[k] - a[k]), at_end = a[k] + end * (b[k] - a[k]);
         least[k] = fmin(at_begin, at_end);
     }
-    return begin <= end + on_face;
+    return begin <= end + COARSE_ROUND_OFF;
 }
 
 static bool contains(const struct index_list *list, int32_t value)
@@ -116,7 +114,7 @@ enum status visibility_walk(const struct visibility *visibility, const double *x
             break;
         }
         for (int k = 0; k < corners; k++) {
-            if (least[k] <= on_face) {
+            if (least[k] <= COARSE_ROUND_OFF) {
                 RETURN_IF_ERROR(visit(visibility->across[(int64_t)at * corners + k], work, error));
             }
         }

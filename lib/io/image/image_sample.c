@@ -1,13 +1,10 @@
+#include "base/round_off.h"
 #include "io/image/image_sample.h"
 
 #include <math.h>
 #include <stdint.h>
 
 const char *const image_method_names[IMAGE_METHOD_COUNT] = {"nearest", "linear", "cubic"};
-
-/* A place within this distance of a voxel centre, in voxels, is at the centre: the round-off of an inverse
- * map. */
-static const double on_voxel = 1e-9;
 
 /* Indices and weights along one axis. */
 struct taps {
@@ -23,7 +20,7 @@ static size_t clamped(int64_t index, size_t size)
 
 static void find_taps(enum image_method method, double place, size_t size, struct taps *taps)
 {
-    place = fabs(place - rint(place)) < on_voxel ? rint(place) : place;
+    place = fabs(place - rint(place)) < COARSE_ROUND_OFF ? rint(place) : place;
     double low = method == IMAGE_NEAREST ? floor(place + 0.5) : floor(place), t = place - low;
     int64_t first = (int64_t)low - (method == IMAGE_CUBIC ? 1 : 0);
     double cubic[4] = {t * (-0.5 + t * (1 - 0.5 * t)), 1 + t * t * (-2.5 + 1.5 * t),

@@ -1,12 +1,10 @@
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 #include "io/mesh/msh_build.h"
 
 #include <math.h>
 #include <string.h>
-
-/* Least volume of a cell over the cube of its longest edge (2D: area over square). */
-#define LEAST_VOLUME 1e-12
 
 enum status mesh_find_roles(struct mesh_draft *draft)
 {
@@ -134,7 +132,7 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
     int32_t *cell = &mesh->cells[at * (mesh->dim + 1)];
     memcpy(cell, simplex, (size_t)(mesh->dim + 1) * sizeof *cell);
     double volume = relative_volume(mesh, cell);
-    if (!(fabs(volume) > LEAST_VOLUME)) {
+    if (!(fabs(volume) > ROUND_OFF)) {
         return fail(draft->error, STATUS_INPUT, "element %lld has no %s (its relative size is %.3g)",
                     (long long)draft->msh->element_tag[element], mesh->dim == 2 ? "area" : "volume",
                     fabs(volume));

@@ -1,14 +1,12 @@
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/sets.h"
 #include "io/mesh/msh_build.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Nodes closer than this share of the mesh's extent coincide. */
-#define COINCIDENT 1e-12
 
 static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, int32_t b)
 {
@@ -30,7 +28,7 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
     static const double direction[3] = {0.7548776662466927, 0.5698402909980532, 0.3247179572447460};
     const struct mesh *mesh = draft->mesh;
     struct box box = box_of(mesh->dim, mesh->node_count, mesh->x);
-    double tolerance = COINCIDENT * box_side(&box);
+    double tolerance = ROUND_OFF * box_side(&box);
     SCRATCH struct placed *order = NULL;
     SCRATCH int32_t *body = NULL;
     int64_t touching = 0;

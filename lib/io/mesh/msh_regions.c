@@ -1,13 +1,11 @@
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "io/mesh/msh_build.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Points of a plane mesh may be off the plane by this share of its extent. */
-#define FLATNESS 1e-9
 
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
 {
@@ -36,7 +34,7 @@ static enum status check_plane(const struct mesh_draft *draft)
         }
     }
     double extent = fmax(most[0] - least[0], most[1] - least[1]);
-    if (!(most[2] - least[2] <= FLATNESS * extent)) {
+    if (!(most[2] - least[2] <= COARSE_ROUND_OFF * extent)) {
         return fail(
             draft->error, STATUS_INPUT,
             "a surface in space, without volume cells: mesh the volume (gmsh -3), or a plane z = const");

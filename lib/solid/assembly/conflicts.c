@@ -2,15 +2,16 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Shares of the largest value that either condition prescribes: values further apart than the first are an
- * error, values nearer than the second are equal. Values below least_size of the body's size count as that
+/* Shares of the largest value that either condition prescribes: values further apart than largest_jump are an
+ * error. Values below least_size of the body's size count as that
  * size. */
-static const double largest_jump = 0.1, same_jump = 1e-9, least_size = 1e-6;
+static const double largest_jump = 0.1, least_size = 1e-6;
 
 void nodal_constraints_free(struct nodal_constraints *nodal_constraints)
 {
@@ -36,7 +37,7 @@ static enum status compare(const struct assembly *input, const struct nodal_cons
                            const struct nodal_constraint *second, double most, struct error *error)
 {
     char place[96];
-    if (jump(first, second, input->cells.dim) <= same_jump * most) {
+    if (jump(first, second, input->cells.dim) <= COARSE_ROUND_OFF * most) {
         return STATUS_OK;
     }
     point_text(input->cells.dim, input->cells.x + (int64_t)second->node * input->cells.dim, place);

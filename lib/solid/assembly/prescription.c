@@ -2,20 +2,12 @@
 
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A place must not be farther from the rows of a table than this many spacings of the rows or of the nodes.
- * With rows on a square grid no place is farther than .71 spacings. With random rows on a surface, one in
- * exp(4 pi), 3e5 places, is farther than 2. */
-static const double most_spacings = 2.0;
-
-/* Values are equal if they differ by less than this share of the largest one, places if by less than this
- * share of the body's size. */
-static const double round_off = 1e-9;
 
 /* value[dim] = the displacement of the condition's table at x, near this node, m. */
 static enum status value_at(const struct prescription *p, int32_t node, const double *x, double *value,
@@ -31,7 +23,7 @@ static enum status value_at(const struct prescription *p, int32_t node, const do
         return fail(error, status, "%s: table %s: at %s: %s", condition->where, condition->table, place,
                     why.text);
     }
-    if (!(distance <= fmin(most_spacings * fmax(spacing, p->spacing[node]), p->input->extent))) {
+    if (!(distance <= fmin(SCATTERED_FIT_REACH * fmax(spacing, p->spacing[node]), p->input->extent))) {
         return fail(
             error, STATUS_INPUT,
             "%s: table %s: its nearest point is %.3g m from the boundary at %s, by node %d, its points "
@@ -57,7 +49,7 @@ enum status prescription_check_table(const struct prescription *p, struct error 
     const struct condition *condition = p->condition;
     int dim = p->input->cells.dim;
     int64_t count = condition->row_count;
-    double largest = 0.0, same = round_off * p->input->extent / condition->unit;
+    double largest = 0.0, same = COARSE_ROUND_OFF * p->input->extent / condition->unit;
     SCRATCH struct placed *sorted = NULL; /* rows by their first coordinates */
     char place[96];
     RETURN_IF_ERROR(NEW_ARRAY(&sorted, count, error));
@@ -72,7 +64,7 @@ enum status prescription_check_table(const struct prescription *p, struct error 
             const double *a = condition->rows + sorted[s].item * 2 * dim,
                          *b = condition->rows + sorted[t].item * 2 * dim;
             double difference = apart(a + dim, b + dim, dim);
-            if (apart(a, b, dim) <= same && difference > round_off * largest) {
+            if (apart(a, b, dim) <= same && difference > COARSE_ROUND_OFF * largest) {
                 double at[3] = {0.0, 0.0, 0.0};
                 for (int c = 0; c < dim; c++) {
                     at[c] = b[c] * condition->unit;

@@ -6,6 +6,7 @@
  * any number of iterations. It is scaled to be exact at rho, where pressures are uniform. Saad 2003,
  * algorithm 12.1. */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "solid/body/nodal_volume.h"
 
 #include <math.h>
@@ -17,10 +18,6 @@ static const double effect = 2e-5, most_inaccurate = 0.02;
 /* With augmentations an error of A^-1 is reduced by the ratio of the limited to the whole bulk modulus; the
  * admitted error is at most this. */
 static const double augmented_accuracy = 0.01;
-
-/* Two consecutive changes of the pressures by augmentations form a geometric sequence if the cosine between
- * them is at least this. */
-static const double aligned = 0.99;
 
 /* idx[]: the volumes that share points with volume a, including a, each once; NULL: only count. seen:
  * scratch, no entry of which equals a. Returns their number. */
@@ -182,7 +179,7 @@ double body_augment(struct body *body, bool steady, double most, double strain)
     }
     double rate = fmin(before2 > 0.0 ? sqrt(now2 / before2) : INFINITY, pressures->slowest);
     double ahead = rate / (1.0 - rate), lack = now2 > 0.0 ? ahead * sqrt(now2 / value2) : 0.0;
-    bool jumps = steady && lack > most && both > aligned * sqrt(now2 * before2);
+    bool jumps = steady && lack > most && both > GEOMETRIC_SEQUENCE * sqrt(now2 * before2);
     for (int64_t a = 0; a < count; a++) {
         double change = value[a] - pressures->held[a];
         pressures->held[a] = value[a] + (jumps ? ahead * change : 0.0);

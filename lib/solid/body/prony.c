@@ -1,6 +1,7 @@
 #include "solid/body/prony.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "solid/body/stress.h"
 #include "solid/material/tensor.h"
 
@@ -9,9 +10,6 @@
 enum { STRESS = 0, STRAIN = 6, WORK = 12, TERMS = 13, COMPONENTS = 6 };
 
 static const int place[COMPONENTS] = {0, 4, 8, 1, 5, 2}; /* of the components in a matrix */
-
-/* By mu: below, W is hardly more than round-off. */
-static const double least_strained = 1e-9;
 
 int prony_row(const struct prony *prony)
 {
@@ -145,7 +143,7 @@ double prony_energy(const struct body *body, int64_t q, const double F[9], doubl
     double P[9], S[COMPONENTS], h[COMPONENTS], share = 1.0, stored = 0.0, mu = material->shear_modulus;
     material_isochoric_stress(material, F, P);
     second_stress(F, P, S);
-    double compliance = W > least_strained * mu ? W / contract(S, S) : 0.25 / mu;
+    double compliance = W > COARSE_ROUND_OFF * mu ? W / contract(S, S) : 0.25 / mu;
     for (int k = 0; k < material->prony_terms; k++) {
         double g = material->prony[2 * k];
         for (int c = 0; c < COMPONENTS; c++) {

@@ -9,10 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Depths below this share of a point's width count as zero. */
+/* Depths below this share of a point's width count as zero, and differences of unit normals. */
 static const double round_off = 1e-6;
-/* Unit normals that differ by less are the same. */
-static const double same_normal = 1e-6;
 /* Modulus of the penalty by the largest multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
@@ -27,7 +25,7 @@ double contact_width(const struct contact *contact, int64_t p)
 
 double contact_most_depth(const struct contact *contact, int64_t p)
 {
-    return 0.5 * contact_width(contact, p);
+    return CONTACT_MOST_DEPTH * contact_width(contact, p);
 }
 
 double contact_round_off(const struct contact *contact, int64_t p)
@@ -46,7 +44,7 @@ static enum status check_side(const struct contact *contact, struct error *error
             rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY);
         double depth = closest.found ? -closest.gap : -INFINITY, length = contact_most_depth(contact, p);
         double cosine = vector_dot(contact->dim, contact->points->normal + p * contact->dim, closest.normal);
-        bool back = closest.found && cosine > 0.5; /* about -1 where they can touch */
+        bool back = closest.found && cosine > SAME_DIRECTION; /* about -1 where they can touch */
         if (depth > deepest && (depth > length || (depth > -round_off * length && back))) {
             deepest = depth;
             worst = p;
@@ -194,7 +192,7 @@ static bool has_turned(const struct contact *contact, int64_t p, const struct ri
 {
     double turn2 =
         vector_distance2(contact->dim, closest->normal, contact->checked_normal + p * contact->dim);
-    return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > same_normal * same_normal);
+    return closest->on_edge || (contact->checked_distance[p] < 0.0 && turn2 > round_off * round_off);
 }
 
 /* Search for the surface at point p. */

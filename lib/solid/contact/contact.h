@@ -87,8 +87,9 @@ void contact_free(struct contact *contact);
 /* Allocate the arrays of a contact whose dim, count, points and averages are set. */
 MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffness, struct error *error);
 
-/* The width of the facets at point p, m; and the largest depth at which a point that is found behind the
- * surface counts as having gone through it. */
+/* The width of the facets at point p, m; and the largest depth, by that, at which a point that is found
+ * behind the surface counts as having gone through it. */
+#define CONTACT_MOST_DEPTH 0.5
 double contact_width(const struct contact *contact, int64_t p);
 double contact_most_depth(const struct contact *contact, int64_t p);
 

@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Least share of an augmentation that is made. The largest is its inverse, where the cosine between two
- * consecutive changes is above `aligned`. */
-static const double least_part = 1.0 / 16.0, aligned = 0.99;
+/* Least share of an augmentation that is made. The largest is its inverse, where consecutive changes form a
+ * geometric sequence. */
+static const double least_part = 1.0 / 16.0;
 
 void contact_spread_multipliers(struct contact *contact)
 {
@@ -143,10 +143,10 @@ static double take_change(struct contact *contact)
         return contact->part;
     }
     double apart2 = before2 - 2.0 * both + now2, most = 1.0;
-    if (both > aligned * before2) { /* no limit is in sight */
+    if (both > GEOMETRIC_SEQUENCE * before2) { /* no limit is in sight */
         return fmax(least_part, 0.5 * contact->part);
     }
-    if (both > aligned * sqrt(before2 * now2)) {
+    if (both > GEOMETRIC_SEQUENCE * sqrt(before2 * now2)) {
         most = 1.0 / least_part;
     }
     double part = contact->part * (before2 - both) / apart2;

@@ -234,11 +234,11 @@ static bool considers(void *context, int64_t f)
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
     double cosine = vector_dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
-    if (cosine < OPPOSED) {
+    if (cosine < -SAME_DIRECTION) {
         return !through_body(opposite, search->seeker, f);
     }
     double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double bound = lever * width * (cosine - OPPOSED);
+    double bound = lever * width * (cosine + SAME_DIRECTION);
     if (bound < search->free_way && !through_body(opposite, search->seeker, f)) {
         search->free_way = bound;
     }

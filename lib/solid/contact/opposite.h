@@ -14,9 +14,6 @@
 #include "solid/constraint/average.h"
 #include "solid/rigid/rigid.h"
 
-/* Normals are opposed when their cosine is below this: 120 degrees. */
-#define OPPOSED (-0.5)
-
 struct opposite {
     bool itself;                   /* the points are on the same facets */
     struct rigid_surface surface;  /* its vertices are the corners, where they are now */

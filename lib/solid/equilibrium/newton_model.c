@@ -1,4 +1,5 @@
 /* The model of a Newton step, and conjugate gradients that lower it. */
+#include "base/round_off.h"
 #include "base/vector.h"
 #include "solid/equilibrium/newton_private.h"
 #include "solid/system/energy.h"
@@ -7,10 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double strain = 1e-6; /* about that much is a cell strained by the move of a product */
-enum { MOST_ITERATIONS = 100 };    /* of conjugate gradients; */
-enum { MOST_INNER = 4 };           /* augmentations of contacts in a step */
-enum { MOST_TURNS = 8 };           /* of the search along a direction */
+enum { MOST_ITERATIONS = 100 }; /* of conjugate gradients; */
+enum { MOST_INNER = 4 };        /* augmentations of contacts in a step */
+enum { MOST_TURNS = 8 };        /* of the search along a direction */
 /* What is left of the gradient's norm when the multipliers of contacts advance. */
 static const double inner_left = 0.3;
 /* The slope at the end of that search, by the one at its start: at most. */
@@ -41,7 +41,7 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
 double newton_difference(const struct newton *n, const double *move)
 {
     double longest = newton_longest(n, move, NULL);
-    return strain * n->spacing / (longest > 0.0 ? longest : 1.0);
+    return DIFFERENCE_STEP * n->spacing / (longest > 0.0 ? longest : 1.0);
 }
 
 /* product = K move, with the stiffness K at u of all but the contacts. */

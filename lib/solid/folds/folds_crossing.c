@@ -1,13 +1,9 @@
 /* Crossings of boundary facets; see folds.h. */
+#include "base/round_off.h"
+#include "solid/contact/contact.h"
 #include "solid/folds/folds_private.h"
 
 #include <stdlib.h>
-
-/* Positions below this share of the largest coordinate are round-off. */
-static const double round_off = 1e-12;
-
-/* See are_deep; contact_most_depth. */
-static const double held_share = 0.5;
 
 /* The depth of facet g behind the plane of facet f; *width receives the length of f (3D: root of twice the
  * area). */
@@ -46,7 +42,7 @@ static double apart_across_edges(const struct folds *folds, int64_t f, int64_t g
             low[i / 3] = fmin(low[i / 3], place);
             high[i / 3] = fmax(high[i / 3], place);
         }
-        if (size2 > round_off * vector_dot(3, side, side) * vector_dot(3, other_side, other_side)) {
+        if (size2 > ROUND_OFF * vector_dot(3, side, side) * vector_dot(3, other_side, other_side)) {
             least = fmin(least, fmin(high[0] - low[1], high[1] - low[0]) / sqrt(size2));
         }
     }
@@ -75,7 +71,7 @@ static bool are_deep(const struct folds *folds, int64_t f, int64_t g)
     double depth = fmin(reach_behind(folds, f, g, &width[0]), reach_behind(folds, g, f, &width[1]));
     depth = folds->input.dim == 3 ? fmin(depth, apart_across_edges(folds, f, g)) : depth;
     bool in_contact = is_in_contact(folds, f) && is_in_contact(folds, g);
-    return depth > (in_contact ? held_share : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
+    return depth > (in_contact ? CONTACT_MOST_DEPTH : FOLD_BEYOND_FACET) * fmax(width[0], width[1]);
 }
 
 void folds_sort_boxes(struct folds *folds)
@@ -99,7 +95,7 @@ struct fold folds_search_boxes(const struct folds *folds, int64_t begin, int64_t
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
             int64_t g = boxes[k].facet.item;
             if (!box_meets(&boxes[i].box, &boxes[k].box) ||
-                !facets_cross(dim, folds->y, facet + f * dim, facet + g * dim, round_off * folds->largest) ||
+                !facets_cross(dim, folds->y, facet + f * dim, facet + g * dim, ROUND_OFF * folds->largest) ||
                 !are_deep(folds, f, g)) {
                 continue;
             }

@@ -10,8 +10,7 @@ static const double full_turn = 6.28318530717958648;
 
 enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
-static const double turned_share = 0.1; /* see is_turned_over */
-static const double flat_share = 0.2;   /* see folds_list_flat */
+static const double turned_share = 0.1; /* see is_turned_over; twice as much: folds_list_flat */
 
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
 {
@@ -190,7 +189,7 @@ int64_t folds_list_flat(const struct folds *folds, int32_t *cell)
     for (int64_t c = 0; c < input->cell_count; c++) {
         const int32_t *node = input->cell + c * (input->dim + 1);
         if (!(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) &&
-            flatness(input->dim, input->x, node) < flat_share) {
+            flatness(input->dim, input->x, node) < 2.0 * turned_share) {
             cell[count++] = (int32_t)c;
         }
     }

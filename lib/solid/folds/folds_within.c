@@ -2,16 +2,15 @@
 #include "solid/folds/folds_private.h"
 
 #include "approx/cells/parts.h"
-#include "approx/points/point_grid.h"
 #include "approx/cells/quality.h"
+#include "approx/points/point_grid.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 
 #include <stdlib.h>
 
-/* Least barycentric coordinates below which a point is on a face of a cell, or not deep in the cell. */
-static const double on_face = 1e-6, not_deep = 0.05;
-/* Lengths below this share of the body are round-off. */
-static const double round_off = 1e-12;
+/* Least barycentric coordinate below which a point is on a face of a cell. */
+static const double on_face = 1e-6;
 
 enum status folds_find_bodies(struct folds *folds, struct error *error)
 {
@@ -144,7 +143,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
     NEW_SCRATCH(double, radius, count, error);
     for (int64_t c = 0; c < count; c++) {
         find_middle(folds, folds->y, c, middle + c * dim);
-        radius[c] = round_off * folds->extent;
+        radius[c] = ROUND_OFF * folds->extent;
     }
     RETURN_IF_ERROR(point_grid_build(&grid, dim, count, middle, radius, error));
     for (int64_t c = 0; c < count; c++) {
@@ -155,7 +154,7 @@ enum status folds_look_for_overlaps(struct folds *folds, bool of_bodies, struct 
             int32_t other = near.index[i];
             bool apart =
                 folds->part[other] != folds->part[c] || (!of_bodies && !are_neighbours(folds, c, other));
-            if (apart && contains(folds, c, middle + (int64_t)other * dim, not_deep) &&
+            if (apart && contains(folds, c, middle + (int64_t)other * dim, FOLD_BEYOND_FACET) &&
                 !is_left_out(folds, c) && !is_left_out(folds, other) && fold->count++ == 0) {
                 name_cell(folds, other, fold);
             }

@@ -3,6 +3,7 @@
 #include "approx/cells/crossing.h"
 #include "approx/cells/parts.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/sets.h"
 #include "base/vector.h"
 
@@ -12,9 +13,6 @@
 
 /* Facets at an edge of more than two are joined where they turn by less than that, cos 60 degrees. */
 static const double least_straight = 0.5;
-
-/* Positions nearer than this share of the extent are the same. */
-static const double round_off = 1e-9;
 
 /* ---- building ---- */
 
@@ -40,7 +38,8 @@ static enum status check_crossings(int dim, int64_t count, const double *corners
         for (int64_t k = i + 1; k < count && boxes[k].facet.place <= boxes[i].box.high[0]; k++) {
             int64_t f = boxes[i].facet.item, g = boxes[k].facet.item;
             if (box_meets(&boxes[i].box, &boxes[k].box) &&
-                facets_cross(dim, x, facet + f * dim, facet + g * dim, round_off * box_diagonal(&all))) {
+                facets_cross(dim, x, facet + f * dim, facet + g * dim,
+                             COARSE_ROUND_OFF * box_diagonal(&all))) {
                 return fail(error, STATUS_INPUT,
                             "its facets %lld and %lld cross each other: cut along two blades in turn",
                             (long long)(f < g ? f : g) + 1, (long long)(f < g ? g : f) + 1);

@@ -1,4 +1,5 @@
 /* The edges that cross a level; see incision.h. */
+#include "base/round_off.h"
 #include "solid/incision/incision_private.h"
 
 #include <stdlib.h>
@@ -162,7 +163,7 @@ static void use_cell(const struct cut *cut, const struct crossings *list, const 
         }
     }
     for (int i = 0; i < count; i++) {
-        meets = meets || own[i]->extent < -CUT_ROUND_OFF * cut->longest[own[i]->split.node[0]];
+        meets = meets || own[i]->extent < -COARSE_ROUND_OFF * cut->longest[own[i]->split.node[0]];
     }
     for (int k = 0; k < corners && count > 0; k++) {
         meets = meets || (cut->value[LEVEL_HEIGHT][node[k]] == 0 && cut->value[LEVEL_EXTENT][node[k]] < 0);

@@ -1,3 +1,4 @@
+#include "base/round_off.h"
 #include "solid/incision/incision_private.h"
 
 #include <stdlib.h>
@@ -63,7 +64,7 @@ void cut_lay(struct cut *cut, int64_t n)
     bool near = sheet_at(cut->sheet, cut->body->at + n * cut->body->dim, INFINITY, &place);
     double extent = near ? sheet_extent(cut->sheet, &place) : NAN;
     cut->value[LEVEL_HEIGHT][n] = 0.0;
-    cut->value[LEVEL_EXTENT][n] = fabs(extent) <= CUT_ROUND_OFF * cut->longest[n] ? 0.0 : extent;
+    cut->value[LEVEL_EXTENT][n] = fabs(extent) <= COARSE_ROUND_OFF * cut->longest[n] ? 0.0 : extent;
 }
 
 /* Evaluate a node by its place. */
@@ -72,7 +73,7 @@ static void evaluate_node(struct cut *cut, int64_t n)
     struct sheet_place place;
     double reach = 1.5 * cut->longest[n];
     bool near = sheet_at(cut->sheet, cut->body->at + n * cut->body->dim, reach, &place);
-    double least = CUT_ROUND_OFF * cut->longest[n];
+    double least = COARSE_ROUND_OFF * cut->longest[n];
     int dim = cut->body->dim;
     if (near && n < cut->old && fabs(vector_dot(dim, cut->lip + n * dim, place.normal)) > along_lip) {
         least = near_lip * cut->longest[n];

@@ -1,15 +1,13 @@
 /* One sheet in a body; private to lib/solid/incision. */
 #pragma once
 
+#include "base/round_off.h"
 #include "solid/incision/incision.h"
 
 #include "base/memory.h"
 #include "base/vector.h"
 
 #include <math.h>
-
-/* Heights and extents that are so small a part of the edges are 0. */
-#define CUT_ROUND_OFF 1e-9
 
 /* What edges are split at. */
 enum level { LEVEL_HEIGHT, LEVEL_EXTENT };

@@ -3,6 +3,7 @@
 
 #include "approx/cells/quality.h"
 #include "base/lists.h"
+#include "base/round_off.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -186,7 +187,7 @@ static bool move_within(const struct snapping *snapping, int32_t node, const dou
             least = fmin(least, share[k]);
             add_scaled(dim, share[k], body->x + (int64_t)body->node[cell * (dim + 1) + k] * dim, x);
         }
-        if (least >= -CUT_ROUND_OFF) {
+        if (least >= -COARSE_ROUND_OFF) {
             return move_node(snapping, node, x, at);
         }
     }

@@ -1,5 +1,6 @@
 #include "solid/material/ellipticity.h"
 
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -7,9 +8,6 @@
 
 /* Directions are those from the origin to the points of a lattice, whose coordinates are at most this. */
 enum { LATTICE = 2 };
-/* Step of the differences of stresses. */
-static const double step = 1e-6;
-
 /* dW/dF of the whole law. */
 static void stress(const struct material *material, const double F[9], double P[9])
 {
@@ -28,12 +26,12 @@ static void tangent(const struct material *material, int dim, const double F[9],
             continue;
         }
         memcpy(at, F, sizeof at);
-        at[k] = F[k] + step;
+        at[k] = F[k] + DIFFERENCE_STEP;
         stress(material, at, after);
-        at[k] = F[k] - step;
+        at[k] = F[k] - DIFFERENCE_STEP;
         stress(material, at, before);
         for (int i = 0; i < 9; i++) {
-            A[9 * i + k] = (after[i] - before[i]) / (2.0 * step);
+            A[9 * i + k] = (after[i] - before[i]) / (2.0 * DIFFERENCE_STEP);
         }
     }
 }

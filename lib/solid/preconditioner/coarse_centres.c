@@ -4,6 +4,7 @@
  * centres. */
 #include "solid/preconditioner/coarse_centres.h"
 
+#include "approx/visibility/edge_paths.h"
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/queue.h"
@@ -17,9 +18,6 @@
 /* Radius of the shares, by the largest distance of a node from its nearest centre: 1.2 to 2.5 give as many
  * steps. */
 static const double radius_factor = 1.5;
-/* The length of a path is divided by this before it is compared with the Euclidean distance, so that in
- * convex bodies the latter counts. */
-static const double most_detour = 2.0;
 enum { NODES_FOR_THREAD = 10000 }; /* see chunks_of */
 
 /* What is known of all nodes. */
@@ -140,7 +138,8 @@ static enum status find_near(const struct coarse_space *coarse, const struct way
             continue;
         }
         double straight = vector_distance(dim, coarse->X + (int64_t)end.node * dim, coarse->X + from * dim);
-        double distance = fmax(straight, end.length / most_detour);
+        /* So that in convex bodies the Euclidean distance counts. */
+        double distance = fmax(straight, end.length / PATH_MOST_DETOUR);
         if (distance < (within != NULL ? within[end.node] : coarse->radius)) {
             note(search, end.node, distance);
             RETURN_IF_ERROR(go_on(coarse, ways->neighbours, &end, search, error));

@@ -1,6 +1,7 @@
 #include "solid/preconditioner/frequency.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 #include "solid/preconditioner/preconditioner_private.h"
 
@@ -8,9 +9,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double strain =
-    1e-6; /* about that much is a cell strained by the move that K is measured with */
 
 static double largest_entry(const double *vector, int64_t size)
 {
@@ -33,7 +31,7 @@ static double residual_along(struct solid_system *system, const double *u, doubl
                              double *displaced, double *response)
 {
     int64_t size = system->node_count * system->dim;
-    double epsilon = strain * spacing / largest_entry(move, size);
+    double epsilon = DIFFERENCE_STEP * spacing / largest_entry(move, size);
     for (int64_t i = 0; i < size; i++) {
         displaced[i] = u[i] + epsilon * move[i];
     }

@@ -4,6 +4,7 @@
 #include "base/chunks.h"
 #include "base/dense.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,6 @@
 static const double kept = 1e-6;
 enum { MOST_ATTEMPTS = 12 }; /* with ten times as much each time, until the stiffness is positive definite */
 enum { ENTRIES_FOR_THREAD = 50000 }; /* see chunks_of */
-static const double strain = 1e-6;   /* of the differences that stiffness is measured with */
 
 static int threads_for(int64_t size)
 {
@@ -72,7 +72,7 @@ static enum status measure_by_differences(struct preconditioner *p, struct solid
                                           const double *u, const double *at_u, struct error *error)
 {
     int64_t values = p->node_count * p->dim;
-    double epsilon = strain * system_node_spacing(system), *one = p->amount;
+    double epsilon = DIFFERENCE_STEP * system_node_spacing(system), *one = p->amount;
     NEW_SCRATCH(double, moved, values, error);
     NEW_SCRATCH(double, force, values, error);
     for (int64_t k = 0; k < p->size; k++) {

@@ -5,17 +5,12 @@
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "solid/rigid/rigid_private.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Corners closer than this, relative to the extent, are one vertex. */
-static const double merge_tolerance = 1e-9;
-
-/* Triangles whose area is less than half this part of their longest edge squared have no normal. */
-static const double least_slenderness = 1e-12;
 
 static enum status check_corners(const struct rigid_surface *surface, const double *corners,
                                  struct error *error)
@@ -37,7 +32,7 @@ static enum status find_coincident(const struct rigid_surface *surface, const do
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim;
-    double near = merge_tolerance * surface->extent;
+    double near = COARSE_ROUND_OFF * surface->extent;
     SCRATCH struct placed *placed = NULL; /* along a direction in which few distinct corners coincide */
     RETURN_IF_ERROR(NEW_ARRAY(&placed, count, error));
     for (int64_t c = 0; c < count; c++) {
@@ -92,7 +87,7 @@ static enum status make_normals(struct rigid_surface *surface, bool flip, struct
             size2 = fmax(size2, vector_distance2(dim, surface->vertex + (int64_t)corner[k] * dim,
                                                  surface->vertex + (int64_t)corner[(k + 1) % dim] * dim));
         }
-        double least = dim == 2 ? 0.0 : 0.5 * least_slenderness * size2;
+        double least = dim == 2 ? 0.0 : 0.5 * ROUND_OFF * size2;
         if (!(vector_length(dim, normal) > least)) {
             return fail(error, STATUS_INPUT, "rigid surface: facet %lld has no size: remove it",
                         (long long)(f + 1));

@@ -1,4 +1,5 @@
 /* The closest point of a rigid surface, by its tree of boxes; see rigid.h. */
+#include "base/round_off.h"
 #include "solid/rigid/rigid_private.h"
 
 #include <math.h>
@@ -6,12 +7,6 @@
 
 /* Where on a facet the closest point lies; edge k goes from corner k to corner k + 1. */
 enum feature { ON_FACE, ON_CORNER_0, ON_CORNER_1, ON_CORNER_2, ON_EDGE_0, ON_EDGE_1, ON_EDGE_2 };
-
-/* Distances that agree to this part are the same: then a facet is preferred to a rim. */
-static const double same = 1e-12;
-
-/* Offsets and distances below this part of the extent are round-off. */
-static const double round_off = 1e-12;
 
 enum { MOST_DEPTH = 64 }; /* of the tree: INT32_MAX facets are halved 31 times */
 
@@ -131,8 +126,8 @@ static void consider(const struct rigid_surface *surface, int64_t f, const doubl
     here.rim = on_rim(surface, f, here.feature);
     vector_subtract(dim, x, here.point, away);
     here.distance2 = vector_dot(dim, away, away);
-    if ((here.distance2 < nearest->distance2 * (1.0 - same) ||
-         (here.distance2 <= nearest->distance2 * (1.0 + same) && nearest->rim && !here.rim)) &&
+    if ((here.distance2 < nearest->distance2 * (1.0 - ROUND_OFF) ||
+         (here.distance2 <= nearest->distance2 * (1.0 + ROUND_OFF) && nearest->rim && !here.rim)) &&
         (filter == NULL || filter->admits(filter->context, f, away))) {
         *nearest = here;
     }
@@ -161,7 +156,7 @@ static struct nearest find_nearest(const struct rigid_surface *surface, const do
         int64_t at = waiting[--count];
         const struct rigid_branch *branch = &surface->branch[at];
         double away2 = box_distance2(surface->dim, branch, x);
-        if (away2 > nearest.distance2 * (1.0 + same) || away2 > reach * reach) {
+        if (away2 > nearest.distance2 * (1.0 + ROUND_OFF) || away2 > reach * reach) {
             continue;
         }
         if (branch->second == 0) {
@@ -252,7 +247,7 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     contact.distance = sqrt(nearest.distance2);
     if (nearest.rim) {
         double least_distance, beyond = beyond_rim(surface, &nearest, away, &least_distance);
-        if (beyond > round_off * surface->extent) {
+        if (beyond > ROUND_OFF * surface->extent) {
             contact.distance = least_distance;
             return contact;
         }
@@ -270,7 +265,7 @@ struct rigid_contact rigid_closest_among(const struct rigid_surface *surface, co
     } else {
         double sign = vector_dot(dim, away, normal) < 0.0 ? -1.0 : 1.0;
         contact.gap = sign * contact.distance;
-        if (contact.distance > 1e3 * round_off * surface->extent) {
+        if (contact.distance > 1e3 * ROUND_OFF * surface->extent) {
             add_scaled(dim, sign / contact.distance, away, contact.normal);
         } else {
             memcpy(contact.normal, normal, (size_t)dim * sizeof *normal);

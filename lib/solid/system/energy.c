@@ -1,13 +1,11 @@
 #include "solid/system/energy.h"
 
 #include "base/memory.h"
+#include "base/round_off.h"
 #include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Energies below this share of shear modulus times volume are round-off. */
-static const double round_off = 1e-12;
 
 enum status energy_log_add(struct energy_log *log, const struct energy *row, struct error *error)
 {
@@ -37,7 +35,7 @@ struct energy_balance energy_balance_begin(const struct solid_system *system)
     const struct body *body = &system->body;
     struct energy_balance balance = {0};
     for (int64_t q = 0; q < body->point_count; q++) {
-        balance.largest += round_off * body->weight[q] * body->materials[body->material[q]].shear_modulus;
+        balance.largest += ROUND_OFF * body->weight[q] * body->materials[body->material[q]].shear_modulus;
     }
     return balance;
 }

@@ -5,8 +5,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vector.h"
-#include "solid/system/condition.h"
 #include "solid/contact/contact_between.h"
+#include "solid/system/condition.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,7 +75,7 @@ static int64_t nearest_of_others(const struct solid_system *system, int64_t r)
         double cosine = vector_dot(dim, rows->direction + s * dim, rows->direction + r * dim);
         double distance2 = vector_distance2(dim, system->X + (int64_t)rows->node[s] * dim,
                                             system->X + (int64_t)rows->node[r] * dim);
-        if (rows->section[s] != rows->section[r] && fabs(cosine) > 0.5 && distance2 < least) {
+        if (rows->section[s] != rows->section[r] && fabs(cosine) > SAME_DIRECTION && distance2 < least) {
             least = distance2;
             nearest = s;
         }

@@ -1,4 +1,5 @@
 /* Terms of the expressions that choose facets, nodes or cells. */
+#include "base/round_off.h"
 #include "groups/group_body.h"
 
 #include "approx/cells/parts.h"
@@ -28,8 +29,6 @@ struct term {
     struct error *error;
 };
 
-/* Points within this share of the body's diagonal of a shape belong to it, for round-off. */
-#define SLACK 1e-9
 /* Default distance of corners of facets from a plane, as a share of the diagonal. */
 #define FLATNESS 1e-6
 
@@ -47,7 +46,7 @@ static enum status check_direction(const struct term *term, const double *direct
 static enum status choose_box(const struct term *term)
 {
     int dim = term->body->cells.dim;
-    struct shape shape = {.kind = SHAPE_BOX, .slack = SLACK * term->body->diagonal};
+    struct shape shape = {.kind = SHAPE_BOX, .slack = COARSE_ROUND_OFF * term->body->diagonal};
     for (int k = 0; k < dim; k++) {
         shape.a[k] = term->value[k] * term->unit;
         shape.b[k] = term->value[dim + k] * term->unit;
@@ -64,7 +63,7 @@ static enum status choose_box(const struct term *term)
 static enum status choose_ball(const struct term *term)
 {
     int dim = term->body->cells.dim;
-    struct shape shape = {.kind = SHAPE_BALL, .slack = SLACK * term->body->diagonal};
+    struct shape shape = {.kind = SHAPE_BALL, .slack = COARSE_ROUND_OFF * term->body->diagonal};
     for (int k = 0; k < dim; k++) {
         shape.a[k] = term->value[k] * term->unit;
     }
@@ -81,7 +80,8 @@ static enum status choose_plane(const struct term *term)
 {
     int dim = term->body->cells.dim;
     bool half = term->text[0] == 'h';
-    struct shape shape = {.kind = half ? SHAPE_HALF : SHAPE_PLANE, .slack = SLACK * term->body->diagonal};
+    struct shape shape = {.kind = half ? SHAPE_HALF : SHAPE_PLANE,
+                          .slack = COARSE_ROUND_OFF * term->body->diagonal};
     for (int k = 0; k < dim; k++) {
         shape.a[k] = term->value[k] * term->unit;
         shape.b[k] = term->value[dim + k];
@@ -105,7 +105,7 @@ static enum status choose_end(const struct term *term)
     int dim = term->body->cells.dim;
     bool low = term->text[0] == 'l';
     struct box box = box_of(dim, term->body->cells.node_count, term->body->cells.x);
-    struct shape shape = {.kind = SHAPE_HALF, .slack = SLACK * term->body->diagonal};
+    struct shape shape = {.kind = SHAPE_HALF, .slack = COARSE_ROUND_OFF * term->body->diagonal};
     struct error why;
     double percent = 0;
     int axis = 4;

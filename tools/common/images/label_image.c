@@ -3,6 +3,7 @@
 #include "base/box.h"
 #include "base/lists.h"
 #include "base/vector.h"
+#include "cell_report.h"
 #include "images/images.h"
 
 #include <math.h>
@@ -11,7 +12,6 @@
 
 /* Most labels of an image without a table. */
 enum { MOST_UNNAMED = 256, MOST_VALUES = 32767 };
-static const double largest_diagonal = 10, smallest_diagonal = 1e-3;
 
 int32_t label_image_find(const struct label_image *image, const char *name)
 {
@@ -272,7 +272,7 @@ static void check_size(const struct tool *tool, const struct label_image *image,
     struct box box = {.dim = image->labels.dim};
     labels_box(&image->labels, box.low, box.high);
     double diagonal = box_diagonal(&box);
-    if (!(diagonal < largest_diagonal && diagonal > smallest_diagonal) && !unit_given) {
+    if (!(diagonal < CELL_REPORT_LARGEST && diagonal > CELL_REPORT_SMALLEST) && !unit_given) {
         tool_fail(tool, STATUS_INPUT,
                   "the labels are %.3g m across: give the unit of the file's lengths, as -u mm", diagonal);
     }

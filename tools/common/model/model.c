@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double farthest_moments = 1e6; /* sizes of the body */
-
 /* Refuse moments about a point farther away: they are differences of huge numbers, and a unit or a sign is
  * wrong. */
 static enum status check_moments(const struct model *model, struct error *error)
@@ -18,7 +16,7 @@ static enum status check_moments(const struct model *model, struct error *error)
     struct box box = box_of(cells->dim, cells->node_count, cells->x);
     for (int a = 0; a < cells->dim && output->moments; a++) {
         double away = fmax(box.low[a] - output->about[a], output->about[a] - box.high[a]);
-        if (!(away <= farthest_moments * model->assembly.extent)) {
+        if (!(away <= MODEL_MOST_SIZES * model->assembly.extent)) {
             return fail(
                 error, STATUS_INPUT,
                 "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",

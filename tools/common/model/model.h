@@ -76,3 +76,6 @@ MUST_CHECK enum status model_initial(const struct model *model, double *u, doubl
  * of the body's extent. A row belongs to x if this is at most MODEL_SAME_PLACE. */
 double model_away(const struct model *model, const double *row, double unit, const double *x);
 #define MODEL_SAME_PLACE 1e-5
+
+/* Lengths beyond so many sizes of the body are refused. */
+#define MODEL_MOST_SIZES 1e4

@@ -7,10 +7,6 @@
 
 #include <math.h>
 
-/* A point must not be farther from the rows of the table than this many of their spacings, or cells: on a
- * lattice none is farther than .87, and among random rows one in a million. */
-static const double most_spacings = 1.5;
-
 /* The dim (dim + 1) / 2 entries of a symmetric matrix. */
 enum { MOST_ENTRIES = 6 };
 static const int entries[2][MOST_ENTRIES] = {{0, 1, 3}, {0, 1, 2, 4, 5, 8}};
@@ -80,7 +76,7 @@ static enum status directions_at(const struct model *model, const struct scene_m
     point_text(dim, x, place);
     RETURN_IF_ERROR(fail_in(error, scattered_fit_evaluate(fit, 0, x, values, &distance, &spacing, error),
                             "%s: fibres: %s: at %s", section->label.where, section->fibres, place));
-    if (!(distance <= most_spacings * fmax(spacing, size))) {
+    if (!(distance <= SCATTERED_FIT_REACH * fmax(spacing, size))) {
         return fail(
             error, STATUS_INPUT,
             "%s: fibres: %s: its nearest point is %.3g m from %s in the body, its points are %.3g m apart: "

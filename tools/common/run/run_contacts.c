@@ -3,6 +3,7 @@
 
 #include "approx/field/field_compare.h"
 #include "base/box.h"
+#include "solid/equilibrium/statics.h"
 #include "solid/system/energy.h"
 
 #include <float.h>
@@ -60,19 +61,17 @@ static double distance_at_rest(const struct contact *contact, double enough)
     return fmax(sqrt(between2), nearest);
 }
 
-/* A motion of more than many_sizes sizes of the body is noted: the scene may have m in place of mm. More than
- * most_sizes is refused. */
-static const double many_sizes = 10.0, most_sizes = 1e4;
-
+/* A motion of more than STATICS_MOST_SIZES sizes of the body is noted: the scene may have m in place of mm.
+ * More than MODEL_MOST_SIZES is refused. */
 static void check_motion(const struct run *run, const char *where, const char *what, double way)
 {
     static const char text[] = "%s: a %s of %.3g m is prescribed, %.3g times the size of the body: "
                                "lengths without a unit are in m";
     double sizes = way / run->model->assembly.extent;
-    if (sizes > most_sizes) {
+    if (sizes > MODEL_MOST_SIZES) {
         tool_fail(run->tool, STATUS_INPUT, text, where, what, way, sizes);
     }
-    if (sizes > many_sizes) {
+    if (sizes > STATICS_MOST_SIZES) {
         tool_note(run->tool, text, where, what, way, sizes);
     }
 }
@@ -83,7 +82,7 @@ static double motion_at_body(const struct run *run, const struct contact *contac
 {
     double motion = own_motion(&run->model->system, contact, contact->rest, contact->count);
     double extent = run->model->assembly.extent;
-    return motion > many_sizes * extent ? motion - distance_at_rest(contact, extent) : motion;
+    return motion > STATICS_MOST_SIZES * extent ? motion - distance_at_rest(contact, extent) : motion;
 }
 
 void run_contacts_begin(const struct run *run)

@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Largest penetration of contacts at the end, as a share of the largest displacement, as in quasi-static
- * scenes. */
-static const double most_given = 1e-3;
-
 /* What lets the energy drift. Contact between facets begins or ends with a jump where they turn by the limit
  * of what faces each other, whatever the time step. */
 static const char *drift_remedy(const struct run *run)
@@ -46,7 +42,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
                       scene->path, report->largest_drift, drift_remedy(run));
         }
         run_folds_judge(run);
-        run_contacts_penetrate(run, largest_move, most_given * largest_move, true);
+        run_contacts_penetrate(run, largest_move, system_penetration_allowed(largest_move), true);
         run_contacts_touch(run);
         run_sliding_judge(run);
         return;
