@@ -8,12 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Nodes of interfaces are moved as long as the cells at them keep this score, or their own if it is lower. */
-static const double goal = 1.3;
-/* Cells with a lower score are improved. In the end, nodes farther than `slack` voxels from their
- * interface are moved towards it, while scores stay above last_score. */
-static const double least_score = 1.25, last_score = 1.02, slack = 0.55;
-enum { FIT_SWEEPS = 4 };
+/* Cells with a lower score are improved; a node of an interface is moved as long as the cells at it keep this
+ * score, or their own if it is lower. In the end, nodes that are far from their interface are moved towards
+ * it as long as the bounds hold: a score of 1. */
+static const double least_score = 1.25;
 
 static double label_cells_score(const struct label_cells *mesh, int64_t cell)
 {
@@ -60,7 +58,7 @@ void star_move(const struct shaping *shaping, int64_t node, const double target[
 {
     int dim = shaping->mesh->dim;
     double *x = shaping->mesh->x + node * dim, before[3] = {0};
-    double score = fmin(star_score(shaping, node, -INFINITY), goal);
+    double score = fmin(star_score(shaping, node, -INFINITY), least_score);
     memcpy(before, x, (size_t)dim * sizeof *x);
     double share = 1;
     for (int halving = 0; halving < 4; halving++, share /= 2) {
@@ -84,8 +82,8 @@ static int kept_labels(const struct shaping *shaping, int64_t node)
     return count;
 }
 
-/* target[node_count * dim]: the place where all labels of each node on an interface meet; where there is none,
- * the surface of the body or an interface of two of them; where there is none either, its own. */
+/* target[node_count * dim]: the place where all labels of each node on an interface meet; where there is
+ * none, the surface of the body or an interface of two of them; where there is none either, its own. */
 static void find_places(const struct shaping *shaping, bool meeting, double *target)
 {
     const struct label_cells_star *star = &shaping->star;
@@ -151,11 +149,11 @@ static void settle(const struct shaping *shaping, double *target)
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double from[3] = {0}, place[3];
         memcpy(from, mesh->x + n * dim, (size_t)dim * sizeof *from);
-        double far = slack * labels_voxel(shaping->labels);
+        double far = LABEL_CELLS_NEAR * labels_voxel(shaping->labels);
         bool astray = vector_distance(dim, target + n * dim, from) > far && distance(shaping, n) > far;
         for (int step = astray ? 8 : 0; step > 0; step--) {
             vector_between(dim, from, target + n * dim, step / 8.0, place);
-            if (star_make_room(shaping, last_score, n, place)) {
+            if (star_make_room(shaping, 1.0, n, place)) {
                 break;
             }
         }
@@ -186,18 +184,18 @@ enum status label_cells_improve(const struct labels *labels, const struct label_
     double *target = NULL;
     TRY(star_make(mesh, kept->wanted, &shaping.star, error));
     TRY(NEW_ARRAY(&target, mesh->node_count * mesh->dim, error));
-    for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
+    for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS; sweep++) {
         label_cells_begin(options, "moving nodes onto interfaces");
         fit(&shaping, target);
         label_cells_repair(&shaping, least_score);
     }
-    for (int sweep = 0; sweep < FIT_SWEEPS; sweep++) {
+    for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS; sweep++) {
         label_cells_begin(options, "moving nodes that are far from interfaces");
         settle(&shaping, target);
     }
     label_cells_begin(options, "correcting volumes");
     TRY(label_cells_volumes(&shaping, options, error));
-    label_cells_repair(&shaping, last_score);
+    label_cells_repair(&shaping, 1.0);
     measure(&shaping);
 done:
     free(target);

@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The tips of crevices with a larger cosine are filled: 60 degrees, the least angle of the lattice's own
- * cells. Under load the walls of sharper crevices pass through each other. */
-static const double sharpest = 0.5;
-
 /* Number the groups of cells at a node that are connected by faces at it; returns the number of groups.
  */
 static int32_t find_groups(struct label_cells_keeping *keeping, const struct label_cells_star *star,
@@ -189,8 +185,9 @@ static void find_tip(struct label_cells_keeping *keeping, const struct label_cel
     forget_groups(keeping, star, node);
 }
 
-/* Whether two faces of a cell between interfaces that is left out are walls of the body, at a sharp angle:
- * the tip of a crevice. It takes the label of one of them. */
+/* Whether two faces of a cell between interfaces that is left out are walls of the body, at less than 60
+ * degrees, the least angle of the lattice's own cells: the tip of a crevice. Under load the walls of sharper
+ * ones pass through each other. It takes the label of one of them. */
 static bool is_crevice(const struct label_cells_keeping *keeping, int64_t cell, struct change *change)
 {
     int dim = keeping->cells.dim, corners = dim + 1, walls = 0;
@@ -211,7 +208,7 @@ static bool is_crevice(const struct label_cells_keeping *keeping, int64_t cell, 
     for (int k = 0; k < corners; k++) {
         for (int l = k + 1; l < corners && length[k] > 0; l++) {
             double dot = vector_dot(dim, gradient[k], gradient[l]);
-            if (length[l] > 0 && -dot > sharpest * length[k] * length[l]) {
+            if (length[l] > 0 && -dot > SAME_DIRECTION * length[k] * length[l]) {
                 return true;
             }
         }

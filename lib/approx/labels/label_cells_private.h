@@ -163,6 +163,13 @@ void label_cells_join(struct label_cells_keeping *keeping, const struct label_ce
 MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping,
                                              const struct label_cells_star *star, struct error *error);
 
+/* Voxels by which nodes leave their interface for the sake of volumes, and farther than which they are
+ * brought nearer. */
+#define LABEL_CELLS_NEAR (0.9 * LABEL_CELLS_MOST_ASTRAY)
+
+/* Sweeps of each kind that move nodes. */
+enum { LABEL_CELLS_SWEEPS = 6 };
+
 /* A body whose nodes are moved. The cells around it are part of `mesh`: as long as none of them is
  * inverted, no wall of the body passes through another one. */
 struct shaping {

@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where a share is below this, the interface is searched for: the share is too flat for Newton's method. */
-static const double least_share = 0.1;
-
 /* How near to an interface a place on it is, voxels. */
 static const double least_step = 1e-3;
 
@@ -199,8 +196,8 @@ static bool search_change(const struct labels *labels, const struct interface_be
     return true;
 }
 
-/* Move x onto the surface of the body, where the largest shares of kept and of other labels are equal. Far
- * from it, and if Newton's method fails, it is searched for. False if there is none near. */
+/* Move x onto the surface of the body, where the largest shares of kept and of other labels are equal. If
+ * Newton's method fails, it is searched for. False if there is none near. */
 static bool project_to_surface(const struct labels *labels, const bool *keep, double reach, double x[])
 {
     const struct interface_beyond other = {-1, keep, !keep[labels_at(labels, x)]};
@@ -208,8 +205,7 @@ static bool project_to_surface(const struct labels *labels, const bool *keep, do
     labels_mix(labels, x, &mix);
     int32_t within = label_largest(&mix, keep, true), outside = label_largest(&mix, keep, false);
     const uint16_t pair[2] = {(uint16_t)within, (uint16_t)outside};
-    bool near = fmin(label_share(&mix, within), label_share(&mix, outside)) >= least_share;
-    return (near && interface_project(labels, 2, pair, x)) || search_change(labels, &other, reach, x);
+    return interface_project(labels, 2, pair, x) || search_change(labels, &other, reach, x);
 }
 
 bool node_project(const struct shaping *shaping, int64_t node, double x[])

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SWEEPS = 10, STEPS = 5 };
+enum { STEPS = 5 }; /* of a search, each half as long as the last */
 
 /* Mean length of the edges that end at a node. */
 static double edge_length(const struct shaping *shaping, int64_t node)
@@ -62,13 +62,12 @@ void label_cells_repair(const struct shaping *shaping, double least)
 {
     const struct label_cells *mesh = shaping->mesh;
     bool improved = true;
-    for (int sweep = 0; sweep < SWEEPS && improved; sweep++) {
+    for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS && improved; sweep++) {
         improved = false;
         for (int64_t c = 0; c < mesh->cell_count; c++) {
             for (int k = 0; k <= mesh->dim && shaping_score(shaping, c) < least; k++) {
                 int64_t node = mesh->cell[c * (mesh->dim + 1) + k];
-                improved =
-                    (shaping->star.labels[node] > 0 && search(shaping, least, node)) || improved;
+                improved = (shaping->star.labels[node] > 0 && search(shaping, least, node)) || improved;
             }
         }
     }
@@ -76,7 +75,7 @@ void label_cells_repair(const struct shaping *shaping, double least)
 
 /* ---- room for a node ---- */
 
-enum { ROOM_MOST = 64, ROOM_SWEEPS = 3 };
+enum { ROOM_MOST = 64 };
 
 /* The nodes around a node that may move, and their positions. */
 struct room {
@@ -128,7 +127,7 @@ bool star_make_room(const struct shaping *shaping, double least, int64_t node, c
     memcpy(before, x, (size_t)dim * sizeof *x);
     memcpy(x, target, (size_t)dim * sizeof *x);
     bool improved = true;
-    for (int sweep = 0; sweep < ROOM_SWEEPS && improved; sweep++) {
+    for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS && improved; sweep++) {
         improved = false;
         for (int r = 0; r < room.count; r++) {
             if (star_score(shaping, room.node[r], wanted) < wanted) {

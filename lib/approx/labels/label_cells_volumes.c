@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest move of an interface to correct the volumes of labels, voxels. */
-static const double most_offset = 0.55;
-enum { SWEEPS = 6 };
-
 void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3])
 {
     int32_t face[3];
@@ -121,7 +117,7 @@ static void correct_volumes(struct volumes *volumes)
     struct label_cells *mesh = volumes->shaping->mesh;
     const struct label_cells_star *star = &volumes->shaping->star;
     int dim = mesh->dim;
-    double most = most_offset * labels_voxel(volumes->shaping->labels);
+    double most = LABEL_CELLS_NEAR * labels_voxel(volumes->shaping->labels);
     for (int64_t n = 0; n < mesh->node_count; n++) {
         double G[LABEL_CELLS_MOST_LABELS][3], target[3] = {0}, before[3] = {0}, length = 0, wanted;
         const double *place = volumes->place + n * dim, *x = mesh->x + n * dim;
@@ -180,13 +176,13 @@ enum status label_cells_volumes(const struct shaping *shaping, const struct labe
         double *place = volumes.place + n * mesh->dim;
         volumes.free[n] = volumes.movable[n] =
             shaping->star.labels[n] >= 2 && !shaping->kept->apart[n] && node_project(shaping, n, place) &&
-            vector_distance(mesh->dim, place, x) <= most_offset * labels_voxel(labels);
+            vector_distance(mesh->dim, place, x) <= LABEL_CELLS_NEAR * labels_voxel(labels);
     }
     voxel_volumes(labels, options->keep, voxels);
     for (int32_t l = 0; l < labels->count; l++) {
         volumes.wanted[l] = fmax(voxels[l] - shaping->kept->dropped[l], 0);
     }
-    for (int sweep = 0; sweep < SWEEPS && find_pressures(&volumes); sweep++) {
+    for (int sweep = 0; sweep < LABEL_CELLS_SWEEPS && find_pressures(&volumes); sweep++) {
         correct_volumes(&volumes);
     }
 done:

@@ -11,8 +11,6 @@
  * is behind the other by more than this share of their distance. A point may be behind another facet by half
  * a width: a body thicker than `near_widths` would have to be flattened to an eighth for that. */
 static const double near_widths = 4.0, behind_share = 1e-3;
-/* A facet that turns by an angle moves by this share of its width, per radian. */
-static const double lever = 0.3;
 enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
 
 enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
@@ -227,7 +225,8 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
 }
 
 /* Admit facets that face the point. For the others, bound the motion before they can: to change the cosine of
- * its angle by c, a facet must move by more than c times the lever. */
+ * its angle by c, a facet must turn by more than c, which moves one of its corners by more than a third of
+ * its width times c. */
 static bool considers(void *context, int64_t f)
 {
     struct search *search = context;
@@ -238,7 +237,7 @@ static bool considers(void *context, int64_t f)
         return !through_body(opposite, search->seeker, f);
     }
     double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double bound = lever * width * (cosine + SAME_DIRECTION);
+    double bound = width / 3.0 * (cosine + SAME_DIRECTION);
     if (bound < search->free_way && !through_body(opposite, search->seeker, f)) {
         search->free_way = bound;
     }

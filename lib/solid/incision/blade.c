@@ -11,9 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Facets at an edge of more than two are joined where they turn by less than that, cos 60 degrees. */
-static const double least_straight = 0.5;
-
 /* ---- building ---- */
 
 static enum status check_crossings(int dim, int64_t count, const double *corners, struct error *error)
@@ -55,7 +52,7 @@ static void join_straight(const struct rigid_surface *surface, const struct ridg
 {
     for (bool found = count > 1; found;) {
         int32_t pair[2] = {-1, -1};
-        double best = count == 2 ? -2.0 : least_straight;
+        double best = count == 2 ? -2.0 : SAME_DIRECTION;
         for (int64_t i = 0; i < count * count; i++) {
             const struct ridge *a = &ridge[i / count], *b = &ridge[i % count];
             double straight = vector_dot(3, surface->normal + (int64_t)a->facet * 3,

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where facets meet at an edge, nodes must move farther than the gap, at most by this factor. */
-static const double most_stretch = 2;
 enum { MOST_HALVINGS = 30 };
 
 void label_surface_parse(const struct tool *tool, const struct label_image *image, const char *text,
@@ -42,7 +40,7 @@ static void unit_normal(const struct label_cells *mesh, int64_t facet, double no
 }
 
 /* place[node_count * dim]: nodes of the facets moved outward along the mean normal of the facets there, so
- * far that each of these facets moves by the gap. */
+ * far that each of these facets moves by the gap; at most by the gap over SAME_DIRECTION. */
 static void move_outward(const struct label_cells *mesh, const struct label_surface_options *options,
                          double *mean, double *least, double *place)
 {
@@ -63,7 +61,7 @@ static void move_outward(const struct label_cells *mesh, const struct label_surf
         if (is_chosen(mesh, options, i / dim)) {
             unit_normal(mesh, i / dim, normal);
             double cosine = vector_dot(dim, normal, mean + n * dim);
-            least[n] = fmax(fmin(least[n], cosine), 1 / most_stretch);
+            least[n] = fmax(fmin(least[n], cosine), SAME_DIRECTION);
         }
     }
     for (int64_t i = 0; i < mesh->node_count * dim; i++) {
