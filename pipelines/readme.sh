@@ -8,7 +8,7 @@
 #   is an error.
 # - Between "<!-- tools -->" and "<!-- end -->": the tools and their one-line summaries, from their usage texts.
 # - Between "<!-- studies -->" and "<!-- end -->": the studies, from the first lines of pipelines/*.mk.
-# - Between "<!-- study FILE [COLUMN...] -->" and "<!-- end -->": the table FILE, or these columns of it.
+# - Between "<!-- study FILE [COLUMN...] -->" and "<!-- end -->": the table FILE, or what study_table picks of it.
 # - "<!-- figure: FILE COLUMN ROW -->...<!-- end -->" within a line: one figure, see figures.awk.
 # - A picture that the commands make, build/NAME.png, replaces examples/*/pictures/NAME.png where KEEP=1 is set.
 set -uo pipefail
@@ -58,22 +58,32 @@ studies_table() {
     done
 }
 
-# study_table FILE [COLUMN...]: as a table of Markdown.
+# study_table FILE [COLUMN | COLUMN=VALUE,VALUE... | last]...: as a table of Markdown: these columns, of the rows with one of these values,
+# and with "last" of the last row for each combination of the first two columns.
 study_table() {
     local file=$results/$1
     shift
     awk -F '\t' -v wanted="$*" '
+        function fail(what) { print "readme: " FILENAME ": no " what > "/dev/stderr"; exit failed = 1 }
+        function show() { if (shown != "") print shown; shown = "" }
         NR == 1 {
-            n = split(wanted, name, " ")
+            count = split(wanted, word, " ")
             for (i = 1; i <= NF; i++) at[$i] = i
-            for (i = 1; i <= n; i++) {
-                if (!(name[i] in at)) { print "readme: " FILENAME ": no column " name[i] > "/dev/stderr"; exit 1 }
-                pick[i] = at[name[i]]
+            for (i = 1; i <= count; i++) {
+                values = ""
+                if (word[i] == "last") { last = 1; continue }
+                if (match(word[i], "=")) { values = substr(word[i], RSTART + 1); word[i] = substr(word[i], 1, RSTART - 1) }
+                if (!(word[i] in at)) fail("column " word[i])
+                if (values != "") only[at[word[i]]] = "," values ","; else pick[++n] = at[word[i]]
             }
-            if (n == 0) for (n = NF; i <= n; i++) pick[i] = i
+            if (n == 0) while (n < NF) pick[++n] = n
         }
-        { row = "|"; for (i = 1; i <= n; i++) row = row " " $pick[i] " |"; print row }
-        NR == 1 { rule = "|"; for (i = 1; i <= n; i++) rule = rule (i == 1 ? "---|" : "--:|"); print rule }' "$file"
+        NR > 1 { for (i in only) if (!index(only[i], "," $i ",")) next }
+        { row = "|"; for (i = 1; i <= n; i++) row = row " " $pick[i] " |" }
+        !last || $1 FS $2 != kind { show() }
+        { kind = $1 FS $2; shown = row; rows++ }
+        NR == 1 { show(); rule = "|"; for (i = 1; i <= n; i++) rule = rule (i == 1 ? "---|" : "--:|"); print rule }
+        END { if (!failed) { show(); if (rows < 2) fail("rows") } }' "$file"
 }
 
 # Drop the lines up to the mark that ends the generated part.
