@@ -1,6 +1,6 @@
-# make brain3d: the whole brain: several schemes and mixed elements (FreeFEM) without the skull, compared with mixed elements on a finer mesh;
-# the default and mixed elements on three meshes a size; then the default sliding on the skull, coarse and fine. make brain3d-fine adds the default on 61 700 nodes: half an hour.
+# make brain3d: the whole brain by several schemes and mixed elements (FreeFEM) without the skull, and by the default in it
 #
+# make brain3d-fine adds the default on 61 700 nodes: half an hour.
 # Everything lies in build/out/brain3d. A scheme S has S.dat (the displacements, a text stream), S.log (what the tools
 # report), S.errors (its distance from the reference), S.row (its line of compare.tsv) and S.balance (that of balance.tsv).
 

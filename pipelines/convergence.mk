@@ -1,5 +1,5 @@
-# make convergence: error against the size of the triangles, on clamped blocks, Cook's membrane and the brain section (with its
-# skull), by the founding paper's schemes, by the default, by mixed elements (FreeFEM) and by CalculiX, with the orders that are seen.
+# make convergence: error against the size of the triangles, on clamped blocks, Cook's membrane and the brain section, by the founding paper's
+# schemes, the default, mixed elements (FreeFEM) and CalculiX
 #
 # References: the brain section's is that of make brain2d; the others are examples/convergence/*.tsv, of mixed elements; their heads
 # say how good they are. A solution CASE-SCHEME-SIZE has .dat (displacements), .time (see solve.sh), .errors (what fieldcmp prints).

@@ -1,5 +1,5 @@
-# make gallery: examples that others can judge, each with a picture: a liver (make liver), a bar of silicone whose bending was
-# measured (make phantom), a probe pressed into tissue beside Hertz (make indentation), and a needle with friction (make needle).
+# make gallery: examples with pictures: a liver (make liver), a bar of silicone whose bending was measured (make phantom), a probe pressed into
+# tissue beside Hertz (make indentation), and a needle with friction (make needle)
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver

@@ -1,5 +1,4 @@
-# make neurosurgery: brain shift from a label image to a warped scan (Colin27): a craniotomy predicted from 200 noisy points of the exposed cortex, a
-# resection with drainage, electrodes; against finer solutions
+# make neurosurgery: brain shift from a label image to a warped scan (Colin27): a craniotomy, a resection with drainage, electrodes
 #
 # Everything lies in build/out/neurosurgery, and in resection and electrodes there: neurosurgery.tsv (errors before and after), seconds.tsv, a
 # picture; of the craniotomy volumes.tsv, rounds.tsv (how the load was found) and a film of the shift as well. The scan is that of Debian's mricron-data; where it is not installed the label image stands

@@ -1,6 +1,4 @@
-# make speed-error: processor time of one thread against error, for the brain section, clamped blocks and clamped cubes, by the
-# founding paper's schemes, by the default, by mixed elements (FreeFEM) and by CalculiX; and the time that each takes to 1 %, 0.3 % and
-# 0.1 %.
+# make speed-error: processor time of one thread against error, for the brain section, clamped blocks and cubes, by the schemes of convergence
 #
 # The solutions are those of make convergence, and the cubes', in build/out/convergence; each keeps its time, so that an interrupted
 # study goes on. Errors are means over the nodes, relative to the largest displacement. Forces: on the side that is pushed, N, in 2D
