@@ -1,9 +1,27 @@
-#include "approx/labels/label_cells_cut_private.h"
+#include "approx/labels/label_cells_private.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Pieces of one cell of the lattice: each of its six edges doubles them at most. */
+enum { MOST_PIECES = 64 };
+struct pieces {
+    int count, corners;
+    int32_t node[MOST_PIECES][4];
+};
+
+/* The cells of a lattice that are cut. */
+struct cutting {
+    const struct lattice *lattice;
+    struct label_cells *mesh;
+    bool *between;                               /* of each cell: whether all its nodes lie on interfaces */
+    int64_t cell_room, label_room, between_room; /* allocated */
+    int64_t node_count;                          /* nodes of the lattice, then of cuts */
+    double *x;                                   /* node_count * dim, m */
+    int32_t *cut_node;                           /* lattice->edge_count: the node of each edge's cut */
+};
 
 /* A cut edge of a cell, and its rank among the cuts of the cell: edges with larger order[0] are cut first;
  * among equal ones those with lower order[1], then those with lower number. */
@@ -112,55 +130,37 @@ static int find_bisections(const struct cutting *cutting, const int32_t *node, s
     return count;
 }
 
-bool cutting_bisect(struct cutting_pieces *pieces, int32_t p, int32_t q, int32_t middle)
+/* Bisect an edge of all pieces that have it. */
+static void bisect(struct pieces *pieces, int32_t p, int32_t q, int32_t middle)
 {
-    int before = pieces->count;
-    for (int i = 0; i < before; i++) {
+    for (int i = 0, before = pieces->count; i < before; i++) {
         int first = -1, second = -1;
         for (int k = 0; k < pieces->corners; k++) {
             first = pieces->node[i][k] == p ? k : first;
             second = pieces->node[i][k] == q ? k : second;
         }
-        if (first < 0 || second < 0) {
-            continue;
+        if (first >= 0 && second >= 0) {
+            memcpy(pieces->node[pieces->count], pieces->node[i], sizeof pieces->node[i]);
+            pieces->node[i][first] = middle;
+            pieces->node[pieces->count++][second] = middle;
         }
-        if (pieces->count == CUTTING_MOST_PIECES) {
-            return false;
-        }
-        memcpy(pieces->node[pieces->count], pieces->node[i], sizeof pieces->node[i]);
-        pieces->node[i][first] = middle;
-        pieces->node[pieces->count++][second] = middle;
     }
-    return true;
 }
 
 /* Cut one cell of the lattice, and append its pieces. */
 static enum status cut_cell(struct cutting *cutting, const int32_t *node, struct error *error)
 {
-    struct cutting_pieces pieces = {.count = 1, .corners = cutting->lattice->dim + 1};
+    struct pieces pieces = {.count = 1, .corners = cutting->lattice->dim + 1};
     struct bisection bisections[6];
     memcpy(pieces.node[0], node, (size_t)pieces.corners * sizeof *node);
     int count = find_bisections(cutting, node, bisections);
     for (int b = 0; b < count; b++) {
-        cutting_bisect(&pieces, bisections[b].end[0], bisections[b].end[1], bisections[b].node);
+        bisect(&pieces, bisections[b].end[0], bisections[b].end[1], bisections[b].node);
     }
-    enum status status = cutting_again(cutting, &pieces, error);
-    for (int i = 0; i < pieces.count && status == STATUS_OK && !cutting->searching; i++) {
-        status = append(cutting, pieces.node[i], error);
+    for (int i = 0; i < pieces.count; i++) {
+        RETURN_IF_ERROR(append(cutting, pieces.node[i], error));
     }
-    return status;
-}
-
-/* Collect the second cuts of all cells and locate them. */
-static enum status find_seconds(struct cutting *cutting, struct error *error)
-{
-    const struct lattice *lattice = cutting->lattice;
-    cutting->searching = true;
-    for (int64_t c = 0; c < lattice->cell_count; c++) {
-        RETURN_IF_ERROR(cut_cell(cutting, lattice->cell + c * (lattice->dim + 1), error));
-    }
-    cutting->searching = false;
-    return cutting_seconds(cutting, error);
+    return STATUS_OK;
 }
 
 /* Number the cuts behind the nodes of the lattice. */
@@ -171,15 +171,12 @@ static enum status set_nodes(struct cutting *cutting, struct error *error)
     int64_t *count = &cutting->node_count;
     *count = lattice->node_count;
     RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_node, lattice->edge_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&cutting->cut_edge, lattice->edge_count, error));
     for (int64_t e = 0; e < lattice->edge_count; e++) {
         cutting->cut_node[e] = -1;
         if (lattice->cut[e] > 0) {
-            cutting->cut_edge[*count - lattice->node_count] = (int32_t)e;
             cutting->cut_node[e] = (int32_t)(*count)++;
         }
     }
-    cutting->cuts = *count - lattice->node_count;
     if (*count > INT32_MAX / 2) {
         return fail(error, STATUS_INPUT, "more than 1073741823 nodes: a larger spacing?");
     }
@@ -203,7 +200,6 @@ enum status lattice_cells(const struct lattice *lattice, struct label_cells *mes
     enum status status;
     *mesh = (struct label_cells){.dim = lattice->dim, .unsized = lattice->unsized};
     TRY(set_nodes(&cutting, error));
-    TRY(find_seconds(&cutting, error));
     for (int64_t c = 0; c < lattice->cell_count; c++) {
         TRY(cut_cell(&cutting, lattice->cell + c * (lattice->dim + 1), error));
     }
@@ -212,7 +208,7 @@ enum status lattice_cells(const struct lattice *lattice, struct label_cells *mes
     cutting.x = NULL;
     TRY(label_cells_compact(mesh, error));
 done:
-    FREE_ALL(cutting.x, cutting.cut_node, cutting.cut_edge, cutting.second);
+    FREE_ALL(cutting.x, cutting.cut_node);
     *between = cutting.between;
     return status;
 }

@@ -8,7 +8,7 @@
 /* A cut moves a point if it is nearer than this share of the edge's length. For edges along the axes and half
  * diagonals of cubes: Labelle and Shewchuk 2007, section 3, for the best bound of the angles. For diagonals
  * of sides, where leaves of two sizes meet, and for triangles: values between these. */
-static const double near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
+static const double near_axis = 0.24999, near_cube = 0.41189, near_side = 0.3, near_plane = 0.35;
 
 /* Count the edges of cells between points of different labels; store them if the array exists. */
 static int64_t collect(const struct lattice *lattice, int64_t *key)
@@ -104,7 +104,7 @@ static double near_end(const struct lattice *lattice, int64_t edge)
     const int32_t *p = lattice->place + 3 * (int64_t)lattice->end[2 * edge];
     const int32_t *q = lattice->place + 3 * (int64_t)lattice->end[2 * edge + 1];
     int along = (p[0] != q[0]) + (p[1] != q[1]) + (p[2] != q[2]);
-    return lattice->dim == 2 ? near_plane : along == 1 ? LATTICE_NEAR : along == 2 ? near_side : near_cube;
+    return lattice->dim == 2 ? near_plane : along == 1 ? near_axis : along == 2 ? near_side : near_cube;
 }
 
 static double length_of(const struct lattice *lattice, int64_t edge)

@@ -28,10 +28,6 @@ struct lattice {
     double unsized; /* as of struct label_cells */
 };
 
-/* A cut that is nearer to an end of an edge along an axis, by its length, moves the end; and a second cut of
- * an edge is no nearer to its ends. */
-#define LATTICE_NEAR 0.24999
-
 /* Lay the lattice over the labels and find the label of each point. */
 MUST_CHECK enum status lattice_make(const struct labels *labels, const struct label_cells_options *options,
                                     struct lattice *lattice, struct error *error);
