@@ -46,15 +46,15 @@ void sparse_free(struct sparse *matrix)
     *matrix = (struct sparse){0};
 }
 
-/* y = A x; or += with `add`. The width is known when compiling where it is 2 or 3. */
+/* y += A x. The width is known when compiling where it is 2 or 3. */
 static inline __attribute__((always_inline)) void apply_rows(const struct sparse *matrix, int64_t begin,
-                                                             int64_t end, int64_t width, bool add,
+                                                             int64_t end, int64_t width,
                                                              const double *x, double *y)
 {
     for (int64_t r = begin; r < end; r++) {
         double sum[3] = {0.0, 0.0, 0.0}, *to = width <= 3 ? sum : y + r * width;
         for (int64_t a = 0; a < width; a++) {
-            to[a] = add ? y[r * width + a] : 0.0;
+            to[a] = y[r * width + a];
         }
         for (int64_t i = matrix->ptr[r]; i < matrix->ptr[r + 1]; i++) {
             const double *at = x + matrix->idx[i] * width;
@@ -85,8 +85,8 @@ static int64_t begin_of(const struct sparse *matrix, int64_t first, int64_t last
     return first_from(matrix->ptr, first, last, wanted);
 }
 
-static void share_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, bool add,
-                       const double *x, double *y)
+void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,
+                     double *y)
 {
     int threads = chunks_of(last - first, ROWS_FOR_THREAD).threads;
 #pragma omp parallel for schedule(static) num_threads(threads)
@@ -94,23 +94,11 @@ static void share_rows(const struct sparse *matrix, int64_t first, int64_t last,
         int64_t begin = begin_of(matrix, first, last, t, threads);
         int64_t end = begin_of(matrix, first, last, t + 1, threads);
         if (width == 2) {
-            apply_rows(matrix, begin, end, 2, add, x, y);
+            apply_rows(matrix, begin, end, 2, x, y);
         } else if (width == 3) {
-            apply_rows(matrix, begin, end, 3, add, x, y);
+            apply_rows(matrix, begin, end, 3, x, y);
         } else {
-            apply_rows(matrix, begin, end, width, add, x, y);
+            apply_rows(matrix, begin, end, width, x, y);
         }
     }
-}
-
-void sparse_apply_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width,
-                       const double *x, double *y)
-{
-    share_rows(matrix, first, last, width, false, x, y);
-}
-
-void sparse_add_rows(const struct sparse *matrix, int64_t first, int64_t last, int64_t width, const double *x,
-                     double *y)
-{
-    share_rows(matrix, first, last, width, true, x, y);
 }

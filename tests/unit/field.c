@@ -84,42 +84,4 @@ TEST(outside_of_cells)
     assert_memory_equal(got, near3, sizeof near3);
 }
 
-/* Of a piecewise linear field each cell's own line, also a little beyond the cells; far from them an error.
- */
-TEST(linear_in_each_cell)
-{
-    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1}, values[] = {0, 1, 5, 3};
-    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
-    static const double at[] = {0.5, 0.25, 0.25, 0.5, 1, 1, 1.1, 0.5}, far[] = {0.5, 0.5, 0.5, 2.3};
-    static const double expected[] = {0.5 + 4 * 0.25, 2 * 0.25 + 3 * 0.5, 5, 1.1 + 4 * 0.5};
-    struct cells cells = {2, 4, x, 2, node};
-    double got[4];
-    GOOD(field_linear(&cells, 1, values, 4, at, got, &error));
-    for (int p = 0; p < 4; p++) {
-        AT_MOST(fabs(got[p] - expected[p]), 1e-14);
-    }
-    FAILS(field_linear(&cells, 1, values, 2, far, got, &error), STATUS_INPUT, "node 1 at (0.5, 2.3)");
-}
-
-/* In a tetrahedron, and exactly the values at the nodes. */
-TEST(linear_in_a_tetrahedron)
-{
-    static const double x[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2};
-    static const int32_t node[] = {0, 1, 2, 3};
-    static const double at[] = {0.5, 0.25, 0.75};
-    struct cells cells = {3, 4, x, 1, node};
-    double values[8], got[8];
-    for (int n = 0; n < 4; n++) {
-        values[2 * n] = linear(3, x + 3 * (size_t)n);
-        values[2 * n + 1] = -7.0;
-    }
-    GOOD(field_linear(&cells, 2, values, 1, at, got, &error));
-    AT_MOST(fabs(got[0] - linear(3, at)), 1e-14);
-    AT_MOST(fabs(got[1] + 7.0), 1e-14);
-    GOOD(field_linear(&cells, 2, values, 4, x, got, &error));
-    for (int i = 0; i < 8; i++) {
-        AT_MOST(fabs(got[i] - values[i]), 1e-15 * 10.0);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

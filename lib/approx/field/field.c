@@ -164,7 +164,7 @@ static void interpolate_in_cell(const struct cells *cells, int64_t cell, int64_t
 }
 
 /* result[count * cols] at x[count * dim], in the cells that contain the points `within`, or are nearest to
- * them. */
+ * them; that of the nearest cell is continued. */
 static enum status interpolate(const struct cells *cells, int64_t cols, const double *values, int64_t count,
                                const double *within, const double *x, double *result, struct error *error)
 {
@@ -182,12 +182,6 @@ static enum status interpolate(const struct cells *cells, int64_t cols, const do
         interpolate_in_cell(cells, cell[p], cols, values, x + p * cells->dim, result + p * cols);
     }
     return STATUS_OK;
-}
-
-enum status field_linear(const struct cells *cells, int64_t cols, const double *values, int64_t count,
-                         const double *x, double *result, struct error *error)
-{
-    return interpolate(cells, cols, values, count, x, x, result, error);
 }
 
 enum status field_carry(const struct cells *from, int64_t cols, const double *values, const struct cells *to,

@@ -21,16 +21,11 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
  * another mesh may lie slightly outside of a curved boundary. */
 #define FIELD_MARGIN 1.0
 
-/* result[count * cols] at x[count * dim]: linear interpolation in each cell of values[node_count * cols].
- * Outside of the cells, that of the nearest cell is continued; STATUS_INPUT farther away than FIELD_MARGIN.
- *
- * An interpolated displacement that inverts none of these cells hardly inverts a cell of a finer mesh. The
- * solver's smooth field may, as its gradients vary within a cell near corners. */
-MUST_CHECK enum status field_linear(const struct cells *cells, int64_t cols, const double *values,
-                                    int64_t count, const double *x, double *result, struct error *error);
-
-/* The same at the nodes of other cells of about the same body: result[to->node_count * cols]. Where lips or
- * bodies touch, each node takes the value on the side of its own cells. */
+/* result[to->node_count * cols] at the nodes of other cells of about the same body: linear interpolation in
+ * each cell of values[node_count * cols]. Outside of the cells, that of the nearest cell is continued;
+ * STATUS_INPUT farther away than FIELD_MARGIN. An interpolated displacement that inverts none of these cells
+ * hardly inverts a cell of a finer mesh. The solver's smooth field may, as its gradients vary within a cell
+ * near corners. Where lips or bodies touch, each node takes the value on the side of its own cells. */
 MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const double *values,
                                    const struct cells *to, double *result, struct error *error);
 

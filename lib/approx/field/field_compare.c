@@ -49,8 +49,11 @@ static enum status match_any_order(int dim, int64_t count, const double *a, cons
     return STATUS_OK;
 }
 
-enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
-                              int32_t *match, bool *matched, struct error *error)
+/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
+ * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
+ * match[] is then undefined. */
+static enum status match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count, const double *b,
+                               int32_t *match, bool *matched, struct error *error)
 {
     struct box box = box_of(dim, a_count, a);
     box_add(&box, b_count, b);
@@ -216,7 +219,7 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
     for (int64_t i = 0; i < count * cols; i++) {
         reference[i] = NAN;
     }
-    RETURN_IF_ERROR(field_match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
+    RETURN_IF_ERROR(match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
                                       &comparison->coincide, error));
     if (comparison->coincide) {
         for (int64_t i = 0; i < comparison->count; i++) {

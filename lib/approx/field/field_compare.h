@@ -3,12 +3,6 @@
 
 #include "approx/field/field.h"
 
-/* match[a_count]: for each node of cloud A the node of cloud B at the same place, within 1e-9 of the larger
- * extent of the clouds; each is used once. *matched: false if the counts differ or a node of A has none;
- * match[] is then undefined. */
-MUST_CHECK enum status field_match_nodes(int dim, int64_t a_count, const double *a, int64_t b_count,
-                                         const double *b, int32_t *match, bool *matched, struct error *error);
-
 /* The largest Euclidean norm of a row; NaN where any value is NaN. */
 double field_largest(int64_t count, int64_t cols, const double *field);
 

@@ -213,7 +213,7 @@ void constraint_free(struct constraint *constraint)
     *constraint = (struct constraint){0};
 }
 
-void constraint_values(const struct constraint *constraint, const double *u, double *value)
+static void constraint_values(const struct constraint *constraint, const double *u, double *value)
 {
     const struct constraint_rows *rows = constraint->rows;
     struct chunks lists = chunks_for_threads(rows->list_count, rows->list_count, LISTS_FOR_THREAD);

@@ -94,9 +94,6 @@ MUST_CHECK enum status constraint_build(const struct constraint_rows *rows, int6
                                         struct error *error);
 void constraint_free(struct constraint *constraint);
 
-/* value[rows->count] = G u. */
-void constraint_values(const struct constraint *constraint, const double *u, double *value);
-
 /* u += M^-1 G^T amount[rows->count]. */
 void constraint_spread(const struct constraint *constraint, const double *amount, double *u);
 
