@@ -23,7 +23,7 @@ fuzz)
 *)
     programs=(gcc:gcc make:make pkg-config:pkg-config gmsh:gmsh gnuplot:gnuplot-nox ccx:calculix-ccx
         FreeFem++-nw:freefem++ bats:bats shellcheck:shellcheck plastimatch:plastimatch mpirun:openmpi-bin)
-    libraries=(libgsl-dev libinih-dev libexpat1-dev zlib1g-dev libopenmpi-dev libcmocka-dev libfreefem++ libopenblas0-serial
+    libraries=(libgsl-dev libexpat1-dev zlib1g-dev libopenmpi-dev libcmocka-dev libfreefem++ libopenblas0-serial
         python3-numpy python3-vtk9 python3-meshio python3-nibabel mricron-data xvfb xauth)
     ;;
 esac

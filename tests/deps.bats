@@ -25,10 +25,10 @@ fake() {
 @test "a library is missing: it alone is installed, as root or through sudo" {
     fake apt-get 'echo "$*" >> asked'
     fake sudo '"$@"'
-    fake dpkg-query '[[ $* == *libinih-dev* ]] || echo "install ok installed"'
+    fake dpkg-query '[[ $* == *libexpat1-dev* ]] || echo "install ok installed"'
     PATH=$PWD/bin:$PATH run -0 bash "$deps"
-    [ "$output" = "deps: installing libinih-dev" ]
-    grep -q '^install.* libinih-dev$' asked
+    [ "$output" = "deps: installing libexpat1-dev" ]
+    grep -q '^install.* libexpat1-dev$' asked
     fake id 'echo 1000'
     fake sudo 'echo sudo >> asked; "$@"'
     PATH=$PWD/bin:$PATH run -0 bash "$deps"

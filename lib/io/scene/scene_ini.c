@@ -3,23 +3,18 @@
 #include "base/memory.h"
 #include "io/files/textfile.h"
 
-#include <ini.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-enum { FILE_LIMIT = 64 << 10, HEADER_LIMIT = 49 }; /* libinih cuts headers beyond 49 bytes silently */
+enum { FILE_LIMIT = 64 << 10 };
 
-/* libinih does not report line numbers, empty sections, repetitions and truncation. It gets one cleaned line
- * at a time, so that the line of each entry is known; headers are checked here. */
 struct reading {
     struct ini_file *file;
     struct owned *words;
-    const char *at; /* the rest of the text */
-    int64_t line;   /* number of the line passed last, from 1 */
-    enum status status;
+    int64_t line; /* number of the line at hand, from 1 */
     struct error *error;
 };
 
@@ -53,12 +48,11 @@ static size_t content_length(const char *line, size_t length)
     return ini_trimmed(line, length);
 }
 
-/* A copy of a word, owned by the caller's list; NULL on failure. */
-static char *keep(struct reading *reading, const char *text, size_t length)
+/* *word: a copy, owned by the caller's list. */
+static enum status keep(struct reading *reading, const char *text, size_t length, char **word)
 {
-    char *word = strndup(text, length);
-    reading->status = owned_add(reading->words, word, reading->file->path, reading->error);
-    return reading->status == STATUS_OK ? word : NULL;
+    *word = strndup(text, length);
+    return owned_add(reading->words, *word, reading->file->path, reading->error);
 }
 
 static bool is_word(const char *text, size_t length)
@@ -72,8 +66,8 @@ static enum status add_section(struct reading *reading, const char *header, size
 {
     const char *kind = header + 1;
     const char *end = header + length - 1;
-    if (*end != ']' || length > HEADER_LIMIT + 2) {
-        return fail_line(reading, "section header is not [kind] or [kind NAME], within 49 bytes");
+    if (*end != ']') {
+        return fail_line(reading, "section header is not [kind] or [kind NAME]");
     }
     size_t kind_length = strcspn(kind, " \t]");
     const char *name = kind + kind_length + strspn(kind + kind_length, " \t");
@@ -85,10 +79,12 @@ static enum status add_section(struct reading *reading, const char *header, size
     struct ini_file *file = reading->file;
     RETURN_IF_ERROR(RESIZE_ARRAY(&file->sections, file->section_count + 1, reading->error));
     struct ini_section *section = &file->sections[file->section_count++];
-    *section = (struct ini_section){.kind = keep(reading, kind, kind_length), .line = reading->line};
-    RETURN_IF_ERROR(reading->status);
-    section->name = keep(reading, name, name_length);
-    RETURN_IF_ERROR(reading->status);
+    char *words[2];
+    *section = (struct ini_section){.line = reading->line};
+    RETURN_IF_ERROR(keep(reading, kind, kind_length, &words[0]));
+    RETURN_IF_ERROR(keep(reading, name, name_length, &words[1]));
+    section->kind = words[0];
+    section->name = words[1];
     for (const struct ini_section *other = file->sections; other < section; other++) {
         if (strcmp(other->kind, section->kind) == 0 && strcmp(other->name, section->name) == 0) {
             return fail(reading->error, STATUS_INPUT, "%s:%lld: [%.*s]: already in line %lld: join the two",
@@ -98,97 +94,59 @@ static enum status add_section(struct reading *reading, const char *header, size
     return STATUS_OK;
 }
 
-/* Check a line of content before libinih parses it. */
-static enum status check_line(struct reading *reading, const char *line, size_t length, size_t room)
+/* Append an entry `key = value` to the last section. */
+static enum status add_entry(struct reading *reading, const char *line, size_t length)
 {
-    if (length == 0) {
-        return STATUS_OK;
-    }
-    if (length + 2 > room) {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: longer than %zu bytes without blanks and comment",
-                    reading->file->path, (long long)reading->line, room - 2);
-    }
-    if (line[0] == '[') {
-        return add_section(reading, line, length);
-    }
+    struct ini_file *file = reading->file;
     const char *equals = memchr(line, '=', length);
+    size_t key_length = equals != NULL ? ini_trimmed(line, (size_t)(equals - line)) : 0;
+    char *key, *value;
     if (equals == NULL) {
         return fail_line(reading, "neither [kind NAME], nor key = value, nor a comment");
     }
-    if (!is_word(line, ini_trimmed(line, (size_t)(equals - line)))) {
+    if (!is_word(line, key_length)) {
         return fail_line(reading, "key before '=' is not one word of letters, digits, '_', '.', '-'");
     }
-    return reading->file->section_count > 0 ? STATUS_OK
-                                            : fail_line(reading, "stands before the first [section]");
-}
-
-/* fgets for libinih: the next line, cleaned. Leading blanks, which would make it a continuation of the last
- * value, are removed. */
-static char *next_line(char *buffer, int room, void *user)
-{
-    struct reading *reading = user;
-    if (reading->status != STATUS_OK || *reading->at == '\0') {
-        return NULL;
+    if (file->section_count == 0) {
+        return fail_line(reading, "stands before the first [section]");
     }
-    size_t length = strcspn(reading->at, "\n");
-    const char *line = reading->at + strspn(reading->at, " \t");
-    const char *end = reading->at + length;
-    reading->at = end + 1; /* textfile_read guarantees the newline */
-    reading->line++;
-    length = content_length(line, line < end ? (size_t)(end - line) : 0);
-    reading->status = check_line(reading, line, length, (size_t)room);
-    if (reading->status != STATUS_OK) {
-        return NULL;
-    }
-    memcpy(buffer, line, length);
-    memcpy(buffer + length, "\n", 2);
-    return buffer;
-}
-
-/* Append an entry to the last section. */
-static enum status add_entry(struct reading *reading, const char *key, const char *value)
-{
-    struct ini_section *section = &reading->file->sections[reading->file->section_count - 1];
+    const char *text = equals + 1;
+    text += strspn(text, " \t");
+    RETURN_IF_ERROR(keep(reading, line, key_length, &key));
+    RETURN_IF_ERROR(keep(reading, text, text < line + length ? (size_t)(line + length - text) : 0, &value));
+    struct ini_section *section = &file->sections[file->section_count - 1];
     const struct ini_entry *other = ini_find(section, key);
     char what[64] = "has no value";
     if (other != NULL) {
         snprintf(what, sizeof what, "already in line %lld", (long long)other->line);
     }
     if (other != NULL || *value == '\0') {
-        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: %s", reading->file->path,
+        return fail(reading->error, STATUS_INPUT, "%s:%lld: [%s%s%s]: %s: %s", file->path,
                     (long long)reading->line, section->kind, *section->name ? " " : "", section->name, key,
                     what);
     }
     RETURN_IF_ERROR(RESIZE_ARRAY(&section->entries, section->entry_count + 1, reading->error));
-    struct ini_entry *entry = &section->entries[section->entry_count++];
-    *entry = (struct ini_entry){.key = keep(reading, key, strlen(key)), .line = reading->line};
-    RETURN_IF_ERROR(reading->status);
-    entry->value = keep(reading, value, strlen(value));
-    return reading->status;
-}
-
-static int take_entry(void *user, const char *section, const char *key, const char *value)
-{
-    struct reading *reading = user;
-    (void)section; /* its kind and name are known from its header already */
-    if (reading->status == STATUS_OK) {
-        reading->status = add_entry(reading, key, value);
-    }
-    return reading->status == STATUS_OK;
+    section->entries[section->entry_count++] = (struct ini_entry){key, value, reading->line};
+    return STATUS_OK;
 }
 
 enum status ini_read(const char *path, struct owned *words, struct ini_file *file, struct error *error)
 {
     FREED_BY(textfile_free) struct textfile text = {0};
+    struct reading reading = {.file = file, .words = words, .error = error};
     *file = (struct ini_file){.path = path};
     RETURN_IF_ERROR(textfile_read(path, FILE_LIMIT, &text, error));
     file->checksum = (uint32_t)crc32(0, (const unsigned char *)text.text, (unsigned)text.size);
-    struct reading reading = {.file = file, .words = words, .at = text.text, .error = error};
-    int result = ini_parse_stream(next_line, &reading, take_entry, &reading);
-    if (reading.status == STATUS_OK && result != 0) { /* nothing that passed check_line should fail */
-        reading.status = fail(error, STATUS_INPUT, "%s:%d: not an INI line", path, result);
+    for (const char *at = text.text; *at != '\0'; at = strchr(at, '\n') + 1) {
+        const char *line = at + strspn(at, " \t");
+        size_t length = content_length(line, strcspn(line, "\n"));
+        reading.line++;
+        if (length > 0) {
+            RETURN_IF_ERROR(line[0] == '[' ? add_section(&reading, line, length)
+                                           : add_entry(&reading, line, length));
+        }
     }
-    return reading.status;
+    return STATUS_OK;
 }
 
 void ini_free(struct ini_file *file)

@@ -28,9 +28,8 @@ struct ini_file {
 };
 
 /* Read an INI file. Its words are added to `words`; this and `path` must outlive it. Errors, as `FILE:LINE:
- * ...`: those of textfile_read; STATUS_INPUT for over-long lines, headers that are not `[kind]` or `[kind
- * NAME]`, keys without value or outside of a section, and repeated sections and keys. To be freed also on
- * failure. */
+ * ...`: those of textfile_read; STATUS_INPUT for headers that are not `[kind]` or `[kind NAME]`, keys without
+ * value or outside of a section, and repeated sections and keys. To be freed also on failure. */
 MUST_CHECK enum status ini_read(const char *path, struct owned *words, struct ini_file *file,
                                 struct error *error);
 
