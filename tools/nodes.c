@@ -66,7 +66,7 @@ static void list_groups(const struct tool *tool, const struct msh *msh)
     int dim = 0;
     bool named = false;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int of_element = msh_type(msh->element_type[e]).dim;
+        int of_element = msh_type(msh->elements[e].type).dim;
         dim = of_element > dim ? of_element : dim;
     }
     puts("name\tdim\ttag\telements");

@@ -14,18 +14,19 @@ static void require_sound(const struct msh *msh, size_t size)
     int64_t members = 0;
     REQUIRE(msh->node_count <= (int64_t)size && msh->element_count <= 4 * (int64_t)size);
     for (int64_t i = 0; i < 3 * msh->node_count; i++) {
-        REQUIRE(isfinite(msh->x[i]));
+        REQUIRE(isfinite(msh->nodes[i / 3].x[i % 3]));
     }
+    int64_t corners = 0;
     for (int64_t e = 0; e < msh->element_count; e++) {
-        REQUIRE(msh_type(msh->element_type[e]).name != NULL);
-        REQUIRE(msh->node_ptr[e + 1] - msh->node_ptr[e] == msh_type(msh->element_type[e]).node_count);
-        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
-            REQUIRE(msh->node_idx[k] >= 0 && msh->node_idx[k] < msh->node_count);
+        const struct msh_element *element = &msh->elements[e];
+        REQUIRE(msh_type(element->type).name != NULL && element->first == corners);
+        for (int end = (int)corners + msh_type(element->type).node_count; corners < end; corners++) {
+            REQUIRE(msh->node_idx[corners] >= 0 && msh->node_idx[corners] < msh->node_count);
         }
         for (int64_t k = msh->member_ptr[e]; k < msh->member_ptr[e + 1]; k++) {
             REQUIRE(msh->member_idx[k] >= 0 && msh->member_idx[k] < msh->group_count);
             REQUIRE(k == msh->member_ptr[e] || msh->member_idx[k] > msh->member_idx[k - 1]);
-            REQUIRE(msh->groups[msh->member_idx[k]].dim == msh_type(msh->element_type[e]).dim);
+            REQUIRE(msh->groups[msh->member_idx[k]].dim == msh_type(element->type).dim);
         }
     }
     for (int32_t g = 0; g < msh->group_count; g++) {
@@ -44,7 +45,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct mesh mesh;
     struct error error = {""};
     if (!is_accepted(msh_parse(&msh, (const char *)data, size, NULL, &error), &error)) {
-        REQUIRE(msh.x == NULL && msh.node_idx == NULL && msh.groups == NULL);
+        REQUIRE(msh.nodes == NULL && msh.node_idx == NULL && msh.groups == NULL);
         return 0;
     }
     require_sound(&msh, size);

@@ -11,7 +11,7 @@
 enum content { OTHERS, NODES, ELEMENTS, SURFACE, EDGE, NODE_SET };
 
 struct feb {
-    struct mesh_input in;
+    struct msh_reader *r;
     bool in_mesh;
     enum content content;
     int type;                  /* of the elements */
@@ -19,7 +19,7 @@ struct feb {
     bool is_empty;             /* nothing in it yet */
     int64_t first;             /* element at its begin */
     int64_t copied, most;      /* members that sets took from others; as many as the file has bytes */
-    int64_t id;                /* of the node or element, or INPUT_NO_TAG */
+    int64_t id;                /* of the node or element, or MSH_NO_TAG */
     char section[64];
 };
 
@@ -50,7 +50,7 @@ static void begin_content(struct feb *f, const char *element, const char **attri
                                            [SURFACE] = "Surface",
                                            [EDGE] = "Edge",
                                            [NODE_SET] = "NodeSet"};
-    struct msh_reader *r = f->in.r;
+    struct msh_reader *r = f->r;
     const char *name = xml_attribute(attributes, "name"), *type = xml_attribute(attributes, "type");
     name = name != NULL ? name : xml_attribute(attributes, "elset");
     f->content = OTHERS;
@@ -58,7 +58,7 @@ static void begin_content(struct feb *f, const char *element, const char **attri
         f->content = strcmp(element, contents[k]) == 0 ? (enum content)k : f->content;
     }
     f->is_empty = true;
-    f->first = f->in.r->msh->element_count;
+    f->first = f->r->msh->element_count;
     if (snprintf(f->name, sizeof f->name, "%s", name != NULL ? name : "") > INPUT_NAME) {
         msh_fail(r, "the name '%.40s...' is longer than %d bytes", name, INPUT_NAME);
     }
@@ -76,7 +76,7 @@ static void begin_content(struct feb *f, const char *element, const char **attri
     } else if (strcmp(element, "Part") == 0 || strcmp(element, "Instance") == 0) {
         msh_fail(r, "parts with instances are not read: save the model from FEBio Studio");
     } else if (f->content == OTHERS) {
-        input_leave_out(&f->in, element);
+        input_leave_out(f->r, element);
     }
 }
 
@@ -87,18 +87,18 @@ enum { FIRST_OF_SET = 4, END_OF_SET };
 /* Add the nodes of a set that has ended: <NodeSet node_set="a"/>. */
 static void add_set(struct feb *f, const char *name)
 {
-    struct msh_reader *r = f->in.r;
-    int64_t *first = input_name(&f->in, FIRST_OF_SET, name, strlen(name)),
-            *end = input_name(&f->in, END_OF_SET, name, strlen(name));
+    struct msh_reader *r = f->r;
+    int64_t *first = input_name(f->r, FIRST_OF_SET, name, strlen(name)),
+            *end = input_name(f->r, END_OF_SET, name, strlen(name));
     if (r->status == STATUS_OK && *first == 0) {
         msh_fail(r, "there is no set of nodes '%s' as yet", name);
     }
     for (int64_t e = r->status == STATUS_OK ? *first - 1 : 0; r->status == STATUS_OK && e < *end; e++) {
-        int64_t node = f->in.corners[r->msh->node_ptr[e]];
+        int64_t node = r->corners[r->msh->elements[e].first];
         if (f->copied++ == f->most) {
             msh_fail(r, "the sets have too many members for the size of the file");
         }
-        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
+        msh_add_element(f->r, MSH_NO_TAG, INPUT_POINT, &node, input_group(f->r, 0, f->name));
     }
     f->is_empty = false;
 }
@@ -106,30 +106,30 @@ static void add_set(struct feb *f, const char *name)
 static void begin_item(struct feb *f, const char *element, const char **attributes)
 {
     const char *id = xml_attribute(attributes, "id"), *set = xml_attribute(attributes, "node_set");
-    f->id = INPUT_NO_TAG;
+    f->id = MSH_NO_TAG;
     if (f->content == NODE_SET && id == NULL && set != NULL) {
         add_set(f, set);
         return;
     }
     if (id != NULL && f->content != SURFACE && f->content != EDGE) {
-        f->id = input_whole(f->in.r, "id", id, (int64_t)strlen(id), 1, MSH_LARGEST_TAG);
+        f->id = input_whole(f->r, "id", id, (int64_t)strlen(id), 1, MSH_LARGEST_TAG);
     }
     if (f->content == SURFACE || f->content == EDGE) {
         f->type = find_type(element);
         if (f->type == 0) {
-            msh_fail(f->in.r, "'%s' is no face that is read (tri3, quad4, tri6, quad8, quad9, line2, line3)",
+            msh_fail(f->r, "'%s' is no face that is read (tri3, quad4, tri6, quad8, quad9, line2, line3)",
                      element);
         }
     } else if ((f->content == NODES || f->content == NODE_SET) &&
                ((strcmp(element, "node") != 0 && strcmp(element, "n") != 0) || id == NULL)) {
-        msh_fail(f->in.r, "'%s' is no <node id=...>", element);
+        msh_fail(f->r, "'%s' is no <node id=...>", element);
     }
 }
 
 static void begin(void *context, const char *name, const char **attributes, int depth)
 {
     struct feb *f = context;
-    struct msh_reader *r = f->in.r;
+    struct msh_reader *r = f->r;
     const char *version = xml_attribute(attributes, "version"), *from = xml_attribute(attributes, "from");
     if (depth < 3) {
         snprintf(f->section, sizeof f->section, "<%.60s>", name);
@@ -142,7 +142,7 @@ static void begin(void *context, const char *name, const char **attributes, int 
     } else if (depth == 1) {
         f->in_mesh = strcmp(name, "Geometry") == 0 || strcmp(name, "Mesh") == 0;
         if (!f->in_mesh) {
-            input_leave_out(&f->in, name);
+            input_leave_out(f->r, name);
         }
     } else if (depth == 2 && f->in_mesh) {
         begin_content(f, name, attributes);
@@ -159,18 +159,18 @@ static void add_node(struct feb *f, const char *text, const char *end)
     int64_t length;
     for (int k = 0; k < 3; k++) {
         const char *word = input_word(&text, end, &length);
-        x[k] = input_real(f->in.r, "coordinate", word != NULL ? word : "", length);
+        x[k] = input_real(f->r, "coordinate", word != NULL ? word : "", length);
     }
     if (input_word(&text, end, &length) != NULL) {
-        msh_fail(f->in.r, "node %lld has more than three coordinates", (long long)f->id);
+        msh_fail(f->r, "node %lld has more than three coordinates", (long long)f->id);
     }
-    input_add_node(&f->in, f->id, x);
+    msh_add_node(f->r, f->id, x);
 }
 
 static void add_element(struct feb *f, const char *text, const char *end)
 {
-    struct msh_reader *r = f->in.r;
-    int64_t length, node[27], centre[6];
+    struct msh_reader *r = f->r;
+    int64_t length, node[MSH_MOST_NODES], centre[6];
     int count = msh_type(f->type).node_count, found = 0;
     const char *word;
     while (r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
@@ -190,7 +190,7 @@ static void add_element(struct feb *f, const char *text, const char *end)
         memcpy(&node[20], centre, sizeof centre);
     }
     input_reorder(f->type, node);
-    input_add_element(&f->in, f->id, f->type, node, input_group(&f->in, msh_type(f->type).dim, f->name));
+    msh_add_element(f->r, f->id, f->type, node, input_group(f->r, msh_type(f->type).dim, f->name));
 }
 
 /* A list of the nodes of a set: of versions 3 and 4. */
@@ -198,9 +198,9 @@ static void add_list(struct feb *f, const char *text, const char *end)
 {
     int64_t length;
     const char *word;
-    while (f->in.r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
-        int64_t node = input_whole(f->in.r, "node", word, length, 1, MSH_LARGEST_TAG);
-        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &node, input_group(&f->in, 0, f->name));
+    while (f->r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
+        int64_t node = input_whole(f->r, "node", word, length, 1, MSH_LARGEST_TAG);
+        msh_add_element(f->r, MSH_NO_TAG, INPUT_POINT, &node, input_group(f->r, 0, f->name));
         f->is_empty = false;
     }
 }
@@ -213,15 +213,15 @@ static void end_content(struct feb *f, const char *text, const char *end)
         add_list(f, text, end);
     }
     if (f->content == NODE_SET && f->name[0] != '\0') {
-        int64_t *first = input_name(&f->in, FIRST_OF_SET, f->name, strlen(f->name)),
-                *last = input_name(&f->in, END_OF_SET, f->name, strlen(f->name));
-        if (f->in.r->status == STATUS_OK) {
+        int64_t *first = input_name(f->r, FIRST_OF_SET, f->name, strlen(f->name)),
+                *last = input_name(f->r, END_OF_SET, f->name, strlen(f->name));
+        if (f->r->status == STATUS_OK) {
             *first = f->first + 1;
-            *last = f->in.r->msh->element_count;
+            *last = f->r->msh->element_count;
         }
     }
     if (f->is_empty && f->content != NODES) {
-        (void)input_group(&f->in, f->content == ELEMENTS ? msh_type(f->type).dim : dim[f->content], f->name);
+        (void)input_group(f->r, f->content == ELEMENTS ? msh_type(f->type).dim : dim[f->content], f->name);
     }
     f->content = OTHERS;
 }
@@ -240,10 +240,10 @@ static void end(void *context, const char *name, const char *text, int64_t size,
     f->is_empty = false;
     if (f->content == NODES) {
         add_node(f, text, text + size);
-    } else if (f->content == NODE_SET && f->id == INPUT_NO_TAG) {
+    } else if (f->content == NODE_SET && f->id == MSH_NO_TAG) {
         return; /* another set */
     } else if (f->content == NODE_SET) {
-        input_add_element(&f->in, INPUT_NO_TAG, INPUT_POINT, &f->id, input_group(&f->in, 0, f->name));
+        msh_add_element(f->r, MSH_NO_TAG, INPUT_POINT, &f->id, input_group(f->r, 0, f->name));
     } else {
         add_element(f, text, text + size);
     }
@@ -251,11 +251,9 @@ static void end(void *context, const char *name, const char *text, int64_t size,
 
 void feb_read(struct msh_reader *r)
 {
-    struct feb f = {.in = {.r = r}, .most = r->end - r->at};
+    struct feb f = {.r = r, .most = r->end - r->at};
     const struct xml_handler handler = {&f, begin, end};
     r->section = f.section;
     xml_parse(r, NULL, &handler);
-    input_index(&f.in);
-    input_finish(&f.in);
-    input_free(&f.in);
+    input_at(r, "nodes", 0);
 }

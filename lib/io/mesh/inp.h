@@ -28,7 +28,7 @@ struct inp_item {
 };
 
 struct inp {
-    struct mesh_input in;
+    struct msh_reader *r;
     int64_t size;     /* of the deck, bytes */
     int64_t number;   /* of the line, from 1 */
     const char *line; /* without blanks at its ends; NULL: the end of the deck */

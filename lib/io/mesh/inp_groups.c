@@ -20,7 +20,7 @@ typedef void member_function(struct inp *p, const struct inp_item *item, int64_t
 static void check_size(struct inp *p, int64_t count)
 {
     if (count > MOST_PER_BYTE * p->size) {
-        msh_fail(p->in.r, "the sets have too many members for the size of the deck");
+        msh_fail(p->r, "the sets have too many members for the size of the deck");
     }
 }
 
@@ -41,7 +41,7 @@ static void each_in_range(struct inp *p, const struct inp_item *item, const stru
             item->set->found++;
             add(p, item, index->sorted[i].place);
         }
-        if (p->in.r->status != STATUS_OK) {
+        if (p->r->status != STATUS_OK) {
             return;
         }
     }
@@ -53,9 +53,9 @@ static void each_in_set(struct inp *p, const struct inp_item *item, member_funct
     int64_t last = item->members->tail;
     bool is_behind = item->set != NULL && item->set->kind != 'S' && item->members->line > item->line;
     if (item->members->line == 0 || is_behind) {
-        msh_fail(p->in.r, "there is no set '%s'%s", item->members->name, is_behind ? " as yet" : "");
+        msh_fail(p->r, "there is no set '%s'%s", item->members->name, is_behind ? " as yet" : "");
     }
-    for (int64_t m = item->members->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
+    for (int64_t m = item->members->head; p->r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
         check_size(p, p->tried++);
         add(p, item, p->members[m].place);
         if (m == last) {
@@ -67,7 +67,7 @@ static void each_in_set(struct inp *p, const struct inp_item *item, member_funct
 /* Call `add` for all members of an item, nodes ('N') or elements. */
 static void each_member(struct inp *p, const struct inp_item *item, char kind, member_function *add)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     const struct msh_index *index = kind == 'N' ? &r->nodes : &p->elements;
     r->record = item->line;
     if (item->how == INP_SET) {
@@ -90,7 +90,7 @@ static void each_member(struct inp *p, const struct inp_item *item, char kind, m
 
 static void add_member(struct inp *p, const struct inp_item *item, int64_t place)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     struct inp_set *set = item->set;
     check_size(p, p->member_count);
     MSH_GROW(r, &p->members, p->member_count + 1, &p->member_room);
@@ -109,9 +109,9 @@ static void add_member(struct inp *p, const struct inp_item *item, int64_t place
 /* Add the nodes of an element. */
 static void add_corners(struct inp *p, const struct inp_item *item, int64_t place)
 {
-    const int64_t *ptr = &p->in.r->msh->node_ptr[place];
-    for (int64_t k = ptr[0]; k < ptr[1]; k++) {
-        int64_t node = msh_index_find(&p->in.r->nodes, p->in.corners[k]);
+    const struct msh_element *element = &p->r->msh->elements[place];
+    for (int k = 0; k < msh_type(element->type).node_count; k++) {
+        int64_t node = msh_index_find(&p->r->nodes, p->r->corners[element->first + k]);
         if (node >= 0) { /* else found in the end */
             add_member(p, item, node);
         }
@@ -132,7 +132,7 @@ static void add_to_region(struct inp *p, const struct inp_item *item, int64_t pl
 static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
 {
     if (set->key[dim] == 0) {
-        set->key[dim] = input_add_group(&p->in, dim, set->name, (int64_t)strlen(set->name));
+        set->key[dim] = input_add_group(p->r, dim, set->name, (int64_t)strlen(set->name));
     }
     return set->key[dim];
 }
@@ -140,8 +140,8 @@ static int64_t group_of(struct inp *p, struct inp_set *set, int dim)
 static void add_to_group(struct inp *p, struct inp_set *set, int type, const int64_t node[])
 {
     int64_t key = group_of(p, set, msh_type(type).dim);
-    input_add_element(&p->in, INPUT_NO_TAG, type, node, key);
-    check_size(p, p->in.r->msh->element_count);
+    msh_add_element(p->r, MSH_NO_TAG, type, node, key);
+    check_size(p, p->r->msh->element_count);
 }
 
 /* Corners of the faces S1, S2, ... of elements of first order, by gmsh's number; -1 fills up. */
@@ -181,9 +181,9 @@ static void add_face(struct inp *p, struct inp_set *set, int element_type, const
 /* S1, P1: faces, of shells their two sides, then their edges; E1: edges; SPOS, SNEG: sides. */
 static void add_surface(struct inp *p, const struct inp_item *item, int64_t place)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     int64_t node[20];
-    int8_t type = r->msh->element_type[place];
+    int8_t type = r->msh->elements[place].type;
     const char *label = item->label;
     int linear = msh_type(type).linear,
         face = label[0] != '\0' && isdigit((unsigned char)label[1]) && label[2] == '\0' ? label[1] - '0' : 0;
@@ -191,7 +191,8 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
     bool side = p->is_shell[place] && (strcasecmp(label, "SPOS") == 0 || strcasecmp(label, "SNEG") == 0 ||
                                        (kind != 'E' && (face == 1 || face == 2)));
     face -= p->is_shell[place] && kind != 'E' ? 2 : 0;
-    memcpy(node, &p->in.corners[r->msh->node_ptr[place]], (size_t)msh_type(type).node_count * sizeof *node);
+    memcpy(node, &r->corners[r->msh->elements[place].first],
+           (size_t)msh_type(type).node_count * sizeof *node);
     if (side) {
         add_to_group(p, item->set, type, node);
     } else if (strchr("SPE", kind) == NULL || face < 1 || face > 6 || linear < 2 || linear > 7 ||
@@ -206,21 +207,20 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
 
 static void index_elements(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     MSH_NEW(r, &p->region, r->msh->element_count);
     if (r->status == STATUS_OK) {
         r->section = "elements";
-        r->kind = "element";
-        msh_index_make(r, &p->elements, r->msh->element_count, r->msh->element_tag);
+        msh_index_elements(r, &p->elements);
     }
 }
 
 static void join_regions(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         if (p->region[e] != NULL) {
-            r->element_key[e] = group_of(p, p->region[e], msh_type(r->msh->element_type[e]).dim);
+            r->msh->elements[e].key = group_of(p, p->region[e], msh_type(r->msh->elements[e].type).dim);
         }
     }
 }
@@ -232,7 +232,7 @@ static void note_sets(struct inp *p)
     for (int64_t s = 0; s < p->set_count; s++) {
         const struct inp_set *set = p->sets[s];
         if (set->found < set->asked) {
-            input_note(&p->in, "set '%s': of what its lines of GENERATE name, only %lld of %lld exist",
+            input_note(p->r, "set '%s': of what its lines of GENERATE name, only %lld of %lld exist",
                        set->name, (long long)set->found, (long long)set->asked);
         }
         if (set->kind == 'E' && !set->of_surface && (set->key[1] | set->key[2] | set->key[3]) == 0) {
@@ -240,29 +240,29 @@ static void note_sets(struct inp *p)
         }
     }
     if (left[0] != '\0') {
-        input_note(&p->in, "sets of elements that are not regions, left out: %s", left);
+        input_note(p->r, "sets of elements that are not regions, left out: %s", left);
     }
     if (p->overlaid > 0) {
-        input_note(&p->in, "elements in several sets, taken for the last: %lld", (long long)p->overlaid);
+        input_note(p->r, "elements in several sets, taken for the last: %lld", (long long)p->overlaid);
     }
 }
 
 static void join_nodes(struct inp *p)
 {
-    for (int64_t s = 0; p->in.r->status == STATUS_OK && s < p->set_count; s++) {
+    for (int64_t s = 0; p->r->status == STATUS_OK && s < p->set_count; s++) {
         if (p->sets[s]->kind != 'N') {
             continue;
         }
         (void)group_of(p, p->sets[s], 0);
-        for (int64_t m = p->sets[s]->head; p->in.r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
-            add_to_group(p, p->sets[s], INPUT_POINT, &p->in.r->msh->node_tag[p->members[m].place]);
+        for (int64_t m = p->sets[s]->head; p->r->status == STATUS_OK && m >= 0; m = p->members[m].next) {
+            add_to_group(p, p->sets[s], INPUT_POINT, &p->r->msh->nodes[p->members[m].place].tag);
         }
     }
 }
 
 void inp_join_sets(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     index_elements(p);
     input_at(r, "sets", 0);
     for (int64_t i = 0; r->status == STATUS_OK && i < p->item_count; i++) {

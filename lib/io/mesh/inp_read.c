@@ -38,7 +38,7 @@ static void unquote(const char **text, int64_t *length)
 /* The next line that is no comment. */
 static void next_line(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     do {
         p->line = NULL;
         if (r->status != STATUS_OK || r->at == r->end) {
@@ -58,12 +58,12 @@ static void next_line(struct inp *p)
 bool inp_next_data(struct inp *p)
 {
     next_line(p);
-    return p->in.r->status == STATUS_OK && p->line != NULL && p->line[0] != '*';
+    return p->r->status == STATUS_OK && p->line != NULL && p->line[0] != '*';
 }
 
 bool inp_next_field(struct inp *p, const char **text, int64_t *length)
 {
-    if (p->in.r->status != STATUS_OK || p->field == NULL) {
+    if (p->r->status != STATUS_OK || p->field == NULL) {
         return false;
     }
     const char *comma = memchr(p->field, ',', (size_t)(p->field_end - p->field));
@@ -82,8 +82,8 @@ static void read_card(struct inp *p)
 {
     size_t length = 0;
     for (bool more = true; more;) {
-        if (p->in.r->status != STATUS_OK || p->line == NULL || length + (size_t)p->length >= sizeof p->card) {
-            msh_fail(p->in.r, "the keyword is unfinished, or longer than %zu bytes", sizeof p->card);
+        if (p->r->status != STATUS_OK || p->line == NULL || length + (size_t)p->length >= sizeof p->card) {
+            msh_fail(p->r, "the keyword is unfinished, or longer than %zu bytes", sizeof p->card);
             return;
         }
         memcpy(p->card + length, p->line, (size_t)p->length);
@@ -118,7 +118,7 @@ bool inp_parameter(struct inp *p, const char *name, char value[], size_t size)
         trim(&text, &count);
         unquote(&text, &count);
         if ((size_t)count >= size) {
-            msh_fail(p->in.r, "%s is longer than %zu bytes", name, size - 1);
+            msh_fail(p->r, "%s is longer than %zu bytes", name, size - 1);
             count = 0;
         }
         memcpy(value, text, (size_t)count);
@@ -132,10 +132,10 @@ bool inp_parameter(struct inp *p, const char *name, char value[], size_t size)
 
 static void read_nodes(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     char value[INPUT_NAME + 1];
     const char *word;
-    int64_t length, first = p->in.r->msh->node_count;
+    int64_t length, first = p->r->msh->node_count;
     bool is_set = inp_parameter(p, "NSET", value, sizeof value);
     char system[INPUT_NAME + 1];
     if (inp_parameter(p, "SYSTEM", system, sizeof system) && strcasecmp(system, "R") != 0) {
@@ -151,14 +151,14 @@ static void read_nodes(struct inp *p)
             x[k] = length > 0 ? input_real(r, "coordinate", word, length) : 0;
         }
         if (!p->in_assembly) {
-            input_add_node(&p->in, tag, x);
+            msh_add_node(p->r, tag, x);
         }
     }
     if (p->in_assembly) { /* of reference points, in a count of its own */
-        input_leave_out(&p->in, "*NODE of the assembly");
+        input_leave_out(p->r, "*NODE of the assembly");
     }
     if (is_set) {
-        inp_add_places(p, 'N', value, first, p->in.r->msh->node_count);
+        inp_add_places(p, 'N', value, first, p->r->msh->node_count);
     }
 }
 
@@ -196,7 +196,7 @@ enum { LINE3 = 8 };
 /* An element: its number and its nodes, on as many lines as these take. */
 static void read_element(struct inp *p, int type, bool is_shell)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     const char *word;
     int64_t length, node[20], tag = -1;
     int count = msh_type(type).node_count;
@@ -220,20 +220,20 @@ static void read_element(struct inp *p, int type, bool is_shell)
         node[2] = node[1];
         node[1] = end;
     }
-    MSH_GROW(r, &p->is_shell, p->in.r->msh->element_count + 1, &p->shell_room);
+    MSH_GROW(r, &p->is_shell, p->r->msh->element_count + 1, &p->shell_room);
     if (r->status == STATUS_OK) {
-        p->is_shell[p->in.r->msh->element_count] = is_shell;
-        input_add_element(&p->in, tag, type, node, 0);
+        p->is_shell[p->r->msh->element_count] = is_shell;
+        msh_add_element(p->r, tag, type, node, 0);
     }
 }
 
 static void read_elements(struct inp *p)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     char name[32] = "", set[INPUT_NAME + 1];
     bool is_shell;
     bool is_set = inp_parameter(p, "ELSET", set, sizeof set);
-    int64_t first = p->in.r->msh->element_count;
+    int64_t first = p->r->msh->element_count;
     bool has_type = inp_parameter(p, "TYPE", name, sizeof name);
     int type = find_type(name, &is_shell);
     if (type == 0) {
@@ -246,7 +246,7 @@ static void read_elements(struct inp *p)
         read_element(p, type, is_shell);
     }
     if (is_set) {
-        inp_add_places(p, 'E', set, first, p->in.r->msh->element_count);
+        inp_add_places(p, 'E', set, first, p->r->msh->element_count);
     }
 }
 
@@ -262,8 +262,8 @@ static void read_instance(struct inp *p)
     (void)inp_parameter(p, "NAME", p->instance, sizeof p->instance);
     while (inp_next_data(p)) {
         while (inp_next_field(p, &word, &length)) {
-            if (length > 0 && input_real(p->in.r, "place", word, length) != 0) {
-                msh_fail(p->in.r, "the instance is moved: " FLAT);
+            if (length > 0 && input_real(p->r, "place", word, length) != 0) {
+                msh_fail(p->r, "the instance is moved: " FLAT);
             }
         }
     }
@@ -280,7 +280,7 @@ static bool is_of_parts(struct inp *p)
     p->parts += part;
     p->instances += instance;
     if (p->parts > 1 || p->instances > 1) {
-        msh_fail(p->in.r, "more than one part or instance: " FLAT);
+        msh_fail(p->r, "more than one part or instance: " FLAT);
     }
     return begins || ends || part || instance || behind || strcmp(key, "*END PART") == 0;
 }
@@ -311,7 +311,7 @@ static void read_keyword(struct inp *p)
     char value[INPUT_NAME + 1];
     bool of_parts = is_of_parts(p);
     if (is_one_of(key, read) && inp_parameter(p, "INPUT", value, sizeof value)) {
-        msh_fail(p->in.r, "other files are not read: put the lines of that file in its place");
+        msh_fail(p->r, "other files are not read: put the lines of that file in its place");
     } else if (strcmp(key, "*NODE") == 0) {
         read_nodes(p);
     } else if (strcmp(key, "*ELEMENT") == 0 && !p->in_assembly) {
@@ -323,12 +323,12 @@ static void read_keyword(struct inp *p)
     } else if (strcmp(key, "*INSTANCE") == 0) {
         read_instance(p);
     } else if (is_one_of(key, made)) {
-        msh_fail(p->in.r, "nodes and elements made of others are not read: write all of them out");
+        msh_fail(p->r, "nodes and elements made of others are not read: write all of them out");
     } else {
         if (text_ends(key, " SECTION")) {
             inp_read_section(p);
         } else if (!of_parts && strcmp(key, "*HEADING") != 0) {
-            input_leave_out(&p->in, key);
+            input_leave_out(p->r, key);
         }
         skip_data(p);
     }
@@ -336,7 +336,7 @@ static void read_keyword(struct inp *p)
 
 void inp_read(struct msh_reader *r)
 {
-    struct inp p = {.in = {.r = r}, .size = r->end - r->at};
+    struct inp p = {.r = r, .size = r->end - r->at};
     input_at(r, "deck", 0);
     skip_data(&p); /* there is none: a deck begins with a keyword */
     while (p.line != NULL && r->status == STATUS_OK) {
@@ -344,9 +344,8 @@ void inp_read(struct msh_reader *r)
         input_at(r, p.keyword, p.number);
         read_keyword(&p);
     }
-    input_index(&p.in);
+    input_at(r, "nodes", 0);
+    msh_index_nodes(r);
     inp_join_sets(&p);
-    input_finish(&p.in);
     inp_free_sets(&p);
-    input_free(&p.in);
 }

@@ -10,7 +10,7 @@
  */
 static struct inp_set *find_set(struct inp *p, char kind, const char *text, size_t length)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     size_t prefix = strlen(p->instance);
     struct inp_set wanted = {.kind = kind, .of_assembly = p->in_assembly, .head = -1, .tail = -1};
     if (prefix > 0 && length > prefix && text[prefix] == '.' && strncasecmp(text, p->instance, prefix) == 0) {
@@ -21,7 +21,7 @@ static struct inp_set *find_set(struct inp *p, char kind, const char *text, size
     for (size_t i = 0; i < length && i < INPUT_NAME; i++) {
         wanted.name[i] = (char)toupper((unsigned char)text[i]);
     }
-    int64_t *number = input_name(&p->in, kind * 2 + wanted.of_assembly, wanted.name, length);
+    int64_t *number = input_name(p->r, kind * 2 + wanted.of_assembly, wanted.name, length);
     MSH_GROW(r, &p->sets, p->set_count + 1, &p->set_room);
     if (r->status == STATUS_OK && *number == 0) {
         struct inp_set *set = NULL;
@@ -39,7 +39,7 @@ static struct inp_set *find_set(struct inp *p, char kind, const char *text, size
 
 static void add_item(struct inp *p, const struct inp_item *item)
 {
-    struct msh_reader *r = p->in.r;
+    struct msh_reader *r = p->r;
     MSH_GROW(r, &p->items, p->item_count + 1, &p->item_room);
     if (r->status == STATUS_OK) {
         p->items[p->item_count] = *item;
@@ -84,7 +84,7 @@ static void add_word(struct inp *p, struct inp_item *item, char kind, const char
     }
     if (is_number(word, length)) {
         item->how = INP_TAG;
-        item->first = input_whole(p->in.r, "member", word, length, 1, MSH_LARGEST_TAG);
+        item->first = input_whole(p->r, "member", word, length, 1, MSH_LARGEST_TAG);
         if (p->is_apart && !numbered) {
             return;
         }
@@ -107,14 +107,14 @@ static void read_ranges(struct inp *p, struct inp_item *item)
         int count = 0;
         number[2] = 1;
         while (count < 3 && inp_next_field(p, &word, &length)) {
-            number[count++] = input_whole(p->in.r, "GENERATE", word, length, 1, MSH_LARGEST_TAG);
+            number[count++] = input_whole(p->r, "GENERATE", word, length, 1, MSH_LARGEST_TAG);
         }
         if (count == 1 || inp_next_field(p, &word, &length)) {
-            msh_fail(p->in.r, "GENERATE: a line is not FIRST, LAST, STEP");
+            msh_fail(p->r, "GENERATE: a line is not FIRST, LAST, STEP");
         }
         if (count > 1 && number[1] < number[0]) {
-            msh_fail(p->in.r, "GENERATE: %lld is behind %lld: write the lesser one first",
-                     (long long)number[0], (long long)number[1]);
+            msh_fail(p->r, "GENERATE: %lld is behind %lld: write the lesser one first", (long long)number[0],
+                     (long long)number[1]);
         }
         item->how = INP_RANGE;
         item->first = number[0];
@@ -167,7 +167,7 @@ void inp_read_surface(struct inp *p)
     p->is_apart = p->in_assembly;
     if ((!of_nodes && strcasecmp(value, "ELEMENT") != 0) ||
         inp_parameter(p, "COMBINE", value, sizeof value)) {
-        msh_fail(p->in.r, "only surfaces of element faces and of nodes are read: take '%s' out", name);
+        msh_fail(p->r, "only surfaces of element faces and of nodes are read: take '%s' out", name);
     }
     struct inp_item item = {.set = find_set(p, of_nodes ? 'N' : 'S', name, strlen(name))};
     while (item.set != NULL && inp_next_data(p)) {
@@ -177,7 +177,7 @@ void inp_read_surface(struct inp *p)
         }
         if (!of_nodes &&
             (!inp_next_field(p, &label, &count) || count == 0 || count >= (int64_t)sizeof item.label)) {
-            msh_fail(p->in.r, "no face is named: as in 'SET, S1'; free faces are not found");
+            msh_fail(p->r, "no face is named: as in 'SET, S1'; free faces are not found");
             return;
         }
         if (!of_nodes) {

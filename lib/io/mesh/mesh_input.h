@@ -1,24 +1,8 @@
-/* Readers of meshes that are not gmsh's; private to lib/io. They add nodes, elements and groups in any order
- * through a struct mesh_input to the lists of a struct msh:
- *
- *   bytes --> inp_read.c, ... --> mesh_input.c --> msh_groups.c --> struct msh
- *
- * Each element has at most one group: facets and nodes are elements of their own for each of theirs. As in
- * msh_private.h, all functions return without effect after the first failure of the reader. */
+/* Readers of meshes that are not gmsh's; private to lib/io. As in msh_private.h, all functions return without
+ * effect after the first failure of the reader. */
 #pragma once
 
 #include "io/mesh/msh_private.h"
-
-struct mesh_input {
-    struct msh_reader *r;
-    int64_t x_room, node_room, line_room, tag_room, type_room, key_room, ptr_room, corner_room, name_room;
-    int64_t *line;      /* of each node in the file, or what the reader counts instead */
-    int64_t *corners;   /* tags of the nodes of each element, in gmsh's order, from its node_ptr on */
-    void *names;        /* a tree of them by kind and text */
-    char left_out[320]; /* what is not read, ", " before each */
-};
-
-#define INPUT_NO_TAG (-1)
 
 /* Most bytes of the name of a group. */
 #define INPUT_NAME 127
@@ -52,29 +36,19 @@ void input_reorder(int type, int64_t node[]);
  * end. */
 const char *input_word(const char **at, const char *end, int64_t *length);
 
-/* Add a node; an element with these tags of nodes and a group (0: none), which is numbered behind the others
- * if its tag is INPUT_NO_TAG. */
-void input_add_node(struct mesh_input *in, int64_t tag, const double x[3]);
-void input_add_element(struct mesh_input *in, int64_t tag, int type, const int64_t node[], int64_t key);
-
 /* The number of a name of 1 to INPUT_NAME bytes among those of a kind, for the caller: 0 at first. NULL after
  * a failure. */
-int64_t *input_name(struct mesh_input *in, int kind, const char *text, size_t length);
+int64_t *input_name(struct msh_reader *r, int kind, const char *text, size_t length);
 
 /* The key of a new group; of the group of that dimension and name, which may be new. */
-int64_t input_add_group(struct mesh_input *in, int dim, const char *text, int64_t length);
-int64_t input_group(struct mesh_input *in, int dim, const char *text);
+int64_t input_add_group(struct msh_reader *r, int dim, const char *text, int64_t length);
+int64_t input_group(struct msh_reader *r, int dim, const char *text);
 
 /* Note what of the file is left out, each thing once. */
-void input_leave_out(struct mesh_input *in, const char *what);
+void input_leave_out(struct msh_reader *r, const char *what);
 
 /* Append a note (printf-style). */
-void input_note(struct mesh_input *in, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-/* Index the nodes by their tags: before input_finish, and before what needs them. Fill reader and mesh. */
-void input_index(struct mesh_input *in);
-void input_finish(struct mesh_input *in);
-void input_free(struct mesh_input *in);
+void input_note(struct msh_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Read a deck of Abaqus or CalculiX; a model of FEBio; a file of VTK, in XML or legacy. */
 void inp_read(struct msh_reader *r);

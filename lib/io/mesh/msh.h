@@ -29,18 +29,28 @@ struct mesh_names {
 MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
 void mesh_names_free(struct mesh_names *names);
 
+struct msh_node {
+    int64_t tag;    /* distinct */
+    double x[3];    /* in the unit of the file; finite */
+    int64_t record; /* its place in the file, for messages */
+};
+
+struct msh_element {
+    int64_t tag;         /* distinct */
+    int64_t first;       /* of its nodes in node_idx */
+    int64_t key, entity; /* while it is read: its list of groups, and its entity (msh_private.h); 0: none */
+    int8_t type;         /* gmsh's number of the type, one that msh_type knows */
+};
+
 /* A mesh file as it is: elements of all dimensions, in the order of the file. */
 struct msh {
     int64_t node_count;
-    double *x;         /* node_count x 3, in the unit of the file; finite */
-    int64_t *node_tag; /* node_count, distinct */
+    struct msh_node *nodes; /* node_count */
     int64_t element_count;
-    int64_t *element_tag; /* element_count, distinct */
-    int8_t *element_type; /* element_count: gmsh's number of the type, one that msh_type knows */
-    int64_t *node_ptr;    /* element_count + 1 */
-    int32_t *node_idx;    /* the nodes of each element, in gmsh's order: indices into x and node_tag */
-    int64_t *member_ptr;  /* element_count + 1 */
-    int32_t *member_idx;  /* the groups that each element belongs to: indices into groups, ascending */
+    struct msh_element *elements; /* element_count */
+    int32_t *node_idx;            /* the nodes of each element, in gmsh's order: indices into nodes */
+    int64_t *member_ptr;          /* element_count + 1 */
+    int32_t *member_idx; /* the groups that each element belongs to: indices into groups, ascending */
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */
@@ -55,6 +65,9 @@ struct msh_type {
     int linear; /* number of the first-order type with its corners, which come first; for first order its own
                    number */
 };
+
+/* Most nodes of an element. */
+#define MSH_MOST_NODES 27
 
 /* The type with this number in gmsh; its name is NULL if it is not an element of first or second order. */
 struct msh_type msh_type(int64_t number);

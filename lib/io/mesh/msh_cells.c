@@ -13,15 +13,16 @@ enum status mesh_find_roles(struct mesh_draft *draft)
     int64_t count = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
-        struct msh_type type = msh_type(msh->element_type[e]);
-        int64_t corners = msh->node_ptr[e] + msh_type(type.linear).node_count;
-        if (msh_pieces(msh->element_type[e], split)->count == 0) {
+        const struct msh_element *element = &msh->elements[e];
+        struct msh_type type = msh_type(element->type);
+        int corners = msh_type(type.linear).node_count;
+        if (msh_pieces(element->type, split)->count == 0) {
             return fail(draft->error, STATUS_INPUT,
                         "element %lld, a %s, cannot be split at its midside nodes: leave --midside away",
-                        (long long)msh->element_tag[e], type.name);
+                        (long long)element->tag, type.name);
         }
-        for (int64_t k = msh->node_ptr[e]; k < msh->node_ptr[e + 1]; k++) {
-            int8_t *role = &draft->role[msh->node_idx[k]];
+        for (int k = 0; k < type.node_count; k++) {
+            int8_t *role = &draft->role[msh->node_idx[element->first + k]];
             if (k < corners && type.dim > 0) {
                 *role = MESH_CORNER;
             } else if (k >= corners && *role == MESH_UNUSED) {
@@ -55,7 +56,7 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
     for (int64_t e = 0; e < msh->element_count; e++) {
         int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_used_nodes(draft, e) : 0;
         for (int k = 0; k < used; k++) {
-            int32_t *node = &draft->node_of[msh->node_idx[msh->node_ptr[e] + k]];
+            int32_t *node = &draft->node_of[msh->node_idx[msh->elements[e].first + k]];
             *node = draft->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
         }
     }
@@ -69,7 +70,7 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {
         for (int i = 0; i < mesh->dim && draft->node_of[n] >= 0; i++) {
-            mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->x[3 * n + i];
+            mesh->x[draft->node_of[n] * mesh->dim + i] = draft->options->unit * msh->nodes[n].x[i];
         }
     }
     return STATUS_OK;
@@ -103,8 +104,8 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
 int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MESH_MOST_SIMPLICES][4])
 {
     const struct msh *msh = draft->msh;
-    const int32_t *whole = &msh->node_idx[msh->node_ptr[element]];
-    const struct msh_pieces *pieces = msh_pieces(msh->element_type[element], draft->options->midside);
+    const int32_t *whole = &msh->node_idx[msh->elements[element].first];
+    const struct msh_pieces *pieces = msh_pieces(msh->elements[element].type, draft->options->midside);
     bool in_plane = draft->mesh->dim == 2;
     int corners = msh_type(pieces->type).node_count;
     int count = 0;
@@ -134,7 +135,7 @@ static enum status add_cell(struct mesh_draft *draft, int64_t element, int32_t r
     double volume = relative_volume(mesh, cell);
     if (!(fabs(volume) > ROUND_OFF)) {
         return fail(draft->error, STATUS_INPUT, "element %lld has no %s (its relative size is %.3g)",
-                    (long long)draft->msh->element_tag[element], mesh->dim == 2 ? "area" : "volume",
+                    (long long)draft->msh->elements[element].tag, mesh->dim == 2 ? "area" : "volume",
                     fabs(volume));
     }
     if (volume < 0) {

@@ -13,7 +13,7 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
     int64_t tags[2] = {0, 0};
     for (int64_t n = 0; n < draft->msh->node_count; n++) {
         if (draft->node_of[n] == a || draft->node_of[n] == b) {
-            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->node_tag[n];
+            tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->nodes[n].tag;
         }
     }
     return fail(draft->error, STATUS_INPUT,

@@ -50,7 +50,7 @@ static void read_type(struct msh_reader *r, struct block *block)
     }
 }
 
-static void read_block_head(struct msh_reader *r, struct block *block, int64_t left)
+static void read_block_head(struct msh_reader *r, struct block *block, int64_t left, int64_t all)
 {
     int64_t dim;
     if (r->msh4) {
@@ -62,8 +62,7 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
             msh_fail(r, "a %s on an entity of dimension %lld", block->type.name, (long long)dim);
         }
         if (block->count > left) {
-            msh_fail(r, "more elements than the %lld that the section's head says",
-                     (long long)r->msh->element_count);
+            msh_fail(r, "more elements than the %lld that the section's head says", (long long)all);
         }
     } else if (r->binary) {
         read_type(r, block);
@@ -76,58 +75,38 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
 
 /* The tags of an element of MSH 2: the first is its physical group, negative if that reverses it; the
  * second its entity. Both are of the dimension of its type. */
-static void read_tags(struct msh_reader *r, int64_t e, const struct block *block)
+static void read_tags(struct msh_reader *r, const struct block *block, int64_t *key, int64_t *entity)
 {
     for (int64_t k = 0; k < block->tags; k++) {
         int64_t tag = msh_int(r, "tag", k == 1 ? 0 : -MSH_LARGEST_TAG, MSH_LARGEST_TAG);
         if (k == 0 && tag != 0) {
-            r->element_key[e] = msh_key(block->type.dim, tag < 0 ? -tag : tag);
+            *key = msh_key(block->type.dim, tag < 0 ? -tag : tag);
         } else if (k == 1) {
-            r->entity_key[e] = msh_key(block->type.dim, tag);
+            *entity = msh_key(block->type.dim, tag);
         }
     }
 }
 
-static void read_element_nodes(struct msh_reader *r, int64_t e, const struct block *block)
+static void read_element(struct msh_reader *r, struct block *block)
 {
-    struct msh *msh = r->msh;
-    int64_t first = msh->node_ptr[e];
-    msh->node_ptr[e + 1] = first + block->type.node_count;
-    MSH_GROW(r, &msh->node_idx, msh->node_ptr[e + 1], &r->node_idx_room);
-    for (int64_t k = first; r->status == STATUS_OK && k < msh->node_ptr[e + 1]; k++) {
-        int64_t node = msh_tag(r, "node", INT64_MIN, INT64_MAX);
-        int64_t place = msh_index_find(&r->nodes, node);
-        msh->node_idx[k] = (int32_t)place;
-        if (place < 0) {
-            msh_fail(r, "element %lld names the node %lld, which is not in $Nodes",
-                     (long long)msh->element_tag[e], (long long)node);
-        }
-    }
-}
-
-static void read_element(struct msh_reader *r, int64_t e, struct block *block)
-{
-    struct msh *msh = r->msh;
-    r->record = e + 1;
-    msh->element_tag[e] = msh_tag(r, "tag", 1, MSH_LARGEST_TAG);
+    int64_t node[MSH_MOST_NODES] = {0}, key = block->key, entity = key;
+    int64_t tag = msh_tag(r, "tag", 1, MSH_LARGEST_TAG);
     if (!r->msh4 && !r->binary) {
         read_type(r, block);
         block->tags = msh_int(r, "number of tags", 0, MOST_TAGS);
     }
-    if (!r->msh4) {
-        read_tags(r, e, block);
-    } else {
-        r->element_key[e] = r->entity_key[e] = block->key;
+    read_tags(r, block, &key, &entity);
+    for (int k = 0; k < block->type.node_count; k++) {
+        node[k] = msh_tag(r, "node", INT64_MIN, INT64_MAX);
     }
-    msh->element_type[e] = (int8_t)block->number;
+    msh_add_element(r, tag, (int)block->number, node, key);
     if (r->status == STATUS_OK) {
-        read_element_nodes(r, e, block);
+        r->msh->elements[r->msh->element_count - 1].entity = entity;
     }
 }
 
 void msh_read_elements(struct msh_reader *r)
 {
-    struct msh *msh = r->msh;
     FREED_BY(msh_index_free) struct msh_index tags = {0};
     bool blocked = r->msh4;
     int64_t found = 0;
@@ -141,18 +120,13 @@ void msh_read_elements(struct msh_reader *r)
     for (int k = 0; k < 2 && blocked; k++) {
         (void)msh_size(r, "range of tags", 0, MSH_LARGEST_TAG);
     }
-    msh->element_count = count;
-    MSH_NEW(r, &msh->element_tag, count);
-    MSH_NEW(r, &msh->element_type, count);
-    MSH_NEW(r, &msh->node_ptr, count + 1);
-    MSH_NEW(r, &r->element_key, count);
-    MSH_NEW(r, &r->entity_key, count);
     for (int64_t b = 0; r->status == STATUS_OK && b < blocks && (blocked || found < count); b++) {
         struct block block = {0};
         r->record = found + 1;
-        read_block_head(r, &block, count - found);
-        for (int64_t end = found + block.count; r->status == STATUS_OK && found < end; found++) {
-            read_element(r, found, &block);
+        read_block_head(r, &block, count - found, count);
+        for (int64_t end = found + block.count; r->status == STATUS_OK && found < end;) {
+            r->record = ++found;
+            read_element(r, &block);
         }
     }
     if (found != count) {
@@ -161,6 +135,6 @@ void msh_read_elements(struct msh_reader *r)
                  (long long)count);
     }
     if (r->status == STATUS_OK) {
-        msh_index_make(r, &tags, count, msh->element_tag);
+        msh_index_elements(r, &tags);
     }
 }

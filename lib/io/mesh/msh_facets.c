@@ -27,11 +27,11 @@ static enum status fail_overlap(const struct mesh_draft *draft, const struct msh
     if (mesh->cell_region[overlap->cell[0]] != mesh->cell_region[overlap->cell[1]]) {
         return fail(draft->error, STATUS_INPUT,
                     "elements %lld ('%s') and %lld ('%s') overlap: each cell once, in one group",
-                    (long long)msh->element_tag[a], mesh->regions.name[mesh->cell_region[overlap->cell[0]]],
-                    (long long)msh->element_tag[b], mesh->regions.name[mesh->cell_region[overlap->cell[1]]]);
+                    (long long)msh->elements[a].tag, mesh->regions.name[mesh->cell_region[overlap->cell[0]]],
+                    (long long)msh->elements[b].tag, mesh->regions.name[mesh->cell_region[overlap->cell[1]]]);
     }
     return fail(draft->error, STATUS_INPUT, "elements %lld and %lld overlap: one is inverted, or there twice",
-                (long long)msh->element_tag[a], (long long)msh->element_tag[b]);
+                (long long)msh->elements[a].tag, (long long)msh->elements[b].tag);
 }
 
 /* The elements of each group, in the order of the file. */
@@ -166,7 +166,7 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
         int64_t e = g->group_idx[i];
         int used = mesh_used_nodes(g->draft, e);
         for (int k = 0; k < used; k++) {
-            int32_t of_file = msh->node_idx[msh->node_ptr[e] + k];
+            int32_t of_file = msh->node_idx[msh->elements[e].first + k];
             int32_t node = g->draft->node_of[of_file];
             bool is_midside = g->draft->role[of_file] == MESH_MIDSIDE;
             lost += node < 0 && !is_midside;

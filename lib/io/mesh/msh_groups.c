@@ -46,7 +46,7 @@ static struct msh_group *find_group(const struct msh *msh, int64_t key)
 
 static int dim_of(const struct msh_reader *r, int64_t e)
 {
-    return msh_type(r->msh->element_type[e]).dim;
+    return msh_type(r->msh->elements[e].type).dim;
 }
 
 /* Collect the groups that the file names, those of entities (MSH 4), and those of elements where
@@ -67,9 +67,9 @@ static void collect_groups(struct msh_reader *r, const bool by_element[])
         keys[count++] = r->physicals[i];
     }
     for (int64_t e = 0; e < msh->element_count; e++) {
-        if (by_element[dim_of(r, e)] && r->element_key[e] != 0 &&
-            (count == 0 || keys[count - 1] != r->element_key[e])) {
-            keys[count++] = r->element_key[e];
+        if (by_element[dim_of(r, e)] && r->msh->elements[e].key != 0 &&
+            (count == 0 || keys[count - 1] != r->msh->elements[e].key)) {
+            keys[count++] = r->msh->elements[e].key;
         }
     }
     count = sort_distinct(count, keys);
@@ -202,12 +202,12 @@ static void check_entities(struct msh_reader *r)
     const struct msh_entity *entity = NULL;
     bool listed = r->msh4 && r->entity_count > 0;
     for (int64_t e = 0; listed && r->status == STATUS_OK && e < r->msh->element_count; e++) {
-        int64_t key = r->element_key[e];
+        int64_t key = r->msh->elements[e].key;
         entity = entity != NULL && entity->key == key ? entity : find_entity(r, key);
         if (entity == NULL) {
             r->status =
                 fail(r->error, STATUS_INPUT, "$Elements: element %lld is on %s %d, which is not in $Entities",
-                     (long long)r->msh->element_tag[e], msh_entity_kind(key_dim(key)), key_tag(key));
+                     (long long)r->msh->elements[e].tag, msh_entity_kind(key_dim(key)), key_tag(key));
         }
     }
 }
@@ -227,16 +227,17 @@ static void group_by_entity(struct msh_reader *r, bool by_element[])
     }
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int of_element = dim_of(r, e);
-        grouped[of_element] = grouped[of_element] || (!r->msh4 && r->element_key[e] != 0);
-        first = of_element > dim ? r->entity_key[e] : first;
-        several = of_element > dim ? false : several || (of_element == dim && r->entity_key[e] != first);
+        grouped[of_element] = grouped[of_element] || (!r->msh4 && r->msh->elements[e].key != 0);
+        first = of_element > dim ? r->msh->elements[e].entity : first;
+        several =
+            of_element > dim ? false : several || (of_element == dim && r->msh->elements[e].entity != first);
         dim = of_element > dim ? of_element : dim;
     }
     for (int64_t e = 0; r->status == STATUS_OK && e < r->msh->element_count; e++) {
         int of_element = dim_of(r, e);
         if (!grouped[of_element] && (of_element == dim ? several : of_element == dim - 1)) {
             by_element[of_element] = r->msh->by_entity[of_element] = true;
-            r->element_key[e] = r->entity_key[e];
+            r->msh->elements[e].key = r->msh->elements[e].entity;
         }
     }
 }
@@ -284,8 +285,8 @@ static void join_members(struct msh_reader *r)
     for (int pass = 0; pass < 2 && r->status == STATUS_OK; pass++) {
         const struct msh_entity *entity = &none;
         for (int64_t e = 0; e < msh->element_count; e++) {
-            if (r->element_key[e] != entity->key) {
-                entity = find_entity(r, r->element_key[e]);
+            if (r->msh->elements[e].key != entity->key) {
+                entity = find_entity(r, r->msh->elements[e].key);
                 entity = entity != NULL ? entity : &none;
             }
             msh->member_ptr[e + 1] = msh->member_ptr[e] + entity->count;

@@ -1,13 +1,14 @@
-/* Reading mesh files: shared by msh_read.c, msh_foreign.c, msh_number.c, msh_nodes.c, msh_elements.c,
- * msh_entities.c and msh_groups.c; private to lib/io.
+/* Reading mesh files; private to lib/io.
  *
- *   bytes --> sections --> $PhysicalNames, $Entities  --> groups    \
- *                          $Nodes                     --> nodes      } struct msh
- *                          $Elements                  --> elements  /
- * The reader passes through the file once. After its first failure, every function of this header returns
- * without effect, numbers are the least admitted ones, and loops stop at `reader->status`. A count is
- * accepted only if the rest of the file can contain that many records. (Format: Geuzaine and Remacle, Gmsh
- * reference manual, "File formats".) */
+ *   $PhysicalNames, $Entities \
+ *   $Nodes                     } msh_list.c --> msh_groups.c --> struct msh
+ *   $Elements                 /
+ *   inp_read.c, feb_read.c, vtu_read.c, vtk_read.c (mesh_input.h) as well
+ *
+ * A reader passes through the file once, and adds nodes, elements and groups to lists. After its first
+ * failure, every function of this header returns without effect, numbers are the least admitted ones, and
+ * loops stop at `reader->status`. A count is accepted only if the rest of the file can contain that many
+ * records. (Format: Geuzaine and Remacle, Gmsh reference manual, "File formats".) */
 #pragma once
 
 #include "base/memory.h"
@@ -64,15 +65,15 @@ struct msh_reader {
 
     struct msh *msh;
     const char *region_array; /* of VTK files, or NULL */
+    bool has[MSH_SECTIONS];   /* the section was read to its end */
+    int64_t node_room, element_room, corner_count, corner_room, name_room;
+    int64_t *corners; /* corner_count: tags of the nodes of each element, from its `first` on */
     struct msh_index nodes;
-    const int64_t *line; /* of each of the records that are indexed, or NULL */
-    bool has[MSH_SECTIONS]; /* the section was read to its end */
-    int64_t node_idx_room;
-    int64_t *element_key; /* msh->element_count: key of the entity, in MSH 2 of the group; 0: none */
-    int64_t *entity_key;  /* msh->element_count: key of the entity; 0: none */
     int64_t name_count;
     struct msh_name *names;
     struct owned texts; /* those of names that are not in the file */
+    void *numbered;     /* a tree of what input_name numbers */
+    char left_out[320]; /* what is not read, ", " before each */
     int64_t entity_count, entity_room;
     struct msh_entity *entities;
     int64_t physical_count, physical_room;
@@ -145,14 +146,27 @@ static inline int64_t msh_key(int64_t dim, int64_t tag)
 /* Set the groups of the file, and those of each element: the last step. */
 void msh_join_groups(struct msh_reader *reader);
 
-/* ---- msh_nodes.c: finding nodes by their tags ---- */
+/* ---- msh_list.c: nodes and elements as they are read, and finding them by their tags ---- */
 
-/* Index the tags; a repeated tag is a failure. */
-void msh_index_make(struct msh_reader *reader, struct msh_index *index, int64_t count, const int64_t tags[]);
+/* The elements whose tags are given at the end, behind the others. */
+#define MSH_NO_TAG (-1)
+
+/* Add a node; an element with these tags of nodes, in gmsh's order, and the key of its groups (0: none). Each
+ * element has at most one key: facets and nodes of other formats are elements of their own for each of their
+ * groups. */
+void msh_add_node(struct msh_reader *reader, int64_t tag, const double x[3]);
+void msh_add_element(struct msh_reader *reader, int64_t tag, int type, const int64_t node[], int64_t key);
+
+/* Index nodes, once all are there, or elements, by their tags; a repeated tag is a failure. */
+void msh_index_nodes(struct msh_reader *reader);
+void msh_index_elements(struct msh_reader *reader, struct msh_index *index);
 void msh_index_free(struct msh_index *index);
 
 /* Place of `tag`, or -1. */
 int64_t msh_index_find(const struct msh_index *index, int64_t tag);
+
+/* Find the nodes of all elements, and give tags to those without: before the groups are set. */
+void msh_finish_lists(struct msh_reader *reader);
 
 /* ---- msh_foreign.c ---- */
 

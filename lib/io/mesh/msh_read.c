@@ -3,6 +3,7 @@
 #include "io/mesh/mesh_input.h"
 
 #include <ctype.h>
+#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -241,10 +242,15 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
                     msh_foreign_hint(bytes, size));
     }
     format->read(&reader);
+    msh_finish_lists(&reader);
     msh_join_groups(&reader);
+    if (reader.left_out[0] != '\0') {
+        input_note(&reader, "what else is in the file is left out: %s", reader.left_out + 2);
+    }
     msh_index_free(&reader.nodes);
     owned_free(&reader.texts);
-    FREE_ALL(reader.element_key, reader.entity_key, reader.names, reader.entities, reader.physicals);
+    tdestroy(reader.numbered, free);
+    FREE_ALL(reader.corners, reader.names, reader.entities, reader.physicals);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
@@ -283,8 +289,7 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, const ch
 
 void msh_free(struct msh *msh)
 {
-    FREE_ALL(msh->x, msh->node_tag, msh->element_tag, msh->element_type, msh->node_ptr, msh->node_idx,
-             msh->member_ptr, msh->member_idx);
+    FREE_ALL(msh->nodes, msh->elements, msh->node_idx, msh->member_ptr, msh->member_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
         FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }

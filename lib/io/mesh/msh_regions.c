@@ -9,12 +9,12 @@
 
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
 {
-    return msh_type(draft->msh->element_type[element]).dim;
+    return msh_type(draft->msh->elements[element].type).dim;
 }
 
 int mesh_used_nodes(const struct mesh_draft *draft, int64_t element)
 {
-    struct msh_type type = msh_type(draft->msh->element_type[element]);
+    struct msh_type type = msh_type(draft->msh->elements[element].type);
     return draft->options->midside ? type.node_count : msh_type(type.linear).node_count;
 }
 
@@ -27,7 +27,7 @@ static enum status check_plane(const struct mesh_draft *draft)
         int count = mesh_element_dim(draft, e) == 2 ? mesh_used_nodes(draft, e) : 0;
         for (int k = 0; k < count; k++) {
             for (int i = 0; i < 3; i++) {
-                double x = msh->x[3 * msh->node_idx[msh->node_ptr[e] + k] + i];
+                double x = msh->nodes[msh->node_idx[msh->elements[e].first + k]].x[i];
                 least[i] = fmin(least[i], x);
                 most[i] = fmax(most[i], x);
             }
@@ -82,8 +82,8 @@ static int compare_cells(const void *left, const void *right)
 
 static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)
 {
-    const int32_t *node = &msh->node_idx[msh->node_ptr[element]];
-    int corners = msh_type(msh_type(msh->element_type[element]).linear).node_count;
+    const int32_t *node = &msh->node_idx[msh->elements[element].first];
+    int corners = msh_type(msh_type(msh->elements[element].type).linear).node_count;
     key->element = element;
     memset(key->node, 0xff, sizeof key->node);
     sort_nodes(corners, node, key->node);

@@ -12,7 +12,7 @@
 
 static bool is_numbering(struct vtk_input *v, const struct vtk_array *array)
 {
-    struct msh_reader *r = v->in.r;
+    struct msh_reader *r = v->r;
     SCRATCH int64_t *value = NULL;
     MSH_NEW(r, &value, array->count);
     if (r->status != STATUS_OK || array->count <= FEW_CELLS) {
@@ -37,12 +37,12 @@ static const struct vtk_array *named_array(const struct vtk_input *v, const char
  * else the only one. */
 static const struct vtk_array *find_regions(struct vtk_input *v)
 {
-    const char *asked = v->in.r->region_array;
+    const char *asked = v->r->region_array;
     const struct vtk_array *found = named_array(v, asked);
     char names[256] = "";
     int64_t count = 0;
     if (asked != NULL && found == NULL) {
-        msh_fail(v->in.r, "the cells have no array '%s' of whole numbers", asked);
+        msh_fail(v->r, "the cells have no array '%s' of whole numbers", asked);
     }
     found = found != NULL ? found : named_array(v, "cells.region");
     found = found != NULL ? found : named_array(v, "gmsh:physical");
@@ -55,14 +55,14 @@ static const struct vtk_array *find_regions(struct vtk_input *v)
             text_append(names, sizeof names, "%s%s", count++ > 0 ? ", " : "", array->name);
             found = array;
         } else if (array->kind == VTK_OF_CELLS) {
-            input_leave_out(&v->in, array->name);
+            input_leave_out(v->r, array->name);
         }
     }
     if (count > 1 && named_array(v, found->name) != found) {
-        msh_fail(v->in.r, "the cells have two arrays '%s': take one out", found->name);
+        msh_fail(v->r, "the cells have two arrays '%s': take one out", found->name);
     } else if (count > 1) {
         msh_fail(
-            v->in.r,
+            v->r,
             "the cells have several arrays of whole numbers: --regions-of tells which has the regions: %s",
             names);
     }
@@ -92,7 +92,7 @@ static void name_regions(struct vtk_input *v, const struct vtk_array *array, int
     bool zero_is_none = strcmp(array->name, "gmsh:physical") == 0;
     int most = 0;
     for (int64_t c = 0; c < v->cell_count; c++) {
-        int dim = msh_type(v->in.r->msh->element_type[c]).dim;
+        int dim = msh_type(v->r->msh->elements[c].type).dim;
         most = dim > most ? dim : most;
         key[4 * first_from(value, 0, count, array->whole[c]) + dim] = -1;
     }
@@ -102,14 +102,14 @@ static void name_regions(struct vtk_input *v, const struct vtk_array *array, int
             key[k] = 0;
         } else if (key[k] != 0) {
             name_region(v, array, value[k / 4], (int)(k % 4), most, name, sizeof name);
-            key[k] = input_group(&v->in, (int)(k % 4), name);
+            key[k] = input_group(v->r, (int)(k % 4), name);
         }
     }
 }
 
 static void add_regions(struct vtk_input *v, const struct vtk_array *array)
 {
-    struct msh_reader *r = v->in.r;
+    struct msh_reader *r = v->r;
     SCRATCH int64_t *value = NULL, *key = NULL;
     if (array->count != v->cell_count) {
         msh_fail(r, "%s: %lld numbers, not one for each of %lld cells", array->name, (long long)array->count,
@@ -125,28 +125,28 @@ static void add_regions(struct vtk_input *v, const struct vtk_array *array)
     name_regions(v, array, count, value, key);
     for (int64_t c = 0; c < v->cell_count; c++) {
         int64_t place = first_from(value, 0, count, array->whole[c]);
-        v->in.r->element_key[c] = key[4 * place + msh_type(v->in.r->msh->element_type[c]).dim];
+        v->r->msh->elements[c].key = key[4 * place + msh_type(v->r->msh->elements[c].type).dim];
     }
-    input_note(&v->in, "the regions are those of the cells' array '%s'", array->name);
+    input_note(v->r, "the regions are those of the cells' array '%s'", array->name);
 }
 
 /* Node sets and facets of tovtk, 1 at their nodes. */
 static void add_sets(struct vtk_input *v)
 {
-    for (int64_t i = 0; v->in.r->status == STATUS_OK && i < v->count; i++) {
+    for (int64_t i = 0; v->r->status == STATUS_OK && i < v->count; i++) {
         const struct vtk_array *array = &v->arrays[i];
         if (array->kind != VTK_OF_POINTS) {
             continue;
         }
         const char *name = strchr(array->name, '.') + 1;
-        int64_t key = input_add_group(&v->in, 0, name, (int64_t)strlen(name));
+        int64_t key = input_add_group(v->r, 0, name, (int64_t)strlen(name));
         if (array->count != v->point_count) {
-            msh_fail(v->in.r, "%s: %lld numbers, not one for each of %lld points", array->name,
+            msh_fail(v->r, "%s: %lld numbers, not one for each of %lld points", array->name,
                      (long long)array->count, (long long)v->point_count);
         }
-        for (int64_t n = 0; v->in.r->status == STATUS_OK && n < v->point_count; n++) {
+        for (int64_t n = 0; v->r->status == STATUS_OK && n < v->point_count; n++) {
             if (array->whole[n] != 0) {
-                input_add_element(&v->in, INPUT_NO_TAG, INPUT_POINT, &n, key);
+                msh_add_element(v->r, MSH_NO_TAG, INPUT_POINT, &n, key);
             }
         }
     }
@@ -154,8 +154,8 @@ static void add_sets(struct vtk_input *v)
 
 void vtk_add_groups(struct vtk_input *v)
 {
-    const struct vtk_array *array = v->in.r->status == STATUS_OK ? find_regions(v) : NULL;
-    if (array != NULL && v->in.r->status == STATUS_OK) {
+    const struct vtk_array *array = v->r->status == STATUS_OK ? find_regions(v) : NULL;
+    if (array != NULL && v->r->status == STATUS_OK) {
         add_regions(v, array);
     }
     add_sets(v);

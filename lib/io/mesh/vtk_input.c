@@ -46,16 +46,16 @@ bool vtk_is_wanted(struct vtk_input *v, const struct vtk_array *array, const str
         of_grid || (whole && (array->kind == VTK_OF_CELLS || (array->kind == VTK_OF_POINTS && set) ||
                               (array->kind == VTK_OF_FIELD && begins(array->name, "region."))));
     if (of_grid && (type->size == 0 || type->is_whole == (array->kind == VTK_POINTS))) {
-        msh_fail(v->in.r, "numbers of a type that has no place here");
+        msh_fail(v->r, "numbers of a type that has no place here");
     } else if (!wanted) {
-        input_leave_out(&v->in, array->name);
+        input_leave_out(v->r, array->name);
     }
     return wanted;
 }
 
 struct vtk_array *vtk_add(struct vtk_input *v, const struct vtk_array *array, int64_t count)
 {
-    struct msh_reader *r = v->in.r;
+    struct msh_reader *r = v->r;
     MSH_GROW(r, &v->arrays, v->count + 1, &v->room);
     if (r->status != STATUS_OK) {
         return NULL;
@@ -130,29 +130,29 @@ static const struct vtk_array *find_array(struct vtk_input *v, enum vtk_kind kin
     for (int64_t i = 0; i < v->count; i++) {
         if (v->arrays[i].kind == kind) {
             if (found != NULL) {
-                msh_fail(v->in.r, "%s: twice", what);
+                msh_fail(v->r, "%s: twice", what);
             }
             found = &v->arrays[i];
         }
     }
     if (found == NULL) {
-        msh_fail(v->in.r, "no %s: the file is truncated, or has no grid", what);
+        msh_fail(v->r, "no %s: the file is truncated, or has no grid", what);
     } else if (count >= 0 && found->count != count) {
-        msh_fail(v->in.r, "%s: %lld numbers, not %lld", what, (long long)found->count, (long long)count);
+        msh_fail(v->r, "%s: %lld numbers, not %lld", what, (long long)found->count, (long long)count);
     }
-    return v->in.r->status == STATUS_OK ? found : NULL;
+    return v->r->status == STATUS_OK ? found : NULL;
 }
 
 static void add_nodes(struct vtk_input *v)
 {
     const struct vtk_array *x = find_array(v, VTK_POINTS, "points", 3 * v->point_count);
-    for (int64_t n = 0; x != NULL && v->in.r->status == STATUS_OK && n < v->point_count; n++) {
+    for (int64_t n = 0; x != NULL && v->r->status == STATUS_OK && n < v->point_count; n++) {
         for (int k = 0; k < 3; k++) {
             if (!isfinite(x->real[3 * n + k])) {
-                msh_fail(v->in.r, "point %lld: a coordinate is not finite", (long long)n);
+                msh_fail(v->r, "point %lld: a coordinate is not finite", (long long)n);
             }
         }
-        input_add_node(&v->in, n, &x->real[3 * n]);
+        msh_add_node(v->r, n, &x->real[3 * n]);
     }
 }
 
@@ -182,11 +182,11 @@ static void swap_nodes(int64_t *a, int64_t *b)
 static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t count, const int64_t nodes[])
 {
     enum { PIXEL = 8, VOXEL = 11 };
-    int64_t node[27];
+    int64_t node[MSH_MOST_NODES];
     int type = find_type(number, count);
     if (type == 0) {
         msh_fail(
-            v->in.r,
+            v->r,
             "cell %lld: type %lld of VTK with %lld points is no element of first or second order that is "
             "read: make simplices of them (ParaView's filter Tetrahedralize)",
             (long long)c, (long long)number, (long long)count);
@@ -200,12 +200,12 @@ static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t cou
         swap_nodes(&node[6], &node[7]);
     }
     input_reorder(type, node);
-    input_add_element(&v->in, c, type, node, 0);
+    msh_add_element(v->r, c, type, node, 0);
 }
 
 static void add_cells(struct vtk_input *v)
 {
-    struct msh_reader *r = v->in.r;
+    struct msh_reader *r = v->r;
     const struct vtk_array *connectivity = find_array(v, VTK_CONNECTIVITY, "connectivity", -1);
     const struct vtk_array *end = find_array(v, VTK_OFFSETS, "offsets", v->cell_count);
     const struct vtk_array *type = find_array(v, VTK_TYPES, "types", v->cell_count);
@@ -223,16 +223,13 @@ static void add_cells(struct vtk_input *v)
 
 void vtk_build(struct vtk_input *v)
 {
-    struct msh_reader *r = v->in.r;
+    struct msh_reader *r = v->r;
     input_at(r, "grid", 0);
     add_nodes(v);
     add_cells(v);
     vtk_add_groups(v);
-    input_index(&v->in);
-    input_finish(&v->in);
     for (int64_t i = 0; i < v->count; i++) {
         FREE_ALL(v->arrays[i].real, v->arrays[i].whole);
     }
     free(v->arrays);
-    input_free(&v->in);
 }

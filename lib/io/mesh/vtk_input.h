@@ -36,7 +36,7 @@ struct vtk_array {
 };
 
 struct vtk_input {
-    struct mesh_input in;
+    struct msh_reader *r;
     int64_t point_count, cell_count;
     int64_t count, room;
     struct vtk_array *arrays;

@@ -98,7 +98,7 @@ static void decode_name(char name[])
  * say in how many. */
 static void skip_texts(struct legacy *l, int64_t count)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     const char *at, *end;
     for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
         int width = l->binary && r->at < r->end ? 8 >> ((unsigned char)*r->at >> 6) : 0;
@@ -119,7 +119,7 @@ static void skip_texts(struct legacy *l, int64_t count)
 static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *array,
                                       const struct vtk_type *type, int64_t count)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     struct vtk_array *added = NULL;
     int64_t left = r->end - r->at, size = type->size == 0 ? 1 : l->binary ? type->size : 2, length;
     if (r->status != STATUS_OK || count > (left + !l->binary) / size) {
@@ -159,19 +159,19 @@ static struct vtk_array *read_list(struct legacy *l, enum vtk_kind kind, const c
     const char *at = "", *end = at;
     char word[32];
     struct vtk_array array = {.kind = kind, .components = 1};
-    first_word(l->v.in.r, &at, &end, word, sizeof word);
+    first_word(l->v.r, &at, &end, word, sizeof word);
     if (strcasecmp(word, name) != 0) {
-        msh_fail(l->v.in.r, "no %s: the file is truncated", name);
+        msh_fail(l->v.r, "no %s: the file is truncated", name);
     }
     snprintf(array.name, sizeof array.name, "%s", name);
-    const struct vtk_type *type = l->v.in.r->status == STATUS_OK ? next_type(l->v.in.r, &at, end) : NULL;
+    const struct vtk_type *type = l->v.r->status == STATUS_OK ? next_type(l->v.r, &at, end) : NULL;
     return type != NULL ? read_numbers(l, &array, type, count) : NULL;
 }
 
 /* Cells of versions before 5: for each cell the number of its points, and these. In place. */
 static void split_cells(struct legacy *l)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     struct vtk_array offsets = {.kind = VTK_OFFSETS, .components = 1, .name = "offsets"};
     int64_t place = l->v.count - 1, from = 0, to = 0;
     struct vtk_array *end = vtk_add(&l->v, &offsets, l->v.cell_count);
@@ -200,7 +200,7 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
     struct vtk_array *offsets = read_list(l, VTK_OFFSETS, "OFFSETS", count);
     if (offsets != NULL && offsets->count > 0) { /* without the first, which is 0 */
         if (offsets->whole[0] != 0) {
-            msh_fail(l->v.in.r, "OFFSETS begin with %lld, not with 0", (long long)offsets->whole[0]);
+            msh_fail(l->v.r, "OFFSETS begin with %lld, not with 0", (long long)offsets->whole[0]);
         }
         offsets->count--;
         memmove(offsets->whole, offsets->whole + 1, (size_t)offsets->count * sizeof *offsets->whole);
@@ -211,7 +211,7 @@ static void read_lists(struct legacy *l, int64_t count, int64_t size)
 
 static void read_cells(struct legacy *l, const char *at, const char *end)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     struct vtk_array array = {.kind = VTK_CONNECTIVITY, .components = 1, .name = "CELLS"};
     int64_t count = next_count(r, &at, end, 0), size = next_count(r, &at, end, 0);
     const char *next = r->at;
@@ -241,7 +241,7 @@ static void read_array(struct legacy *l, const char *name, int64_t components, i
     snprintf(array.name, sizeof array.name, "%s", name);
     decode_name(array.name);
     if (__builtin_mul_overflow(components, tuples, &count)) {
-        msh_fail(l->v.in.r, "%s: %lld tuples of %lld numbers are too many", name, (long long)tuples,
+        msh_fail(l->v.r, "%s: %lld tuples of %lld numbers are too many", name, (long long)tuples,
                  (long long)components);
     } else if (type != NULL) {
         (void)read_numbers(l, &array, type, count);
@@ -250,7 +250,7 @@ static void read_array(struct legacy *l, const char *name, int64_t components, i
 
 static void read_field(struct legacy *l, const char *at, const char *end)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     char name[128];
     copy_word(r, &at, end, name, sizeof name);
     int64_t count = next_count(r, &at, end, 0);
@@ -279,7 +279,7 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
     } attributes[] = {{"SCALARS", 0},    {"VECTORS", 3},      {"NORMALS", 3},
                       {"TENSORS", 9},    {"TENSORS6", 6},     {"TEXTURE_COORDINATES", -1},
                       {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"COLOR_SCALARS", -2}};
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     char name[128];
     for (size_t i = 0; i < sizeof attributes / sizeof *attributes; i++) {
         if (strcasecmp(l->keyword, attributes[i].keyword) != 0) {
@@ -308,7 +308,7 @@ static bool read_attribute(struct legacy *l, const char *at, const char *end)
 
 static void read_keyword(struct legacy *l, const char *at, const char *end)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     const char *key = l->keyword;
     if (strcasecmp(key, "POINTS") == 0) {
         struct vtk_array array = {.kind = VTK_POINTS, .components = 3, .name = "points"};
@@ -345,7 +345,7 @@ static void read_keyword(struct legacy *l, const char *at, const char *end)
 /* The head: version, title, ASCII or BINARY, the kind of data. */
 static void read_head(struct legacy *l)
 {
-    struct msh_reader *r = l->v.in.r;
+    struct msh_reader *r = l->v.r;
     const char *at = "", *end = at;
     char word[64];
     (void)next_line(r, &at, &end);
@@ -370,7 +370,7 @@ static void read_head(struct legacy *l)
 
 void vtk_read(struct msh_reader *r)
 {
-    struct legacy l = {.v = {.in = {.r = r}}, .data = VTK_OF_FIELD};
+    struct legacy l = {.v = {.r = r}, .data = VTK_OF_FIELD};
     const char *at, *end;
     input_at(r, "head", 0);
     read_head(&l);

@@ -32,8 +32,7 @@ struct vtu {
 static int64_t number_of(struct vtu *u, const char **attributes, const char *name, int64_t otherwise)
 {
     const char *value = xml_attribute(attributes, name);
-    return value != NULL ? input_whole(u->v.in.r, name, value, (int64_t)strlen(value), 0, INT32_MAX)
-                         : otherwise;
+    return value != NULL ? input_whole(u->v.r, name, value, (int64_t)strlen(value), 0, INT32_MAX) : otherwise;
 }
 
 static bool equals(const char *value, const char *wanted)
@@ -45,7 +44,7 @@ static bool equals(const char *value, const char *wanted)
 
 static void begin_file(struct vtu *u, const char **attributes)
 {
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     const char *type = xml_attribute(attributes, "type"),
                *compressor = xml_attribute(attributes, "compressor");
     if (!equals(type, "UnstructuredGrid")) {
@@ -92,7 +91,7 @@ static void find_kind(struct vtu *u, const char **attributes)
 
 static void begin_array(struct vtu *u, const char **attributes)
 {
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     const char *name = xml_attribute(attributes, "Name"), *type = xml_attribute(attributes, "type"),
                *format = xml_attribute(attributes, "format");
     if (snprintf(u->array.name, sizeof u->array.name, "%s", name != NULL ? name : u->section) > INPUT_NAME) {
@@ -116,7 +115,7 @@ static void begin_array(struct vtu *u, const char **attributes)
 static void begin(void *context, const char *name, const char **attributes, int depth)
 {
     struct vtu *u = context;
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     bool is_array = strcmp(name, "DataArray") == 0 || strcmp(name, "Array") == 0;
     if (depth < 4 && !is_array) {
         snprintf(u->section, sizeof u->section, "%s", name);
@@ -145,7 +144,7 @@ static int64_t most_numbers(const struct vtu *u)
 /* Read the array at hand from the bytes of its source. */
 static void read_binary(struct vtu *u, struct vtu_source *source)
 {
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     int64_t size;
     if (__builtin_mul_overflow(most_numbers(u), u->type->size, &source->most)) {
         source->most = INT64_MAX;
@@ -167,7 +166,7 @@ static void read_binary(struct vtu *u, struct vtu_source *source)
 
 static void read_text(struct vtu *u, const char *text, const char *end)
 {
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     const char *at = text;
     int64_t length, count = 0;
     while (input_word(&at, end, &length) != NULL) {
@@ -185,7 +184,7 @@ static void read_text(struct vtu *u, const char *text, const char *end)
 static void end(void *context, const char *name, const char *text, int64_t size, int depth)
 {
     struct vtu *u = context;
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     (void)depth;
     if (strcmp(name, "DataArray") != 0 || u->type == NULL) {
         return;
@@ -208,7 +207,7 @@ static void end(void *context, const char *name, const char *text, int64_t size,
 /* Read the appended data: behind the tag, which may be followed by blanks, and '_'. */
 static void read_appended(struct vtu *u)
 {
-    struct msh_reader *r = u->v.in.r;
+    struct msh_reader *r = u->v.r;
     const char *tag = r->at, *close = tag < r->end ? memchr(tag, '>', (size_t)(r->end - tag)) : NULL;
     const char *data = close != NULL ? close + 1 : r->end;
     while (data < r->end && isspace((unsigned char)*data)) {
@@ -242,7 +241,7 @@ static void read_appended(struct vtu *u)
 
 void vtu_read(struct msh_reader *r)
 {
-    struct vtu u = {.v = {.in = {.r = r}}};
+    struct vtu u = {.v = {.r = r}};
     const struct xml_handler handler = {&u, begin, end};
     r->section = u.section;
     xml_parse(r, "AppendedData", &handler);
