@@ -160,8 +160,8 @@ $EndElements
 END
 }
 
-# begin_and_end SIGNAL SCENE [SECTION]: begin a run on table.mts with a checkpoint after every step, and end it when two are there, or
-# when SECTION of one is not 0 any more; leaves status, part.dat and what was said. The run may be over before that is seen: then once more.
+# begin_and_end SIGNAL SCENE [SECTION]: begin a run on table.mts with a checkpoint after every step, and end it when one is there, or
+# when SECTION of it is not 0 any more; leaves status, part.dat and what was said. The run may be over before that is seen: then once more.
 begin_and_end() {
     local run tries
     for _ in 1 2 3 4 5; do
@@ -171,7 +171,7 @@ begin_and_end() {
         for ((tries = 0; tries < 3000; tries++)); do
             [ -n "$(jobs -rp)" ] || break
             if [ -z "${3:-}" ]; then
-                [ ! -e run.ckpt.old ] || break
+                [ ! -e run.ckpt ] || break
             elif [ "$(mts print "$3" run.ckpt 2> note || echo 0)" -gt 0 ] 2> note; then
                 break
             fi

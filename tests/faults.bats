@@ -326,14 +326,8 @@ slow() { cat block.scene && printf '[solver]\nmethod = relaxation\nramp_steps = 
 
 @test "fault 22: SIGKILL while a checkpoint is written" {
     run bash "$BATS_TEST_DIRNAME/kills.sh" "$([ -n "${THOROUGH:-}" ] && echo 40 || echo 3)"
-    record "killed at random moments, going on from one of two checkpoints" "$status" "${lines[-1]}" "$([ "$status" -eq 0 ] && echo yes || echo no)"
+    record "killed at random moments, going on from the checkpoint" "$status" "${lines[-1]}" "$([ "$status" -eq 0 ] && echo yes || echo no)"
     [ "$status" -eq 0 ]
-    slow > slow.scene
-    begin_and_end KILL slow.scene
-    head -c 1000 run.ckpt > cut && mv cut run.ckpt # as where a file system lost its end
-    run -0 --separate-stderr bash -c 'mtled -c run.ckpt slow.scene table.mts > again.dat'
-    mtled slow.scene table.mts | cmp - again.dat
-    record "the newer of two cut short; going on gives the same bytes" 0 "$stderr" yes
 }
 
 @test "fault 23: checkpoint of another scene" {

@@ -56,7 +56,7 @@ in_space() {
     rows gaps u.dat | awk '$4 > 0 { bad += $8 < 0.4; n++ } END { exit bad || n < 7 }'
     OMP_NUM_THREADS=2 mtled -q drag.scene block.mts | cmp - u.dat
     mtled -q -c run.ckpt -e 0 -o out.dat drag.scene block.mts 2> said 3>&- &
-    until [ -e run.ckpt.old ]; do sleep 0.01; done
+    until [ -e run.ckpt ]; do sleep 0.01; done
     kill -TERM $!
     wait $! || [ $? -eq 143 ]
     mtled -q -c run.ckpt -o out.dat drag.scene block.mts 2> said

@@ -22,7 +22,7 @@ begin() {
     shift
     mpirun --quiet --oversubscribe --bind-to none -n "$count" mtled-mpi "$@" 2> said 3>&- &
     for ((tries = 0; tries < 3000; tries++)); do
-        [ ! -e run.ckpt.old ] || break
+        [ ! -e run.ckpt ] || break
         sleep 0.02
     done
 }
@@ -194,7 +194,7 @@ one_line() {
     { pressed_block; printf '[solver]\nmethod = relaxation\nramp_steps = 4000\n[output]\nframes = 2\n'; } > run.scene
     mtled -q -o whole.dat run.scene table.mts
     for victim in 1 2; do
-        rm -f run.ckpt.old
+        rm -f run.ckpt*
         begin 2 -q -c run.ckpt -e 0 -o out.dat run.scene table.mts
         kill -KILL "$(pgrep -P $! | sed -n ${victim}p)"
         status=0
@@ -204,7 +204,7 @@ one_line() {
         [ -e run.ckpt ]
     done
     processes 3 -q -c run.ckpt -o out.dat run.scene table.mts 2> said
-    grep -qx 'mtled: going on from step [0-9]*, kept in run.ckpt\(.old\)\?' said
+    grep -qx 'mtled: going on from step [0-9]*, kept in run.ckpt' said
     cmp whole.dat out.dat
     [ -z "$(find . -name 'run.ckpt*')" ]
 }

@@ -273,7 +273,7 @@ near() {
     shapefn -o t.mts square.mts 2> note
     pressed_block > s.scene
     refused 2 '-o run.mts: is the checkpoint of -c run.mts, which is removed at the end: name another file' mtled -q -c run.mts -o run.mts s.scene t.mts
-    refused 2 '-o run.old: is the checkpoint of -c run' mtled -q -c run -o run.old s.scene t.mts
+    refused 2 '-o run.frames: is the checkpoint of -c run' mtled -q -c run -o run.frames s.scene t.mts
     [ ! -e run.mts ]
     mtled -q -c run.ckpt -o run.mts s.scene t.mts
     [ -s run.mts ]

@@ -123,7 +123,7 @@ begin_from_coarse() {
     mtled -q -c run.ckpt -e 0 -s coarse.dat slow.scene table.mts > part.dat 2> said 3>&- &
     local run=$! tries
     for ((tries = 0; tries < 3000; tries++)); do
-        [ ! -e run.ckpt.old ] || break
+        [ ! -e run.ckpt ] || break
         sleep 0.02
     done
     kill -s TERM $run

@@ -41,9 +41,9 @@ static const char usage[] =
     "\n"
     "With -c, the state of the run is kept in a file, from time to time and when SIGINT, SIGTERM\n"
     "or SIGHUP end it. The same command then goes on where it was, and ends with the same bytes;\n"
-    "with another scene, cloud or version it is refused. FILE is replaced as a whole, and the\n"
-    "one before is FILE.old. It is a stream with the last field as u.last; FILE.frames has the\n"
-    "frames so far. At the end all are removed.\n"
+    "with another scene, cloud or version it is refused. FILE is replaced as a whole. It is a\n"
+    "stream with the last field as u.last; FILE.frames has the frames so far. At the end both are\n"
+    "removed.\n"
     "\n"
     "Options:\n"
     "  -v, --verbose        a report on standard error: steps, error, costs\n"
@@ -110,12 +110,12 @@ static void become_mpi(char *argv[])
     exit((int)STATUS_INPUT);
 }
 
-/* The checkpoint, the previous one and the frames are removed at the end: none of them may be the result. */
+/* The checkpoint and the frames are removed at the end: none of them may be the result. */
 static void check_checkpoint(const struct tool *tool)
 {
-    static const char *const suffixes[] = {"", ".old", ".frames"};
+    static const char *const suffixes[] = {"", ".frames"};
     const char *file = tool_value(tool, "checkpoint");
-    for (int i = 0; i < 3 && file != NULL; i++) {
+    for (int i = 0; i < 2 && file != NULL; i++) {
         SCRATCH char *name = tool_text(tool, "%s%s", file, suffixes[i]);
         if (tool->output != NULL && strcmp(name, tool->output) == 0) {
             tool_fail(tool, STATUS_INPUT,

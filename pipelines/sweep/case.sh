@@ -26,7 +26,7 @@ stream=$(sed -n '1s/^# stream //p' "$at.scene.new")
 if cmp -s "$at.scene.new" "$at.scene"; then
     rm "$at.scene.new"
 else
-    rm -f "$at.dat" "$at.ckpt" "$at.ckpt.old"
+    rm -f "$at.dat" "$at.ckpt"
     mv "$at.scene.new" "$at.scene"
 fi
 if [ -e "$at.dat" ] && [ ! "$stream" -nt "$at.dat" ] && [ ! "$(command -v mtled)" -nt "$at.dat" ]; then
@@ -39,7 +39,7 @@ status=0
 mtled -q -c "$at.ckpt" -o "$at.dat" "$at.scene" "$stream" 2> "$at.log" || status=$?
 # A checkpoint of another cloud or version: from the beginning.
 if [ $status -eq 2 ] && [ -e "$at.ckpt" ]; then
-    rm -f "$at.ckpt" "$at.ckpt.old"
+    rm -f "$at.ckpt"
     status=0
     mtled -q -c "$at.ckpt" -o "$at.dat" "$at.scene" "$stream" 2> "$at.log" || status=$?
 fi

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 static const struct checkpoint_identity identity = {.scene = 0x12345678, .input = 0xff};
-static char folder[64], file[96], old[96];
+static char folder[64], file[96];
 static double modulus; /* of the contact's penalty, Pa; 0: the penalty is 1e5 Pa/m */
 
 /* A soft block over a floor, its top pushed down so far that it touches the floor. */
@@ -54,7 +54,7 @@ static bool interrupt(void *context, const struct progress *progress)
         return true;
     }
     GOOD(checkpoint_fill(&stream, &identity, progress->step, progress->state, progress->run, &error));
-    GOOD(checkpoint_write(file, false, &stream, &error));
+    GOOD(checkpoint_write(file, &stream, &error));
     stream_free(&stream);
     interruption->done = true;
     return false;
@@ -122,10 +122,10 @@ static void run(enum method method, struct interruption *interruption, const str
 static void resume(enum method method, struct interruption *interruption, struct result *result)
 {
     FREED_BY(stream_free) struct stream stream = {0};
-    enum checkpoint_source source;
+    bool exists;
     int64_t step;
-    GOOD(checkpoint_read(file, &identity, &stream, &source, &step, &error));
-    assert_int_equal(source, CHECKPOINT_NEWEST);
+    GOOD(checkpoint_read(file, &identity, &stream, &exists, &step, &error));
+    assert_true(exists);
     struct state state = checkpoint_state(&stream);
     run(method, interruption, &state, result);
 }
@@ -217,7 +217,6 @@ static int make_folder(void **state)
     const char *temporary = getenv("TMPDIR");
     snprintf(folder, sizeof folder, "%.40s/checkpointXXXXXX", temporary != NULL ? temporary : "/tmp");
     snprintf(file, sizeof file, "%s/run.ckpt", mkdtemp(folder) != NULL ? folder : "");
-    snprintf(old, sizeof old, "%.80s/run.ckpt.old", folder);
     return 0;
 }
 

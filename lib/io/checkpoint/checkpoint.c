@@ -177,16 +177,13 @@ static enum status sync_folder(const char *file, struct error *error)
     return STATUS_OK;
 }
 
-enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
-                             struct error *error)
+enum status checkpoint_write(const char *file, const struct stream *stream, struct error *error)
 {
-    SCRATCH char *new = NULL, *old = NULL;
+    SCRATCH char *new = NULL;
     RETURN_IF_ERROR(sibling_name(file, ".new", &new, error));
-    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
     RETURN_IF_ERROR(check_regular(file, error));
     enum status status = write_new(new, stream, error);
-    if (status == STATUS_OK &&
-        ((keep_old && rename(file, old) != 0 && errno != ENOENT) || rename(new, file) != 0)) {
+    if (status == STATUS_OK && rename(new, file) != 0) {
         status = fail_file(file, error);
     }
     if (status != STATUS_OK) {
@@ -198,7 +195,7 @@ enum status checkpoint_write(const char *file, bool keep_old, const struct strea
 
 enum status checkpoint_remove(const char *file, struct error *error)
 {
-    static const char *const endings[] = {".new", ".old", ".frames", ""};
+    static const char *const endings[] = {".new", ".frames", ""};
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         SCRATCH char *name = NULL;
         RETURN_IF_ERROR(sibling_name(file, endings[i], &name, error));
@@ -209,40 +206,22 @@ enum status checkpoint_remove(const char *file, struct error *error)
     return STATUS_OK;
 }
 
-/* Read one file; *exists: whether there is one. */
-static enum status read_one(const char *name, struct stream *stream, bool *exists, struct error *error)
-{
-    stream_init(stream);
-    FREED_BY(descriptor_close) int descriptor = open(name, O_RDONLY | O_CLOEXEC);
-    *exists = descriptor >= 0 || errno != ENOENT;
-    return descriptor < 0 ? fail_file(name, error) : stream_read(stream, descriptor, name, error);
-}
-
 enum status checkpoint_read(const char *file, const struct checkpoint_identity *identity,
-                            struct stream *stream, enum checkpoint_source *source, int64_t *step,
-                            struct error *error)
+                            struct stream *stream, bool *exists, int64_t *step, struct error *error)
 {
-    struct error later;
-    SCRATCH char *old = NULL;
-    bool exists, old_exists;
-    *source = CHECKPOINT_NEWEST;
     stream_init(stream);
     RETURN_IF_ERROR(check_regular(file, error));
-    RETURN_IF_ERROR(sibling_name(file, ".old", &old, error));
-    if (read_one(file, stream, &exists, error) != STATUS_OK) {
-        *source = CHECKPOINT_OLD;
-        enum status older = read_one(old, stream, &old_exists, &later);
-        if (older != STATUS_OK && !exists && !old_exists) {
-            *source = CHECKPOINT_NONE;
-            return STATUS_OK;
-        }
-        if (older != STATUS_OK) {
-            struct error why = exists ? *error : later;
-            return fail(error, STATUS_INPUT, "%s; remove it and %s to begin anew", why.text, old);
-        }
+    FREED_BY(descriptor_close) int descriptor = open(file, O_RDONLY | O_CLOEXEC);
+    *exists = descriptor >= 0 || errno != ENOENT;
+    if (descriptor < 0) {
+        return *exists ? fail_file(file, error) : STATUS_OK;
     }
-    enum status status =
-        check_identity(stream, *source == CHECKPOINT_OLD ? old : file, identity, step, error);
+    enum status status = stream_read(stream, descriptor, file, error);
+    if (status == STATUS_INPUT) {
+        text_append(error->text, sizeof error->text, "; remove it to begin anew");
+    }
+    RETURN_IF_ERROR(status);
+    status = check_identity(stream, file, identity, step, error);
     if (status != STATUS_OK) {
         stream_free(stream);
     }

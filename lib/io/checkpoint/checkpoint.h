@@ -1,8 +1,8 @@
 /* Checkpoints: the state of a run (see base/state.h) as a stream in a file, from which the run can continue.
  *
- * The file is replaced as a whole, and the previous one is kept as FILE.old: whenever the program or the
- * machine stops, one of them is complete. It is a binary stream: section `checkpoint` identifies the run,
- * sections `state.*` hold its values; others are the caller's. */
+ * The file is replaced as a whole: whenever the program or the machine stops, it is complete. It is a binary
+ * stream: section `checkpoint` identifies the run, sections `state.*` hold its values; others are the
+ * caller's. */
 #pragma once
 
 #include "base/state.h"
@@ -29,21 +29,16 @@ MUST_CHECK enum status checkpoint_fill(struct stream *stream, const struct check
                                        int64_t step, state_function *function, void *owner,
                                        struct error *error);
 
-/* Write a stream to FILE.new, sync it, and rename it to FILE; with `keep_old` the previous FILE becomes
- * FILE.old. On failure STATUS_SYSTEM; FILE or FILE.old is then still valid. */
-MUST_CHECK enum status checkpoint_write(const char *file, bool keep_old, const struct stream *stream,
-                                        struct error *error);
+/* Write a stream to FILE.new, sync it, and rename it to FILE. On failure STATUS_SYSTEM; FILE is then what it
+ * was. */
+MUST_CHECK enum status checkpoint_write(const char *file, const struct stream *stream, struct error *error);
 
-/* Remove FILE, FILE.old, FILE.new and FILE.frames, as far as they exist. */
+/* Remove FILE, FILE.new and FILE.frames, as far as they exist. */
 MUST_CHECK enum status checkpoint_remove(const char *file, struct error *error);
 
-/* Where a checkpoint was found. */
-enum checkpoint_source { CHECKPOINT_NONE, CHECKPOINT_NEWEST, CHECKPOINT_OLD };
-
-/* Read FILE or, if it is missing or damaged, FILE.old. If neither exists: CHECKPOINT_NONE and an empty
- * stream. STATUS_INPUT if both are damaged, or the checkpoint is of another run. */
+/* Read FILE, if it exists. STATUS_INPUT if it is damaged, or of another run. */
 MUST_CHECK enum status checkpoint_read(const char *file, const struct checkpoint_identity *identity,
-                                       struct stream *stream, enum checkpoint_source *source, int64_t *step,
+                                       struct stream *stream, bool *exists, int64_t *step,
                                        struct error *error);
 
 /* The state in a stream, from which a run is restored; the stream must outlive it. A visit fails with

@@ -25,7 +25,7 @@ struct run_checkpoint {
     const char *file; /* NULL: none */
     double interval;  /* s */
     double last;      /* time when the last one was written, or the run began, s */
-    bool is_ours;     /* FILE is complete and of this run, so it is kept as FILE.old */
+    bool is_there;    /* this process has written one */
     struct checkpoint_identity identity;
     struct stream restored; /* the checkpoint that was read; owns the frames */
     struct state state;     /* the state in it */

@@ -79,22 +79,18 @@ static void compare_processes(const struct run *run)
 static void resume(struct run *run)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    enum checkpoint_source source;
     int64_t step = 0;
     TOOL_TRY(run->tool, checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored,
-                                        &source, &step, &error));
-    if (!agree(step) || !agree((int64_t)source)) {
+                                        &checkpoint->is_restored, &step, &error));
+    if (!agree(step) || !agree(checkpoint->is_restored)) {
         tool_fail(run->tool, STATUS_INPUT, "%s: not the same file for all processes: put it where all see it",
                   checkpoint->file);
     }
-    if (source == CHECKPOINT_NONE) {
+    if (!checkpoint->is_restored) {
         return;
     }
-    tool_note(run->tool, "going on from step %lld, kept in %s%s", (long long)step, checkpoint->file,
-              source == CHECKPOINT_OLD ? ".old" : "");
+    tool_note(run->tool, "going on from step %lld, kept in %s", (long long)step, checkpoint->file);
     checkpoint->state = checkpoint_state(&checkpoint->restored);
-    checkpoint->is_restored = true;
-    checkpoint->is_ours = source == CHECKPOINT_NEWEST;
     take_tables(run);
     TOOL_TRY(run->tool, run_frames_state(run, &checkpoint->state, &error));
 }
@@ -168,8 +164,8 @@ static enum status write_now(struct run *run, const struct progress *progress, s
     struct whole_state whole = {run, progress};
     TRY(run_frames_sync(run, error));
     TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
-    TRY(checkpoint_write(checkpoint->file, checkpoint->is_ours, &stream, error));
-    checkpoint->is_ours = true;
+    TRY(checkpoint_write(checkpoint->file, &stream, error));
+    checkpoint->is_there = true;
 done:
     stream_free(&stream);
     checkpoint->last = clock_seconds();
@@ -180,7 +176,7 @@ done:
 static enum status keep(struct run *run, const struct progress *progress, bool interrupted)
 {
     struct run_checkpoint *checkpoint = &run->checkpoint;
-    bool is_first = !checkpoint->is_ours;
+    bool is_first = !checkpoint->is_there && !checkpoint->is_restored;
     if (!process_speaks() ||
         (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && !is_first)) {
         return STATUS_OK;
@@ -190,8 +186,7 @@ static enum status keep(struct run *run, const struct progress *progress, bool i
         run_clear_progress(&run->display);
         if (is_first) { /* fail now rather than when the checkpoint is needed */
             struct error unused;
-            enum status ignored =
-                checkpoint->is_restored ? STATUS_OK : checkpoint_remove(checkpoint->file, &unused);
+            enum status ignored = checkpoint_remove(checkpoint->file, &unused);
             (void)ignored;
             return checkpoint->status;
         }
