@@ -107,7 +107,6 @@ volumes() {
     refused 2 "unit of the mesh is missing: give -u m, cm, mm or um" nodes square.msh
     refused 2 "-u: 'inch' is none of m, cm, mm, um, nor a number of metres" nodes -u inch square.msh
     refused 2 "-u: '-1' is none of" nodes -u -1 square.msh
-    refused 2 "--midside: 'keep' is none of drop, use" nodes -u mm --midside keep square.msh
     refused 2 "unexpected operand" nodes -u mm square.msh square.msh
     ([[ "$BUILD" == *san* ]] || ulimit -v 4000000 # a sanitizer reserves more than any limit
     refused 2 "standard input: not a mesh of gmsh" nodes -u mm < /dev/zero)
@@ -183,30 +182,20 @@ volumes() {
     grep -qx "$(printf 'group_7\t3\t7\t1')" list
 }
 
-@test "second-order cells are cut or split" {
+@test "second-order cells lose their midside nodes" {
     cube tet
     nodes -u m -t cube.msh > plain.mts
     for order in "" "-setnumber Mesh.SecondOrderIncomplete 1"; do
         cube tet -order 2 $order
         nodes -u m -t cube.msh 2> said > cut.mts
-        grep -q "second-order cells: [0-9]* midside nodes left out (--midside use keeps them)" said
+        grep -q "second-order cells: [0-9]* midside nodes left out" said
         for section in nodes.x cells facets sets.idx; do
             cmp <(rows $section plain.mts) <(rows $section cut.mts)
         done
     done
-    nodes -u m -t --midside use cube.msh 2> said > split.mts
-    grep -q "second-order cells: split at [0-9]* midside nodes" said
-    mts check split.mts
-    [ "$(volumes split.mts)" = "1 1" ]
-    [ "$(rows cells split.mts | wc -l)" -eq $((8 * $(rows cells plain.mts | wc -l))) ]
-    [ "$(rows facets split.mts | wc -l)" -eq $((4 * $(rows facets plain.mts | wc -l))) ]
     cube hex -order 2
-    nodes -u m -t --midside use cube.msh 2> said > split.mts
-    mts check split.mts
-    [ "$(volumes split.mts)" = "1 1" ]
-    [ "$(rows nodes.x split.mts | wc -l)" -eq 343 ]
+    nodes -u m -t cube.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
     cube hex -order 2 -setnumber Mesh.SecondOrderIncomplete 1
-    refused 2 "a hexahedron of 20 nodes, cannot be split at its midside nodes" nodes -u m --midside use cube.msh
     nodes -u m -t cube.msh 2> said | volumes /dev/stdin | grep -qx '1 1'
     cube tet -order 3
     refused 2 "mesh with order 1" nodes -u m cube.msh

@@ -1,8 +1,7 @@
 # The usage text of a tool (TOOL -h) to bash completion for it: awk -f completion.awk
 #
 # Completed are the options of the block "Options:", the commands of usage lines "TOOL COMMAND ...", and the values of
-# options that are a choice: "[--midside drop|use]" in the usage line, or "a, b or c" where the option is explained. All else is
-# left to bash: names of files.
+# options that are a choice: "a, b or c" where the option is explained. All else is left to bash: names of files.
 
 # The words of a choice in an explanation, with blanks between; "" when there is none.
 function choice(text,    words) {
@@ -13,10 +12,10 @@ function choice(text,    words) {
     return words
 }
 
-# The option that was read last takes a value: its choice, from the usage line or its explanation.
+# The option that was read last takes a value: its choice, from its explanation.
 function end_option(    words) {
     if (pattern != "" && takes_value) {
-        words = long_or_short in given ? given[long_or_short] : choice(explanation)
+        words = choice(explanation)
         if (words != "") cases = cases "        " pattern ") COMPREPLY=($(compgen -W '" words "' -- \"$word\")) && return ;;\n"
     }
     pattern = ""
@@ -40,7 +39,6 @@ function begin_option(line,    item, rest, parts, count, i) {
             takes_value = 1
             continue
         }
-        if (pattern == "") long_or_short = parts[i]
         pattern = pattern (pattern == "" ? "" : " | ") parts[i]
         options = options " " parts[i]
     }
@@ -54,12 +52,6 @@ usage {
     sub(/^usage:/, "", line)
     split(line, word, " ")
     if (word[1] == tool && word[2] ~ /^[a-z]+$/) commands = commands " " word[2]
-    while (match(line, /-[-a-zA-Z]+ [a-z0-9]+(\|[a-z0-9]+)+/)) {
-        split(substr(line, RSTART, RLENGTH), word, " ")
-        line = substr(line, RSTART + RLENGTH)
-        gsub(/\|/, " ", word[2])
-        given[word[1]] = word[2]
-    }
 }
 in_options && /^ +-/ && match($0, /^ */) && RLENGTH <= 6 { begin_option($0); next }
 in_options { sub(/^ +/, ""); explanation = explanation " " $0 }

@@ -1,7 +1,7 @@
 static const char usage[] =
     "nodes - mesh to node cloud, background cells, facets and node sets\n"
     "\n"
-    "usage: nodes -u UNIT [-r REGION,...] [--midside drop|use] [-v] [-t] [-o FILE] [MESH]\n"
+    "usage: nodes -u UNIT [-r REGION,...] [-v] [-t] [-o FILE] [MESH]\n"
     "       nodes -l [--regions-of ARRAY] [MESH]\n"
     "\n"
     "Reads a mesh from MESH or standard input: of gmsh (MSH 2.2 or 4.1, ASCII or binary, not partitioned),\n"
@@ -43,7 +43,6 @@ static const char usage[] =
     "      --regions-of ARRAY  the array of a VTK file's cells that tells their regions\n"
     "  -l, --list              instead: list the groups of the mesh, with dimension, tag and number of\n"
     "                          elements, and stop\n"
-    "      --midside drop|use  midside nodes of second-order cells: drop them (default), or split there\n"
     "  -v, --verbose           report box, volume, connected bodies, and the cells of poorest quality\n"
     "                          (radius of the inscribed to the circumscribed sphere, 1 if regular)\n"
     "  -t, --text              write text instead of binary\n"
@@ -127,8 +126,7 @@ static void check_joined(const struct tool *tool, const struct mesh *mesh, bool 
 /* Parse the options; exits if they exclude each other. */
 static struct mesh_options parse(const struct tool *tool)
 {
-    static const char *const choices[] = {"drop", "use"};
-    static const char *const of_stream[] = {"unit", "regions", "midside", "verbose", "text", "output", NULL};
+    static const char *const of_stream[] = {"unit", "regions", "verbose", "text", "output", NULL};
     if (tool_given(tool, "list") && tool_first_given(tool, of_stream) != NULL) {
         tool_fail(tool, STATUS_INPUT, "-l goes with no other option");
     }
@@ -137,8 +135,7 @@ static struct mesh_options parse(const struct tool *tool)
                   "the unit of the mesh is missing: give -u m, cm, mm or um, or a number");
     }
     return (struct mesh_options){.unit = tool_length_unit(tool, "unit", 1.0),
-                                 .regions = tool_value(tool, "regions"),
-                                 .midside = tool_choice(tool, "midside", choices, 2, 0) == 1};
+                                 .regions = tool_value(tool, "regions")};
 }
 
 int main(int argc, char *argv[])

@@ -170,7 +170,7 @@ static void add_node(struct feb *f, const char *text, const char *end)
 static void add_element(struct feb *f, const char *text, const char *end)
 {
     struct msh_reader *r = f->r;
-    int64_t length, node[MSH_MOST_NODES], centre[6];
+    int64_t length, node[MSH_MOST_NODES];
     int count = msh_type(f->type).node_count, found = 0;
     const char *word;
     while (r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
@@ -184,12 +184,6 @@ static void add_element(struct feb *f, const char *text, const char *end)
     if (r->status != STATUS_OK) {
         return;
     }
-    if (count == 27) { /* VTK's order of the faces */
-        memcpy(centre, (int64_t[6]){node[23], node[21], node[20], node[22], node[24], node[25]},
-               sizeof centre);
-        memcpy(&node[20], centre, sizeof centre);
-    }
-    input_reorder(f->type, node);
     msh_add_element(f->r, f->id, f->type, node, input_group(f->r, msh_type(f->type).dim, f->name));
 }
 

@@ -154,28 +154,16 @@ static const int8_t face_corners[8][6][4] = {
     [7] = {{0, 1, 2, 3}, {0, 4, 1, -1}, {1, 4, 2, -1}, {2, 4, 3, -1}, {3, 4, 0, -1}},
 };
 
-/* Nodes in the middle of the edges of these faces of a tetrahedron. */
-static const int8_t tetrahedron_edges[4][3] = {{4, 5, 6}, {7, 9, 4}, {9, 8, 5}, {8, 7, 6}};
-
-/* Add face `f` of an element, with its midside nodes where elements are split at these. */
-static void add_face(struct inp *p, struct inp_set *set, int element_type, const int64_t node[], int f)
+/* Add face `f` of an element. */
+static void add_face(struct inp *p, struct inp_set *set, int linear, const int64_t node[], int f)
 {
-    int64_t face[6];
-    struct msh_type type = msh_type(element_type);
-    const int8_t *corner = face_corners[type.linear][f];
-    int count = 0, dim = type.dim - 1;
-    while (count < 4 && corner[count] >= 0) {
+    int64_t face[4];
+    const int8_t *corner = face_corners[linear][f];
+    int count = 0;
+    for (; count < 4 && corner[count] >= 0; count++) {
         face[count] = node[corner[count]];
-        count++;
     }
-    if (dim == 1 && type.node_count > count * 2) {
-        face[count++] = node[msh_type(type.linear).node_count + f];
-    } else if (type.node_count == 10) {
-        for (int k = 0; k < 3; k++) {
-            face[count++] = node[tetrahedron_edges[f][k]];
-        }
-    }
-    add_to_group(p, set, input_type(dim, count), face);
+    add_to_group(p, set, input_type(msh_type(linear).dim - 1, count), face);
 }
 
 /* S1, P1: faces, of shells their two sides, then their edges; E1: edges; SPOS, SNEG: sides. */
@@ -199,7 +187,7 @@ static void add_surface(struct inp *p, const struct inp_item *item, int64_t plac
                face_corners[linear][face - 1][0] == face_corners[linear][face - 1][1]) {
         msh_fail(r, "a %s has no face '%s'", msh_type(type).name, label);
     } else {
-        add_face(p, item->set, type, node, face - 1);
+        add_face(p, item->set, linear, node, face - 1);
     }
 }
 

@@ -214,7 +214,6 @@ static void read_element(struct inp *p, int type, bool is_shell)
     if (inp_next_field(p, &word, &length)) {
         msh_fail(r, "element %lld has more than %d nodes", (long long)tag, count);
     }
-    input_reorder(type, node);
     if (type == LINE3) { /* end, middle, end */
         int64_t end = node[2];
         node[2] = node[1];

@@ -49,20 +49,6 @@ int input_type(int dim, int node_count)
     return 0;
 }
 
-void input_reorder(int type, int64_t node[])
-{
-    static const int8_t tetrahedron10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8},
-                        hexahedron27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 16, 9,  17, 10,
-                                          18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26};
-    int64_t from[MSH_MOST_NODES];
-    const int8_t *order = type == 11 ? tetrahedron10 : type == 12 ? hexahedron27 : NULL;
-    for (int pass = 0; pass < 2 && order != NULL; pass++) {
-        for (int k = 0; k < msh_type(type).node_count; k++) {
-            *(pass == 0 ? &from[k] : &node[k]) = pass == 0 ? node[k] : from[order[k]];
-        }
-    }
-}
-
 const char *input_word(const char **at, const char *end, int64_t *length)
 {
     static const char between[] = " ,\t\r\n";

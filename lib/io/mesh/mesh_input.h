@@ -28,10 +28,6 @@ double input_real(struct msh_reader *r, const char *what, const char *word, int6
  * there are none. Numbers of nodes are those of one type, except that 8 in the plane are of second order. */
 int input_type(int dim, int node_count);
 
-/* Bring the nodes of an element of VTK, as those of Abaqus and but for 27 nodes of FEBio, into gmsh's order;
- * the midside nodes of elements that are not split there stay as they are. */
-void input_reorder(int type, int64_t node[]);
-
 /* The next word of a text, between blanks, commas and line ends, at *at, which moves behind it; NULL: the
  * end. */
 const char *input_word(const char **at, const char *end, int64_t *length);

@@ -108,21 +108,18 @@ struct mesh {
 struct mesh_options {
     double unit;         /* of the file's lengths, m */
     const char *regions; /* comma-separated list of regions to keep, or NULL: all */
-    bool midside; /* keep the midside nodes of second-order elements, which are split there; else these nodes
-                     are dropped */
 };
 
 /* Make the mesh of `msh`. The dimension is 3 if there are tetrahedra, hexahedra, prisms or pyramids, else 2
  * if there are triangles or quadrangles in a plane z = const. Quadrangles and the cells of more than four
  * nodes are split into simplices so that neighbours conform (every quadrangular face along the diagonal
  * through its lowest node: Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,
- * 1999). Nodes keep their order; those without a kept cell are dropped. Facets of one entity all over the
- * boundary get no name. A cell in two groups belongs to the one with the lowest tag; a repeated cell counts
- * once; cells in no group are the region 'body' if there is
- * no other region, else 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or
- * overlapping cells, coincident nodes of one body, an unknown region, two node sets with one name, and
- * elements that cannot be split at their midside nodes (those without a node in the middle of each
- * quadrangular face, prisms, and pyramids). On failure *mesh is empty. */
+ * 1999). Midside nodes are dropped. Nodes keep their order; those without a kept cell are dropped. Facets of
+ * one entity all over the boundary get no name. A cell in two groups belongs to the one with the lowest tag;
+ * a repeated cell counts once; cells in no group are the region 'body' if there is no other region, else
+ * 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or overlapping cells,
+ * coincident nodes of one body, an unknown region, and two node sets with one name. On failure *mesh is
+ * empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
                                   const struct mesh_options *options, struct error *error);
 void mesh_free(struct mesh *mesh);

@@ -32,17 +32,16 @@ MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *forma
 /* The index of a name, of this length, or -1. */
 int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length);
 
-/* The dimension of an element, and the number of its nodes that are used: the corners or all. */
+/* The dimension of an element, and the number of its corners: no other nodes are used. */
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element);
-int mesh_used_nodes(const struct mesh_draft *draft, int64_t element);
+int mesh_corners(const struct mesh_draft *draft, int64_t element);
 
 /* The simplices of an element, as nodes of the mesh or -1; returns their number. A quadrangle in the plane
  * that is not convex is split along its inner diagonal. */
-#define MESH_MOST_SIMPLICES 48
-int mesh_simplices(const struct mesh_draft *draft, int64_t element,
-                   int32_t simplices[MESH_MOST_SIMPLICES][4]);
+#define MSH_MOST_SIMPLICES 6
+int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4]);
 
-/* Set draft->role; STATUS_INPUT for elements that must be split but cannot be. */
+/* Set draft->role, and note midside nodes. */
 MUST_CHECK enum status mesh_find_roles(struct mesh_draft *draft);
 
 /* Set the dimension, that of the highest elements: 3, or 2 if they lie in a plane z = const. Name the
@@ -64,19 +63,6 @@ MUST_CHECK enum status mesh_build_facets(struct mesh_draft *draft);
 
 /* ---- msh_split.c: splitting elements into simplices, so that elements with a common face split it in the
  * same way ---- */
-
-/* The elements of first order into which an element is split: places in its list of nodes. */
-struct msh_pieces {
-    int type;  /* of each piece */
-    int count; /* 0: an element of second order that cannot be split at its midside nodes */
-    int8_t node[8][8];
-};
-
-/* With `midside`, the pieces of an element of second order that is split at its midside nodes; else the
- * element of first order with its corners. */
-const struct msh_pieces *msh_pieces(int type, bool midside);
-
-#define MSH_MOST_SIMPLICES 6
 
 /* Split an element of first order, with these nodes in gmsh's order, into simplices of its dimension,
  * simplices[i][0 .. dim], of any orientation. Returns their number. A quadrangle, and each quadrangular face,

@@ -9,23 +9,16 @@
 enum status mesh_find_roles(struct mesh_draft *draft)
 {
     const struct msh *msh = draft->msh;
-    bool split = draft->options->midside;
     int64_t count = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         const struct msh_element *element = &msh->elements[e];
         struct msh_type type = msh_type(element->type);
-        int corners = msh_type(type.linear).node_count;
-        if (msh_pieces(element->type, split)->count == 0) {
-            return fail(draft->error, STATUS_INPUT,
-                        "element %lld, a %s, cannot be split at its midside nodes: leave --midside away",
-                        (long long)element->tag, type.name);
-        }
         for (int k = 0; k < type.node_count; k++) {
             int8_t *role = &draft->role[msh->node_idx[element->first + k]];
-            if (k < corners && type.dim > 0) {
+            if (k < mesh_corners(draft, e) && type.dim > 0) {
                 *role = MESH_CORNER;
-            } else if (k >= corners && *role == MESH_UNUSED) {
+            } else if (k >= mesh_corners(draft, e) && *role == MESH_UNUSED) {
                 *role = MESH_MIDSIDE;
             }
         }
@@ -33,14 +26,9 @@ enum status mesh_find_roles(struct mesh_draft *draft)
     for (int64_t n = 0; n < msh->node_count; n++) {
         count += draft->role[n] == MESH_MIDSIDE;
     }
-    if (count > 0) {
-        RETURN_IF_ERROR(mesh_add_note(
-            draft,
-            split ? "second-order cells: split at %lld midside nodes"
-                  : "second-order cells: %lld midside nodes left out (--midside use keeps them)",
-            (long long)count));
-    }
-    return STATUS_OK;
+    return count > 0
+               ? mesh_add_note(draft, "second-order cells: %lld midside nodes left out", (long long)count)
+               : STATUS_OK;
 }
 
 enum status mesh_build_nodes(struct mesh_draft *draft)
@@ -54,14 +42,14 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
         draft->node_of[n] = LOST;
     }
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_used_nodes(draft, e) : 0;
+        int used = mesh_element_dim(draft, e) == mesh->dim ? mesh_corners(draft, e) : 0;
         for (int k = 0; k < used; k++) {
             int32_t *node = &draft->node_of[msh->node_idx[msh->elements[e].first + k]];
             *node = draft->region_of[e] >= 0 || *node == KEPT ? KEPT : IN_CELL;
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        lost += draft->node_of[n] == LOST && (draft->options->midside || draft->role[n] != MESH_MIDSIDE);
+        lost += draft->node_of[n] == LOST && draft->role[n] != MESH_MIDSIDE;
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
@@ -101,26 +89,18 @@ static double relative_volume(const struct mesh *mesh, const int32_t cell[])
     return dim == 2 ? determinant2(edge[0], edge[1]) : determinant3(edge[0], edge[1], edge[2]);
 }
 
-int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MESH_MOST_SIMPLICES][4])
+int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4])
 {
-    const struct msh *msh = draft->msh;
-    const int32_t *whole = &msh->node_idx[msh->elements[element].first];
-    const struct msh_pieces *pieces = msh_pieces(msh->elements[element].type, draft->options->midside);
-    bool in_plane = draft->mesh->dim == 2;
-    int corners = msh_type(pieces->type).node_count;
-    int count = 0;
-    for (int p = 0; p < pieces->count; p++) {
-        int32_t node[8];
-        for (int k = 0; k < corners; k++) {
-            node[k] = draft->node_of[whole[pieces->node[p][k]]];
-        }
-        int32_t(*to)[4] = simplices + count;
-        int added = msh_split(pieces->type, node, false, to);
-        if (in_plane && added == 2 &&
-            relative_volume(draft->mesh, to[0]) * relative_volume(draft->mesh, to[1]) <= 0) {
-            added = msh_split(pieces->type, node, true, to); /* not convex: use the other diagonal */
-        }
-        count += added;
+    const struct msh_element *whole = &draft->msh->elements[element];
+    int type = msh_type(whole->type).linear;
+    int32_t node[8];
+    for (int k = 0; k < mesh_corners(draft, element); k++) {
+        node[k] = draft->node_of[draft->msh->node_idx[whole->first + k]];
+    }
+    int count = msh_split(type, node, false, simplices);
+    if (draft->mesh->dim == 2 && count == 2 &&
+        relative_volume(draft->mesh, simplices[0]) * relative_volume(draft->mesh, simplices[1]) <= 0) {
+        count = msh_split(type, node, true, simplices); /* not convex: use the other diagonal */
     }
     return count;
 }
@@ -152,7 +132,7 @@ enum status mesh_build_cells(struct mesh_draft *draft)
 {
     const struct msh *msh = draft->msh;
     struct mesh *mesh = draft->mesh;
-    int32_t simplices[MESH_MOST_SIMPLICES][4];
+    int32_t simplices[MSH_MOST_SIMPLICES][4];
     int64_t count = 0;
     for (int64_t e = 0; e < msh->element_count; e++) {
         count += draft->region_of[e] >= 0 ? mesh_simplices(draft, e, simplices) : 0;

@@ -142,7 +142,7 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     struct mesh *mesh = g->draft->mesh;
     struct tally tally = {0, 0, 0};
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
-        int32_t pieces[MESH_MOST_SIMPLICES][4];
+        int32_t pieces[MSH_MOST_SIMPLICES][4];
         int count = mesh_simplices(g->draft, g->group_idx[i], pieces);
         for (int p = 0; p < count; p++) {
             RETURN_IF_ERROR(add_face(g, group, pieces[p], &tally));
@@ -164,7 +164,7 @@ static enum status gather_nodes(struct gathering *g, int32_t group)
     int64_t lost = 0, midside = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
         int64_t e = g->group_idx[i];
-        int used = mesh_used_nodes(g->draft, e);
+        int used = mesh_corners(g->draft, e);
         for (int k = 0; k < used; k++) {
             int32_t of_file = msh->node_idx[msh->elements[e].first + k];
             int32_t node = g->draft->node_of[of_file];
@@ -228,14 +228,14 @@ static enum status check_set_names(const struct mesh_draft *draft)
     return STATUS_OK;
 }
 
-/* Most facets that there can be: four of a triangle of second order, eight of a quadrangle. */
+/* Most facets that there can be: two of a quadrangle. */
 static int64_t most_facets(const struct mesh_draft *draft)
 {
     int64_t most = 0;
     for (int32_t i = 0; i < draft->msh->group_count; i++) {
         most += draft->msh->groups[i].dim == draft->mesh->dim - 1 ? draft->msh->groups[i].element_count : 0;
     }
-    return most * (draft->options->midside ? 8 : 2);
+    return most * 2;
 }
 
 enum status mesh_build_facets(struct mesh_draft *draft)

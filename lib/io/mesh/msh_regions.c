@@ -12,10 +12,9 @@ int mesh_element_dim(const struct mesh_draft *draft, int64_t element)
     return msh_type(draft->msh->elements[element].type).dim;
 }
 
-int mesh_used_nodes(const struct mesh_draft *draft, int64_t element)
+int mesh_corners(const struct mesh_draft *draft, int64_t element)
 {
-    struct msh_type type = msh_type(draft->msh->elements[element].type);
-    return draft->options->midside ? type.node_count : msh_type(type.linear).node_count;
+    return msh_type(msh_type(draft->msh->elements[element].type).linear).node_count;
 }
 
 static enum status check_plane(const struct mesh_draft *draft)
@@ -24,7 +23,7 @@ static enum status check_plane(const struct mesh_draft *draft)
     double least[3] = {INFINITY, INFINITY, INFINITY};
     double most[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int64_t e = 0; e < msh->element_count; e++) {
-        int count = mesh_element_dim(draft, e) == 2 ? mesh_used_nodes(draft, e) : 0;
+        int count = mesh_element_dim(draft, e) == 2 ? mesh_corners(draft, e) : 0;
         for (int k = 0; k < count; k++) {
             for (int i = 0; i < 3; i++) {
                 double x = msh->nodes[msh->node_idx[msh->elements[e].first + k]].x[i];
@@ -80,13 +79,13 @@ static int compare_cells(const void *left, const void *right)
     return nodes != 0 ? nodes : (a->element > b->element) - (a->element < b->element);
 }
 
-static void key_cell(const struct msh *msh, int64_t element, struct keyed_cell *key)
+static void key_cell(const struct mesh_draft *draft, int64_t element, struct keyed_cell *key)
 {
+    const struct msh *msh = draft->msh;
     const int32_t *node = &msh->node_idx[msh->elements[element].first];
-    int corners = msh_type(msh_type(msh->elements[element].type).linear).node_count;
     key->element = element;
     memset(key->node, 0xff, sizeof key->node);
-    sort_nodes(corners, node, key->node);
+    sort_nodes(mesh_corners(draft, element), node, key->node);
 }
 
 /* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. Repeated elements
@@ -102,7 +101,7 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
     for (int64_t e = 0; e < msh->element_count; e++) {
         is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
         if (is_cell[e]) {
-            key_cell(msh, e, &keys[count++]);
+            key_cell(draft, e, &keys[count++]);
             twice += msh->member_ptr[e + 1] - msh->member_ptr[e] > 1;
         }
     }

@@ -199,7 +199,6 @@ static void add_cell(struct vtk_input *v, int64_t c, int64_t number, int64_t cou
     if (number == VOXEL) {
         swap_nodes(&node[6], &node[7]);
     }
-    input_reorder(type, node);
     msh_add_element(v->r, c, type, node, 0);
 }
 
