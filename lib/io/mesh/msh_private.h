@@ -167,8 +167,3 @@ int64_t msh_index_find(const struct msh_index *index, int64_t tag);
 
 /* Find the nodes of all elements, and give tags to those without: before the groups are set. */
 void msh_finish_lists(struct msh_reader *reader);
-
-/* ---- msh_foreign.c ---- */
-
-/* A hint how to convert a file of another program, from its first bytes: ": a MEDIT mesh: ...", or "". */
-const char *msh_foreign_hint(const char *bytes, size_t size);

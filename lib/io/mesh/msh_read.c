@@ -237,9 +237,10 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
         return fail_version(1, error);
     }
     if (format == NULL) {
-        return fail(error, STATUS_INPUT, "%s%s",
-                    size == 0 ? "empty" : "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK",
-                    msh_foreign_hint(bytes, size));
+        return fail(error, STATUS_INPUT,
+                    size == 0 ? "empty"
+                              : "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h tells how to "
+                                "make one of other files");
     }
     format->read(&reader);
     msh_finish_lists(&reader);
