@@ -2,29 +2,8 @@
 
 #include "process.h"
 
-#include "base/box.h"
-
 #include <math.h>
 #include <stdlib.h>
-
-/* Refuse moments about a point farther away: they are differences of huge numbers, and a unit or a sign is
- * wrong. */
-static enum status check_moments(const struct model *model, struct error *error)
-{
-    const struct scene_output *output = &model->scene->output;
-    const struct cells *cells = &model->assembly.cells;
-    struct box box = box_of(cells->dim, cells->node_count, cells->x);
-    for (int a = 0; a < cells->dim && output->moments; a++) {
-        double away = fmax(box.low[a] - output->about[a], output->about[a] - box.high[a]);
-        if (!(away <= MODEL_MOST_SIZES * model->assembly.extent)) {
-            return fail(
-                error, STATUS_INPUT,
-                "%s: [output]: moments_about: %.3g m from the body of %.3g m: give a point near it, in m",
-                model->scene->path, away, model->assembly.extent);
-        }
-    }
-    return STATUS_OK;
-}
 
 static void drop_copied(void *stream)
 {
@@ -50,7 +29,6 @@ enum status model_build(struct stream *stream, const struct scene *scene, struct
     if (renewed) {
         RETURN_IF_ERROR(stage_tables(stream, input, error));
     }
-    RETURN_IF_ERROR(check_moments(model, error));
     RETURN_IF_ERROR(model_conditions(model, error));
     input->ranks = process_ranks();
     input->copied = drop_copied;

@@ -117,8 +117,7 @@ void run_check_rigid_modes(struct run *run);
 /* Quasi-static: relax to the full load. Exits with a verdict if it does not converge. */
 void run_quasi_static(struct run *run);
 
-/* Exits where a rigid surface is too far from the body to come into contact; notes displacements far larger
- * than the body. */
+/* Notes displacements, and motions of rigid surfaces, far larger than the body; exits for impossible ones. */
 void run_contacts_begin(const struct run *run);
 
 /* For run->u, with the largest displacement `motion`, m: exits with a verdict, in a quasi-static scene, if

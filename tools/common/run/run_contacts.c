@@ -2,7 +2,6 @@
 #include "run/run.h"
 
 #include "approx/field/field_compare.h"
-#include "base/box.h"
 #include "solid/equilibrium/statics.h"
 #include "solid/system/energy.h"
 
@@ -26,39 +25,18 @@ static double prescribed_motion(const struct solid_system *system, const struct 
     return most;
 }
 
-/* The largest motion of the surface at `count` places, m. */
-static double own_motion(const struct solid_system *system, const struct contact *contact,
-                         const double *place, int64_t count)
+/* The largest motion of the surface at the points of its contact, m: not that at the rim of a wide surface
+ * that turns. */
+static double own_motion(const struct solid_system *system, const struct contact *contact)
 {
     const struct rigid_motion *motion = &contact->motion;
     double length = 0.0;
-    if (!motion->moves) {
-        return 0.0;
+    for (int64_t p = 0; p < contact->count && motion->moves; p++) {
+        length = fmax(length, rigid_motion_path(motion, contact->dim, contact->rest + p * contact->dim));
     }
-    for (int64_t v = 0; v < count; v++) {
-        length = fmax(length, rigid_motion_path(motion, contact->dim, place + v * contact->dim));
-    }
-    return length * fmax(curve_largest(&system->curves[motion->translation_curve]),
-                         curve_largest(&system->curves[motion->rotation_curve]));
-}
-
-/* A lower bound of the distance of the surface from the points of its contact at rest, m: from the boxes
- * around both, and from the points, until one is within `enough`. */
-static double distance_at_rest(const struct contact *contact, double enough)
-{
-    const struct rigid_branch *surface = contact->surface.branch;
-    struct box box = box_of(contact->dim, contact->count, contact->rest);
-    double between2 = 0.0, nearest = INFINITY;
-    for (int a = 0; a < contact->dim; a++) {
-        double gap = fmax(0.0, fmax(surface->low[a] - box.high[a], box.low[a] - surface->high[a]));
-        between2 += gap * gap;
-    }
-    for (int64_t p = 0; p < contact->count && nearest > enough; p++) {
-        double distance =
-            rigid_closest(&contact->surface, contact->rest + p * contact->dim, INFINITY).distance;
-        nearest = fmin(nearest, distance);
-    }
-    return fmax(sqrt(between2), nearest);
+    return motion->moves ? length * fmax(curve_largest(&system->curves[motion->translation_curve]),
+                                         curve_largest(&system->curves[motion->rotation_curve]))
+                         : 0.0;
 }
 
 /* A motion of more than STATICS_MOST_SIZES sizes of the body is noted: the scene may have m in place of mm.
@@ -76,42 +54,17 @@ static void check_motion(const struct run *run, const char *where, const char *w
     }
 }
 
-/* The motion of the surface at the body, m: not that at the rim of a wide surface that turns, nor the way of
- * a surface that starts far away. */
-static double motion_at_body(const struct run *run, const struct contact *contact)
-{
-    double motion = own_motion(&run->model->system, contact, contact->rest, contact->count);
-    double extent = run->model->assembly.extent;
-    return motion > STATICS_MOST_SIZES * extent ? motion - distance_at_rest(contact, extent) : motion;
-}
-
 void run_contacts_begin(const struct run *run)
 {
     const struct solid_system *system = &run->model->system;
-    const struct assembly *input = &run->model->assembly;
-    /* In dynamics a body with loads or an initial velocity may move anywhere. */
-    bool anywhere = input->in_time && (input->load_count > 0 || assembly_has_gravity(input) ||
-                                       run->scene->initial.table != NULL);
-    double prescribed =
-        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties));
-    check_motion(run, run->scene->path, "displacement", prescribed);
+    check_motion(
+        run, run->scene->path, "displacement",
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties)));
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
-        const struct rigid_surface *surface = &contact->surface;
-        const char *where = input->contacts[contact->section].where;
-        if (surface->facet_count == 0) {
-            continue;
-        }
-        check_motion(run, where, "motion", motion_at_body(run, contact));
-        double motion = own_motion(system, contact, surface->vertex, surface->vertex_count);
-        double most = input->extent + motion + prescribed;
-        double distance = anywhere ? 0.0 : distance_at_rest(contact, most);
-        if (distance > most) {
-            tool_fail(
-                run->tool, STATUS_INPUT,
-                "%s: the rigid surface is %.3g m from the facets, farther than the body's size of %.3g m "
-                "and all motion of the scene, %.3g m: wrong unit or wrong place?",
-                where, distance, input->extent, motion + prescribed);
+        if (contact->surface.facet_count > 0) {
+            check_motion(run, run->model->assembly.contacts[contact->section].where, "motion",
+                         own_motion(system, contact));
         }
     }
 }
