@@ -107,7 +107,7 @@ END
         shared=$(nifti segments ball.nii.gz ball.seg.nrrd $layers 'Left lung' 'tumour, solid')
         voxels -h 6mm ball.seg.nrrd 2> said | mts text | bare | cmp expected -
         grep -q "names are changed to what scenes can hold, as 'Left lung' to Left_lung" said
-        [ $layers = 1 ] || grep -q "segments 'Left lung' and 'tumour, solid' share $shared voxels: 'tumour, solid', the later, is taken" said
+        [ $layers = 1 ] || grep -q "segments overlap in $shared voxels, first 'Left lung' and 'tumour, solid': the later is taken" said
     done
     voxels -h 6mm -l <(printf '1 Left_lung\n2 tumour__solid\n') ball.seg.nrrd 2> said | mts text | bare | cmp expected -
     nifti segments ball.nii.gz ball.seg.nrrd 1 lung lung

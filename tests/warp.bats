@@ -105,7 +105,7 @@ setup_file() {
     cmp <(nifti value scaled.nii 30 31 32) <(warp -o scaled.nii scaled.nrrd still.dat && nifti value scaled.nii 30 31 32)
     nifti segments "$BATS_FILE_TMPDIR/ball.nii.gz" ball.seg.nrrd 2 'Left lung' tumour > shared
     run -0 --separate-stderr warp -i nearest -o moved.seg.nrrd ball.seg.nrrd u.dat
-    [[ $stderr == *"share $(cat shared) voxels"* ]]
+    [[ $stderr == *"overlap in $(cat shared) voxels"* ]]
     [ "$(grep -aE '_(Name|LabelValue|Layer):' moved.seg.nrrd | cut -d= -f2 | xargs)" = "Left lung 1 0 tumour 2 0" ]
     refused 2 "-o x.png: images are written as .nii, .nii.gz, .nrrd, .nhdr, .mha or .mhd" warp -o x.png oblique.nii still.dat
     refused 2 "-o a%d.mhd: a header cannot name data of such a name" warp -o a%d.mhd oblique.nii still.dat
@@ -163,8 +163,6 @@ setup_file() {
     nifti volumes moved.nii.gz > after
     paste before after | awk '$1 > 0 && $1 != 9 { if ($3 != $1) exit 1; r = $4 / $2 / (1.15 * .9 * .98); if (r < .99 || r > 1.01) exit 1; n++ }
         END { exit n != 2 }'
-    # What is told is what nibabel counts.
-    awk 'NR == FNR { v[$1] = $2; next } /label [25]:/ { d = $4 - v[$3 + 0]; if (d * d > 1e-4) exit 1; n++ } END { exit n != 2 }' before said
 }
 
 @test "types: integers with scaling, colours, NIfTI-2, big-endian, micrometres" {

@@ -42,8 +42,7 @@ static const char usage[] =
     "      --field        write the displacement field\n"
     "      --inverse      the other way: at X the value of IMAGE, which shows the moved body, at X + u(X)\n"
     "      --frame K      take u.frame.K in place of u\n"
-    "  -v, --verbose      tell what was moved, how far, and how exact the inverse map is; with\n"
-    "                     -i nearest the volumes of labels before and after\n"
+    "  -v, --verbose      tell what was moved, how far, and how exact the inverse map is\n"
     "  -o, --output FILE  write to FILE, which appears only when whole\n"
     "\n"
     "Examples:\n"
@@ -349,9 +348,6 @@ int main(int argc, char *argv[])
     image_to_voxel(&image, job.source_voxel);
     warp_voxels(&job, &report);
     print_report(&tool, &request, &motion, grid, &report);
-    if (request.verbose && !request.field && request.method == IMAGE_NEAREST) {
-        report_label_volumes(&tool, &image, &result, cells.dim);
-    }
     image_from_body(&result, &axes);
     tool_write_image(&tool, &result);
     return tool_end(&tool);

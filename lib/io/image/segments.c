@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MOST_SEGMENTS = 1000, SHOWN_OVERLAPS = 4 };
+enum { MOST_SEGMENTS = 1000 };
 
 /* Find the segment with a number of the header, or add it: they stand in the order of their numbers. */
 static enum status find_segment(struct image *image, int number, struct image_segment **found,
@@ -84,24 +84,10 @@ static enum status check_layers(struct image *image, struct error *error)
 
 /* What is found while layers are merged. */
 struct merge {
-    size_t unnamed; /* values that are of no segment */
-    struct overlap {
-        size_t low, high, count;
-    } overlap[SHOWN_OVERLAPS];
-    size_t more; /* overlaps of other pairs */
+    size_t unnamed;  /* values that are of no segment */
+    size_t shared;   /* voxels of several segments, */
+    size_t first[2]; /* and those of the first one */
 };
-
-static void count_overlap(struct merge *merge, size_t low, size_t high)
-{
-    for (int o = 0; o < SHOWN_OVERLAPS; o++) {
-        struct overlap *overlap = &merge->overlap[o];
-        if (overlap->count == 0 || (overlap->low == low && overlap->high == high)) {
-            *overlap = (struct overlap){low, high, overlap->count + 1};
-            return;
-        }
-    }
-    merge->more++;
-}
 
 /* The segment of a voxel's values, the last one of several; segment_count: none. *guess: of the value before.
  */
@@ -123,8 +109,9 @@ static size_t find_label(const struct image *image, const double *values, size_t
             continue;
         }
         *guess = s;
-        if (found != none) {
-            count_overlap(merge, found < s ? found : s, found < s ? s : found);
+        if (found != none && merge->shared++ == 0) {
+            merge->first[0] = found;
+            merge->first[1] = s;
         }
         found = found == none || s > found ? s : found;
     }
@@ -140,16 +127,10 @@ static void note_merge(struct image *image, const struct merge *merge)
             image_note(image, text);
         }
     }
-    for (int o = 0; o < SHOWN_OVERLAPS && merge->overlap[o].count > 0; o++) {
-        const struct overlap *overlap = &merge->overlap[o];
-        const char *high = image->segment[overlap->high].name;
+    if (merge->shared > 0) {
         snprintf(text, sizeof text,
-                 "segments '%.40s' and '%.40s' share %zu voxels: '%.40s', the later, is taken",
-                 image->segment[overlap->low].name, high, overlap->count, high);
-        image_note(image, text);
-    }
-    if (merge->more > 0) {
-        snprintf(text, sizeof text, "others share %zu", merge->more);
+                 "segments overlap in %zu voxels, first '%.40s' and '%.40s': the later is taken",
+                 merge->shared, image->segment[merge->first[0]].name, image->segment[merge->first[1]].name);
         image_note(image, text);
     }
     if (merge->unnamed > 0) {

@@ -2,16 +2,12 @@
 
 #include "approx/cells/raster.h"
 #include "base/box.h"
-#include "base/lists.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double most_ratio = 100; /* body to image */
-
-enum { LABELS_MOST = 256 };
 
 /* The world axis to which voxel axes a and b are perpendicular; -1: none. */
 static int axis_across(const struct image *image, int a, int b)
@@ -163,16 +159,11 @@ void check_image_overlap(const struct tool *tool, const struct image *grid, cons
     }
 }
 
-/* The number of nodes more than half a voxel outside of an image, when axes of the world are turned. */
-static int64_t nodes_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
-                             const double *x, unsigned turned)
+void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
+                        const double *x)
 {
-    TOOL_SCRATCH(tool, double, y, cells->node_count * cells->dim);
-    for (int64_t i = 0; i < cells->node_count * cells->dim; i++) {
-        y[i] = turned >> i % cells->dim & 1 ? -x[i] : x[i];
-    }
-    SCRATCH double *place = nodes_in_voxels(tool, image, cells, y);
     int64_t outside = 0;
+    SCRATCH double *place = nodes_in_voxels(tool, image, cells, x);
     for (int64_t n = 0; n < cells->node_count; n++) {
         bool within = true;
         for (int i = 0; i < cells->dim; i++) {
@@ -181,66 +172,11 @@ static int64_t nodes_outside(const struct tool *tool, const struct image *image,
         }
         outside += within ? 0 : 1;
     }
-    return outside;
-}
-
-void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
-                        const double *x)
-{
-    int64_t outside = nodes_outside(tool, image, cells, x, 0), least = outside;
-    for (unsigned turned = 1; turned < 1U << cells->dim && outside > 0; turned++) {
-        int64_t count = nodes_outside(tool, image, cells, x, turned);
-        least = count < least ? count : least;
-    }
     if (outside > 0) {
-        tool_note(tool, "%lld of %lld nodes of the body lie more than half a voxel outside of the image: %s",
-                  (long long)outside, (long long)cells->node_count,
-                  2 * least < outside ? "is an axis turned?" : "it shows a part of the body");
-    }
-}
-
-/* A label, and its number of voxels before and after. */
-struct label {
-    double value;
-    int64_t voxels[2];
-};
-
-/* Count the voxels of each label of an image; false if its values are not labels. */
-static bool count_labels(const struct image *image, int which, struct label *labels, int *count)
-{
-    int l = 0; /* usually that of the previous voxel */
-    for (size_t v = 0; v < image_voxels(image); v++) {
-        double value = image_whole(image, image->values[v]);
-        if (l >= *count || labels[l].value != value) {
-            for (l = 0; l < *count && labels[l].value != value; l++) {
-            }
-        }
-        if (l == *count) {
-            if (isnan(value) || *count == LABELS_MOST) {
-                return false;
-            }
-            labels[(*count)++] = (struct label){.value = value};
-        }
-        labels[l].voxels[which]++;
-    }
-    return true;
-}
-
-void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
-                          int dim)
-{
-    struct label labels[LABELS_MOST];
-    const char *unit = dim == 3 ? "ml" : "cm2";
-    double in_unit = dim == 3 ? 1e6 : 1e4;
-    int count = 0;
-    if (before->components > 1 || !count_labels(before, 0, labels, &count) ||
-        !count_labels(after, 1, labels, &count)) {
-        return;
-    }
-    qsort(labels, (size_t)count, sizeof *labels, compare_double);
-    for (int l = 0; l < count; l++) {
-        tool_note(tool, "label %.0f: %.6g %s before, %.6g %s after", labels[l].value,
-                  in_unit * voxel_volume(before, dim) * (double)labels[l].voxels[0], unit,
-                  in_unit * voxel_volume(after, dim) * (double)labels[l].voxels[1], unit);
+        tool_note(
+            tool,
+            "%lld of %lld nodes of the body lie more than half a voxel outside of the image: it shows a "
+            "part of the body, or another unit or direction of an axis",
+            (long long)outside, (long long)cells->node_count);
     }
 }

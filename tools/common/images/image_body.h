@@ -29,8 +29,7 @@ int32_t *find_owners(const struct tool *tool, const struct image *grid, const st
 void check_image_overlap(const struct tool *tool, const struct image *grid, const struct cells *cells,
                          const double *x, int64_t inside);
 
-/* Note that the body, in the state that the image shows, lies partly outside of it; with a question if most
- * of this would not with an axis turned. */
+/* Note that the body, in the state that the image shows, lies partly outside of it. */
 void note_image_outside(const struct tool *tool, const struct image *image, const struct cells *cells,
                         const double *x);
 
@@ -39,8 +38,3 @@ double voxel_volume(const struct image *image, int dim);
 
 /* The shortest of the first dim steps between voxels, m. */
 double least_step(const struct image *image, int dim);
-
-/* Report the volume of each label before and after; nothing if values are not integers, or there are too
- * many. */
-void report_label_volumes(const struct tool *tool, const struct image *before, const struct image *after,
-                          int dim);
