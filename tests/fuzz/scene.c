@@ -18,9 +18,9 @@ static void require_loads(const struct scene_load *loads, int64_t count)
         require_names(&loads[i].facets);
         require_names(&loads[i].nodes);
         REQUIRE(loads[i].facets.count + loads[i].nodes.count > 0);
-        REQUIRE(isfinite(loads[i].pressure));
+        REQUIRE(isfinite(loads[i].load.pressure));
         for (int k = 0; k < 3; k++) {
-            REQUIRE(isfinite(loads[i].components[k]));
+            REQUIRE(isfinite(loads[i].load.components[k]));
         }
         REQUIRE((loads[i].curve.file != NULL) == (loads[i].curve.kind == CURVE_TABLE));
     }
@@ -53,8 +53,8 @@ static void require_scene(const struct scene *scene)
         require_names(&displacement->facets);
         require_names(&displacement->nodes);
         REQUIRE((displacement->facets.count > 0) != (displacement->nodes.count > 0));
-        REQUIRE((displacement->kind == CONDITION_TABLE) == (displacement->table != NULL));
-        REQUIRE(isfinite(displacement->normal));
+        REQUIRE((displacement->condition.kind == CONDITION_TABLE) == (displacement->condition.table != NULL));
+        REQUIRE(isfinite(displacement->condition.normal));
     }
     for (int64_t i = 0; i < scene->contact_count; i++) {
         require_names(&scene->contacts[i].facets);

@@ -109,7 +109,7 @@ static bool has_prony(const struct scene *scene)
 static const struct scene_contact *first_friction(const struct scene *scene)
 {
     for (int64_t c = 0; c < scene->contact_count; c++) {
-        if (scene->contacts[c].friction > 0.0) {
+        if (scene->contacts[c].condition.friction > 0.0) {
             return &scene->contacts[c];
         }
     }

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "base/memory.h"
+#include "solid/assembly/assembly.h"
 #include "solid/material/law.h"
-#include "solid/system/kinds.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -56,21 +56,19 @@ struct scene_material {
     double table_unit;  /* m per unit of the table's coordinates */
 };
 
+/* Conditions, loads and contacts hold the struct that assembly takes of each, as far as the keys tell it:
+ * without names, facets, nodes, curves and what tables hold. */
+
 struct scene_displacement {
     struct scene_label label;
     struct name_list facets, nodes; /* exactly one is given, none with CONDITION_POINTS; nodes never with
                                        CONDITION_NORMAL */
-    enum condition_kind kind;
-    const char
-        *table; /* CONDITION_TABLE: rows (dim coordinates, dim displacement components); CONDITION_POINTS: the
-                   same of measured points, with an optional standard deviation; components may be unknown */
+    /* condition.table, CONDITION_TABLE: rows (dim coordinates, dim displacement components);
+     * CONDITION_POINTS: the same of measured points, with an optional standard deviation; components may be
+     * unknown. Its unit: m per unit of the table. Never all components are free. */
+    struct condition condition;
     const char *moved; /* CONDITION_POINTS: NULL, or where they are moved to: both tables are coordinates */
-    double table_unit; /* m per unit of the table */
-    double components[3]; /* CONDITION_COMPONENTS: m, dim of them */
-    bool is_free[3];      /* CONDITION_COMPONENTS: this component is not prescribed; never all of them */
-    double normal;        /* CONDITION_NORMAL: m, along the outward reference normal */
-    double reach;         /* CONDITION_POINTS: largest distance of a point from the body, m; 0: not given */
-    double model_error;   /* CONDITION_POINTS: error of the scene without the points, m; 0: not given */
+    double reach;      /* CONDITION_POINTS: largest distance of a point from the body, m; 0: not given */
     struct scene_curve curve;
 };
 
@@ -81,14 +79,8 @@ struct scene_contact {
     const char *rigid;        /* 2D: points of polylines; 3D: triangles (see surface_read) */
     double rigid_unit;        /* m per unit of the file */
     enum scene_side side;     /* left, right in 2D; front, back in 3D */
-    double stiffness;         /* Pa/m, > 0; 0: not given, chosen by the solver */
-    double friction;          /* Coulomb's coefficient, >= 0 */
-                              /* Motion of the surface: it is turned, then moved. */
-    bool moves;               /* false: it stays, and the curves are not used */
-    double translation[3];    /* m, dim components */
-    double angle;             /* degrees; right-handed about the axis, in 2D counter-clockwise */
-    double axis_point[3];     /* m, dim components */
-    double axis[3];           /* not 0, of any length; in 2D (0, 0, 1) */
+    struct contact_condition
+        condition; /* its motion: the surface is turned, then moved; the axis of any length */
     struct scene_curve curve, angle_curve;
 };
 
@@ -97,30 +89,24 @@ struct scene_load {
     struct scene_label label;
     struct name_list facets; /* pressure, traction: at least one */
     struct name_list nodes;  /* force: at least one node set */
-    double pressure;         /* pressure: Pa, positive pushes inward; of a fluid 0 */
-    double density;          /* pressure: of a fluid, kg/m3; 0: none */
-    double level[3];         /* of a fluid: a place at its level, m */
-    double gravity[3];       /* of a fluid: m/s2; zeros: that of the scene */
-    enum fluid_part part;
-    double components[3]; /* traction: Pa; force: N on each node (2D: N/m) */
+    struct load load;
+    double density;    /* pressure: of a fluid, kg/m3; 0: none */
+    double gravity[3]; /* of a fluid: m/s2; zeros: that of the scene */
     struct scene_curve curve;
 };
 
-/* Elastic surroundings that hold facets. */
+/* Elastic surroundings that hold facets: stiffness along the normals and across them, not both 0. */
 struct scene_support {
     struct scene_label label;
-    struct name_list facets;   /* at least one */
-    double normal, tangential; /* Pa/m, >= 0, not both 0 */
-    double damping;            /* Pa s/m, >= 0, dynamic; default 0 */
+    struct name_list facets; /* at least one */
+    struct support_condition condition;
 };
 
 /* A membrane on facets. */
 struct scene_membrane {
     struct scene_label label;
     struct name_list facets; /* at least one */
-    double thickness;        /* m, > 0 */
-    double youngs_modulus;   /* Pa, > 0 */
-    double poisson_ratio;    /* -1 < nu <= .5 */
+    struct membrane_condition condition;
 };
 
 /* The initial state of a dynamic scene. */

@@ -21,10 +21,10 @@ static enum status check_scene(const struct place *place, struct scene *scene)
 static enum status check_displacement(const struct place *place, struct scene *scene)
 {
     struct scene_displacement *displacement = &scene->displacements[scene->displacement_count - 1];
-    const bool *is_free = displacement->is_free;
+    const bool *is_free = displacement->condition.is_free;
     RETURN_IF_ERROR(place_require_one(place, KEYS{"facets", "nodes", "points", NULL}));
     if (place_has(place, "points")) {
-        displacement->kind = CONDITION_POINTS;
+        displacement->condition.kind = CONDITION_POINTS;
         return place_only_keys(place, KEYS{"points", "moved", "unit", "reach", "model_error", "curve", NULL});
     }
     RETURN_IF_ERROR(
@@ -32,9 +32,9 @@ static enum status check_displacement(const struct place *place, struct scene *s
     RETURN_IF_ERROR(place_require_one(place, KEYS{"table", "components", "normal", NULL}));
     if (place_has(place, "normal")) {
         RETURN_IF_ERROR(place_forbid(place, "nodes", "only facets have a normal"));
-        displacement->kind = CONDITION_NORMAL;
+        displacement->condition.kind = CONDITION_NORMAL;
     } else if (place_has(place, "table")) {
-        displacement->kind = CONDITION_TABLE;
+        displacement->condition.kind = CONDITION_TABLE;
     }
     if (is_free[0] && is_free[1] && is_free[scene->dim - 1]) {
         return place_fail(place, "components", "all are free: nothing is prescribed");
@@ -46,13 +46,15 @@ static enum status check_displacement(const struct place *place, struct scene *s
 static enum status check_motion(const struct place *place, int dim, struct scene_contact *contact)
 {
     bool turns = place_has(place, "angle");
-    double *axis = contact->axis;
-    contact->moves = turns || place_has(place, "translation");
+    struct rigid_motion *motion = &contact->condition.motion;
+    double *axis = motion->axis;
+    motion->moves = turns || place_has(place, "translation");
+    motion->angle *= M_PI / 180.0;
     if (!turns) {
         RETURN_IF_ERROR(
             place_forbid_all(place, KEYS{"axis_point", "axis", "angle_curve", NULL}, "no angle is given"));
     }
-    if (!contact->moves) {
+    if (!motion->moves) {
         return place_forbid(place, "curve", "the surface has neither translation nor angle");
     }
     RETURN_IF_ERROR(place_require(place, "curve",
@@ -62,11 +64,13 @@ static enum status check_motion(const struct place *place, int dim, struct scene
     }
     if (dim == 2) {
         RETURN_IF_ERROR(place_forbid(place, "axis", "in 2D a surface turns in the plane, about axis_point"));
-        axis[2] = 1.0;
     } else if (turns) {
         RETURN_IF_ERROR(place_require(place, "axis", "give the direction of the axis of rotation"));
     }
-    if (turns && !(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] > 0.0)) {
+    if (dim == 2 || !turns) {
+        axis[2] = 1.0;
+    }
+    if (!(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] > 0.0)) {
         return place_fail(place, "axis", "has no length: give a direction, as 0, 0, 1");
     }
     if (!place_has(place, "angle_curve")) {
@@ -113,7 +117,7 @@ static enum status check_pressure(const struct place *place, struct scene *scene
 
 static enum status check_support(const struct place *place, struct scene *scene)
 {
-    const struct scene_support *support = &scene->supports[scene->support_count - 1];
+    const struct support_condition *support = &scene->supports[scene->support_count - 1].condition;
     if (!(support->normal > 0.0 || support->tangential > 0.0)) {
         return place_fail(place, NULL, "normal and tangential: both are 0: give a stiffness in Pa/m");
     }
@@ -124,7 +128,7 @@ static enum status check_support(const struct place *place, struct scene *scene)
 
 static enum status check_membrane(const struct place *place, struct scene *scene)
 {
-    double nu = scene->membranes[scene->membrane_count - 1].poisson_ratio;
+    double nu = scene->membranes[scene->membrane_count - 1].condition.poisson_ratio;
     return nu > -1.0 && nu <= .5 ? STATUS_OK
                                  : place_fail(place, "nu", "%.15g is not above -1 and at most 0.5", nu);
 }
@@ -212,15 +216,15 @@ static const struct scene_key material_keys[] = {
 static const struct scene_key displacement_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_displacement, facets)},
     {"nodes", VALUE_NAMES, AT(scene_displacement, nodes)},
-    {"points", VALUE_TABLE, AT(scene_displacement, table)},
+    {"points", VALUE_TABLE, AT(scene_displacement, condition.table)},
     {"moved", VALUE_TABLE, AT(scene_displacement, moved)},
-    {"table", VALUE_TABLE, AT(scene_displacement, table)},
-    {"unit", VALUE_UNIT, AT(scene_displacement, table_unit)},
-    {"components", VALUE_VECTOR, AT(scene_displacement, components),
-     .free = offsetof(struct scene_displacement, is_free)},
-    {"normal", VALUE_NUMBER, AT(scene_displacement, normal)},
+    {"table", VALUE_TABLE, AT(scene_displacement, condition.table)},
+    {"unit", VALUE_UNIT, AT(scene_displacement, condition.unit)},
+    {"components", VALUE_VECTOR, AT(scene_displacement, condition.components),
+     .free = offsetof(struct scene_displacement, condition.is_free)},
+    {"normal", VALUE_NUMBER, AT(scene_displacement, condition.normal)},
     {"reach", VALUE_POSITIVE, AT(scene_displacement, reach)},
-    {"model_error", VALUE_POSITIVE, AT(scene_displacement, model_error)},
+    {"model_error", VALUE_POSITIVE, AT(scene_displacement, condition.model_error)},
     {"curve", VALUE_CURVE, AT(scene_displacement, curve)},
     {NULL}};
 
@@ -230,50 +234,52 @@ static const struct scene_key contact_keys[] = {
     {"rigid", VALUE_TABLE, AT(scene_contact, rigid)},
     {"unit", VALUE_UNIT, AT(scene_contact, rigid_unit)},
     {"side", VALUE_CHOICE, AT(scene_contact, side), WORDS("left", "right", "front", "back")},
-    {"stiffness", VALUE_POSITIVE, AT(scene_contact, stiffness)},
-    {"friction", VALUE_NOT_NEGATIVE, AT(scene_contact, friction)},
-    {"translation", VALUE_VECTOR, AT(scene_contact, translation)},
-    {"angle", VALUE_NUMBER, AT(scene_contact, angle)},
-    {"axis_point", VALUE_VECTOR, AT(scene_contact, axis_point)},
-    {"axis", VALUE_VECTOR, AT(scene_contact, axis)},
+    {"stiffness", VALUE_POSITIVE, AT(scene_contact, condition.stiffness)},
+    {"friction", VALUE_NOT_NEGATIVE, AT(scene_contact, condition.friction)},
+    {"translation", VALUE_VECTOR, AT(scene_contact, condition.motion.translation)},
+    {"angle", VALUE_NUMBER, AT(scene_contact, condition.motion.angle)},
+    {"axis_point", VALUE_VECTOR, AT(scene_contact, condition.motion.point)},
+    {"axis", VALUE_VECTOR, AT(scene_contact, condition.motion.axis)},
     {"curve", VALUE_CURVE, AT(scene_contact, curve)},
     {"angle_curve", VALUE_CURVE, AT(scene_contact, angle_curve)},
     {NULL}};
 
 static const struct scene_key pressure_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_load, facets), .missing = "name the facet groups pressed"},
-    {"value", VALUE_NUMBER, AT(scene_load, pressure)},
+    {"value", VALUE_NUMBER, AT(scene_load, load.pressure)},
     {"density", VALUE_POSITIVE, AT(scene_load, density)},
-    {"level", VALUE_VECTOR, AT(scene_load, level)},
-    {"side", VALUE_CHOICE, AT(scene_load, part), WORDS("below", "above", "both")},
+    {"level", VALUE_VECTOR, AT(scene_load, load.level)},
+    {"side", VALUE_CHOICE, AT(scene_load, load.part), WORDS("below", "above", "both")},
     {"gravity", VALUE_VECTOR, AT(scene_load, gravity)},
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
 
 static const struct scene_key traction_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_load, facets), .missing = "name the groups loaded"},
-    {"components", VALUE_VECTOR, AT(scene_load, components), .missing = "give the traction in Pa"},
+    {"components", VALUE_VECTOR, AT(scene_load, load.components), .missing = "give the traction in Pa"},
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
 
 static const struct scene_key force_keys[] = {
     {"nodes", VALUE_NAMES, AT(scene_load, nodes), .missing = "name the groups loaded"},
-    {"components", VALUE_VECTOR, AT(scene_load, components), .missing = "give the force on each node in N"},
+    {"components", VALUE_VECTOR, AT(scene_load, load.components),
+     .missing = "give the force on each node in N"},
     {"curve", VALUE_CURVE, AT(scene_load, curve)},
     {NULL}};
 
 static const struct scene_key support_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_support, facets), .missing = "name the facet groups supported"},
-    {"normal", VALUE_NOT_NEGATIVE, AT(scene_support, normal)},
-    {"tangential", VALUE_NOT_NEGATIVE, AT(scene_support, tangential)},
-    {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, damping)},
+    {"normal", VALUE_NOT_NEGATIVE, AT(scene_support, condition.normal)},
+    {"tangential", VALUE_NOT_NEGATIVE, AT(scene_support, condition.tangential)},
+    {"damping", VALUE_NOT_NEGATIVE, AT(scene_support, condition.damping)},
     {NULL}};
 
 static const struct scene_key membrane_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_membrane, facets), .missing = "name the facet groups coated"},
-    {"thickness", VALUE_POSITIVE, AT(scene_membrane, thickness), .missing = "give it in m"},
-    {"E", VALUE_POSITIVE, AT(scene_membrane, youngs_modulus), .missing = "give Young's modulus in Pa"},
-    {"nu", VALUE_NUMBER, AT(scene_membrane, poisson_ratio), .missing = "give Poisson's ratio"},
+    {"thickness", VALUE_POSITIVE, AT(scene_membrane, condition.thickness), .missing = "give it in m"},
+    {"E", VALUE_POSITIVE, AT(scene_membrane, condition.youngs_modulus),
+     .missing = "give Young's modulus in Pa"},
+    {"nu", VALUE_NUMBER, AT(scene_membrane, condition.poisson_ratio), .missing = "give Poisson's ratio"},
     {NULL}};
 
 static const struct scene_key initial_keys[] = {

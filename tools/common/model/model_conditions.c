@@ -35,20 +35,15 @@ static enum status add_displacement(struct model *model, const struct scene_disp
 {
     int dim = model->assembly.cells.dim;
     FREED_BY(table_free) struct table table = {0};
-    *condition = (struct condition){.name = section->label.name,
-                                    .where = section->label.where,
-                                    .kind = section->kind,
-                                    .normal = section->normal,
-                                    .unit = section->table_unit,
-                                    .table = section->table};
-    memcpy(condition->components, section->components, sizeof section->components);
-    memcpy(condition->is_free, section->is_free, sizeof section->is_free);
+    *condition = section->condition;
+    condition->name = section->label.name;
+    condition->where = section->label.where;
     RETURN_IF_ERROR(model_add_curve(model, &section->label, &section->curve, &condition->curve, error));
-    if (section->kind == CONDITION_POINTS) {
+    if (condition->kind == CONDITION_POINTS) {
         return model_points(model, section, condition, error);
     }
-    if (section->kind == CONDITION_TABLE) {
-        RETURN_IF_ERROR(table_read(section->table, 2 * dim, 2 * dim, &table, error));
+    if (condition->kind == CONDITION_TABLE) {
+        RETURN_IF_ERROR(table_read(condition->table, 2 * dim, 2 * dim, &table, error));
         condition->row_count = table.rows;
         condition->rows = table.values;
         table.values = NULL;
@@ -76,20 +71,16 @@ static enum status set_fluid(const struct model *model, const struct scene_load 
     }
     for (int a = 0; a < 3; a++) {
         load->weight[a] = section->density * gravity[a];
-        load->level[a] = section->level[a];
     }
     load->is_fluid = true;
-    load->part = section->part;
     return STATUS_OK;
 }
 
 static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
                             struct load *load, struct error *error)
 {
-    *load =
-        (struct load){.kind = kind,
-                      .pressure = section->pressure,
-                      .components = {section->components[0], section->components[1], section->components[2]}};
+    *load = section->load;
+    load->kind = kind;
     if (kind == LOAD_FORCE) {
         RETURN_IF_ERROR(
             model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
@@ -138,8 +129,8 @@ static enum status add_contact(struct model *model, const struct scene_contact *
 {
     struct rigid_motion *motion = &contact->motion;
     double *corners = NULL;
-    *contact = (struct contact_condition){
-        .where = section->label.where, .stiffness = section->stiffness, .friction = section->friction};
+    *contact = section->condition;
+    contact->where = section->label.where;
     if (section->against.count > 0) {
         return model_between(model, section, contact, error);
     }
@@ -149,15 +140,8 @@ static enum status add_contact(struct model *model, const struct scene_contact *
     contact->corners = corners;
     RETURN_IF_ERROR(model_own(model, corners, error));
     contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
-    motion->moves = section->moves;
-    if (!section->moves) {
+    if (!motion->moves) {
         return STATUS_OK;
-    }
-    motion->angle = section->angle * (M_PI / 180.0);
-    for (int i = 0; i < 3; i++) {
-        motion->translation[i] = section->translation[i];
-        motion->point[i] = section->axis_point[i];
-        motion->axis[i] = section->angle != 0.0 ? section->axis[i] : (double)(i == 2);
     }
     RETURN_IF_ERROR(
         model_add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
@@ -193,10 +177,8 @@ static enum status add_supports(struct model *model, struct error *error)
     input->supports = supports;
     for (int64_t i = 0; i < scene->support_count; i++) {
         const struct scene_support *section = &scene->supports[i];
-        supports[i] = (struct support_condition){.where = section->label.where,
-                                                 .normal = section->normal,
-                                                 .tangential = section->tangential,
-                                                 .damping = section->damping};
+        supports[i] = section->condition;
+        supports[i].where = section->label.where;
         RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &supports[i].facets, error));
         RETURN_IF_ERROR(model_add_curve(model, &section->label, &any, &supports[i].curve, error));
         input->support_count++;
@@ -213,10 +195,8 @@ static enum status add_membranes(struct model *model, struct error *error)
     input->membranes = membranes;
     for (int64_t i = 0; i < scene->membrane_count; i++) {
         const struct scene_membrane *section = &scene->membranes[i];
-        membranes[i] = (struct membrane_condition){.where = section->label.where,
-                                                   .thickness = section->thickness,
-                                                   .youngs_modulus = section->youngs_modulus,
-                                                   .poisson_ratio = section->poisson_ratio};
+        membranes[i] = section->condition;
+        membranes[i].where = section->label.where;
         RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &membranes[i].facets, error));
         input->membrane_count++;
     }

@@ -22,7 +22,7 @@ static enum status fail_at(const struct point_section *p, int64_t row, struct er
     char place[96];
     point_text(measured->dim, measured->x + row * measured->dim, place);
     return fail(error, STATUS_INPUT, "%s: points %s:%lld: at %s: %s", p->section->label.where,
-                p->section->table, (long long)p->table->line[row], place, what);
+                p->section->condition.table, (long long)p->table->line[row], place, what);
 }
 
 /* "FILE:LINE: [displacement NAME]: moved TABLE: ..." */
@@ -54,9 +54,9 @@ static enum status read_pairs(struct point_section *p, int dim, struct error *er
 {
     FREED_BY(table_free) struct table moved = {0};
     struct table *table = p->table;
-    double unit = table_unit(p->section->table, p->section->table_unit);
-    double moved_unit = table_unit(p->section->moved, p->section->table_unit);
-    RETURN_IF_ERROR(table_read(p->section->table, dim, dim, table, error));
+    double unit = table_unit(p->section->condition.table, p->section->condition.unit);
+    double moved_unit = table_unit(p->section->moved, p->section->condition.unit);
+    RETURN_IF_ERROR(table_read(p->section->condition.table, dim, dim, table, error));
     RETURN_IF_ERROR(table_read(p->section->moved, dim, dim, &moved, error));
     RETURN_IF_ERROR(check_pairs(p, &moved, error));
     SCRATCH double *x = table->values;
@@ -74,14 +74,14 @@ static enum status read_pairs(struct point_section *p, int dim, struct error *er
 /* Read rows of places and displacements. */
 static enum status read_rows(struct point_section *p, int dim, struct error *error)
 {
-    if (landmarks_named(p->section->table)) {
+    if (landmarks_named(p->section->condition.table)) {
         return fail(error, STATUS_INPUT,
                     "%s: points %s: landmarks are places: give those that they move to, as moved",
-                    p->section->label.where, p->section->table);
+                    p->section->label.where, p->section->condition.table);
     }
-    RETURN_IF_ERROR(table_read_open(p->section->table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
+    RETURN_IF_ERROR(table_read_open(p->section->condition.table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
     for (int64_t i = 0; i < p->table->rows * p->table->cols; i++) {
-        p->table->values[i] *= p->section->table_unit;
+        p->table->values[i] *= p->section->condition.unit;
     }
     return STATUS_OK;
 }
@@ -155,7 +155,7 @@ static enum status find_field(struct point_section *p, struct error *error)
         return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
     RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, recorded.radius,
-                                      measured->count, measured->x, p->section->table, &field, error));
+                                      measured->count, measured->x, p->section->condition.table, &field, error));
     return keep_field(p, &field, error);
 }
 
@@ -164,7 +164,6 @@ enum status model_points(struct model *model, const struct scene_displacement *s
 {
     FREED_BY(table_free) struct table table = {0};
     struct point_section p = {model, section, condition, &table};
-    condition->model_error = section->model_error;
     RETURN_IF_ERROR(read_section(&p, error));
     RETURN_IF_ERROR(find_field(&p, error));
     condition->line = table.line;
