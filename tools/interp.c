@@ -332,13 +332,13 @@ static void begin_output(const struct tool *tool, struct stream *stream, int dim
 static void write_landmarks(const struct tool *tool, int dim, const struct points *points,
                             const double *moved)
 {
-    struct target target;
+    struct output output;
     if (dim != 3) {
         tool_fail(tool, STATUS_INPUT, "-o %s: landmarks are points in 3D", tool->output);
     }
-    target_open(tool, &target, tool->output);
-    landmarks_print(target.file, tool->output, points->count, moved, points->row, points->label);
-    target_end(tool, &target);
+    tool_print_to(tool, &output, tool->output);
+    landmarks_print(output.file, tool->output, points->count, moved, points->row, points->label);
+    tool_printed(tool, &output);
 }
 
 int main(int argc, char *argv[])

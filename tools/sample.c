@@ -251,7 +251,7 @@ int main(int argc, char *argv[])
     FREED_BY(stream_free) struct stream stream = {0};
     struct request request;
     struct sample_points rows;
-    struct target target;
+    struct output output;
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
@@ -276,9 +276,9 @@ int main(int argc, char *argv[])
                  request.stiffness ? "cols=E,nu" : "", array_take(&rows.value));
         tool_write(&tool, &stream);
     } else {
-        target_open(&tool, &target, tool.output);
-        print_rows(target.file, &request, &rows);
-        target_end(&tool, &target);
+        tool_print_to(&tool, &output, tool.output);
+        print_rows(output.file, &request, &rows);
+        tool_printed(&tool, &output);
     }
     FREE_ALL(rows.x, rows.value);
     tissue_free(&request.tissue);

@@ -210,14 +210,14 @@ int main(int argc, char *argv[])
                   sizes.most_nodes);
     }
     FREED_BY(layered_free) struct layered layered = {0};
-    struct target target;
+    struct output output;
     TOOL_TRY(&tool, layered_make(&cells, &field, &layered, &error));
     if (tool_given(&tool, "binary") || tool.text) {
         write_sizes(&tool, &layered);
     } else {
-        target_open(&tool, &target, tool.output);
-        print_view(target.file, &layered, unit);
-        target_end(&tool, &target);
+        tool_print_to(&tool, &output, tool.output);
+        print_view(output.file, &layered, unit);
+        tool_printed(&tool, &output);
     }
     if (tool_given(&tool, "verbose")) {
         report(&cells, &field, unit);

@@ -78,7 +78,7 @@ int main(int argc, char *argv[])
 {
     struct tool tool;
     struct error error;
-    struct target target;
+    struct output output;
     FREED_BY(stream_free) struct stream stream = {0};
     FREED_BY(body_free) struct body body = {0};
     tool_begin(&tool, usage, 0, 1, argc, argv);
@@ -89,9 +89,9 @@ int main(int argc, char *argv[])
     double unit = tool_length_unit(&tool, "unit", 1.0);
     tool_read(&tool, tool.operands[0], &stream);
     tool_check(&tool, find_body(&stream, &body, &error), &error);
-    target_open(&tool, &target, tool.output);
-    enum status status = is_msh ? mesh_write_msh(target.file, &body.mesh, unit, &error)
-                                : mesh_write_inp(target.file, &body.mesh, unit, &error);
-    target_close(&tool, &target, status, &error);
+    tool_print_to(&tool, &output, tool.output);
+    enum status status = is_msh ? mesh_write_msh(output.file, &body.mesh, unit, &error)
+                                : mesh_write_inp(output.file, &body.mesh, unit, &error);
+    tool_check(&tool, output_end(&output, status, &error), &error);
     return tool_end(&tool);
 }

@@ -48,19 +48,23 @@ static const char usage[] =
 #include <stdlib.h>
 #include <string.h>
 
-/* Write one frame as a vtu file. */
-static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, FILE *file,
+/* Write one frame as a vtu file; NULL: to standard output. */
+static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t frame, const char *name,
                              struct error *error)
 {
+    struct output output;
     RETURN_IF_ERROR(plot_choose(plot, frame, error));
-    return vtu_write(file, &plot->mesh, plot->field_count, plot->fields, plot->number_count, plot->numbers,
-                     tool->text, error);
+    RETURN_IF_ERROR(output_open(&output, name, false, error));
+    return output_end(&output,
+                      vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, plot->number_count,
+                                plot->numbers, tool->text, error),
+                      error);
 }
 
 /* Write NAME-0001.vtu, ... and then NAME.pvd, which lists them. */
 static void write_series(const struct tool *tool, struct plot *plot)
 {
-    struct target target;
+    struct output output;
     int64_t count = plot_state_count(plot);
     size_t stem = strlen(tool->output) - strlen(".pvd");
     const char *slash = strrchr(tool->output, '/');
@@ -74,12 +78,12 @@ static void write_series(const struct tool *tool, struct plot *plot)
         tool_check(tool, plot_time(plot, frame, &times[i], &error), &error);
         paths[i] = tool_text(tool, "%.*s-%04lld.vtu", (int)stem, tool->output,
                              frame == FRAME_NONE ? 0LL : (long long)frame);
-        target_open(tool, &target, paths[i]);
-        target_close(tool, &target, write_vtu(tool, plot, frame, target.file, &error), &error);
+        tool_check(tool, write_vtu(tool, plot, frame, paths[i], &error), &error);
         names[i] = paths[i] + folder;
     }
-    target_open(tool, &target, tool->output);
-    target_close(tool, &target, pvd_write(target.file, count, names, times, &error), &error);
+    tool_print_to(tool, &output, tool->output);
+    tool_check(tool, output_end(&output, pvd_write(output.file, count, names, times, &error), &error),
+               &error);
     for (int64_t i = 0; i < count; i++) {
         free(paths[i]);
     }
@@ -100,7 +104,6 @@ int main(int argc, char *argv[])
     struct tool tool;
     struct error error;
     FREED_BY(plot_free) struct plot plot = {0};
-    struct target target;
     tool_begin(&tool, usage, 0, 1, argc, argv);
     check_ending(&tool);
     bool is_series = tool.output != NULL && text_ends(tool.output, ".pvd");
@@ -113,8 +116,7 @@ int main(int argc, char *argv[])
             tool_note(&tool, "only the final state is written: name a .pvd file for all %lld frames",
                       (long long)plot.frame_count);
         }
-        target_open(&tool, &target, tool.output);
-        target_close(&tool, &target, write_vtu(&tool, &plot, FRAME_NONE, target.file, &error), &error);
+        tool_check(&tool, write_vtu(&tool, &plot, FRAME_NONE, tool.output, &error), &error);
     }
     return tool_end(&tool);
 }

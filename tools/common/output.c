@@ -108,7 +108,9 @@ static enum status open_temporary(struct output *output, bool grows, const struc
 /* Close and remove the temporary file; the former file stays unchanged. */
 static void abandon(struct output *output)
 {
-    if (output->descriptor >= 0) {
+    if (output->file != NULL && output->file != stdout) {
+        (void)fclose(output->file);
+    } else if (output->file == NULL && output->descriptor >= 0) {
         close(output->descriptor);
     }
     remove_pending();
@@ -116,53 +118,75 @@ static void abandon(struct output *output)
     *output = (struct output){.descriptor = -1, .name = output->name};
 }
 
-static enum status open_output(struct output *output, const char *name, bool grows, struct error *error)
+static enum status open_named(struct output *output, bool grows, struct error *error)
 {
     struct stat present;
-    enum status status = STATUS_OK;
+    const char *name = output->name;
     bool exists = stat(name, &present) == 0;
-    *output = (struct output){.descriptor = -1, .name = name};
     if (exists && S_ISDIR(present.st_mode)) {
         return fail(error, STATUS_INPUT, "%s: is a directory", name);
     }
     if (exists && !S_ISREG(present.st_mode)) {
         output->descriptor = open(name, O_WRONLY | O_CLOEXEC);
-        return output->descriptor < 0 ? fail_output(output, error) : STATUS_OK;
+    } else {
+        output->target = exists ? realpath(name, NULL) : strdup(name);
+        if (output->target == NULL) {
+            return fail_output(output, error);
+        }
+        RETURN_IF_ERROR(open_temporary(output, grows, exists ? &present : NULL, error));
     }
-    output->target = exists ? realpath(name, NULL) : strdup(name);
-    status = output->target == NULL ? fail_output(output, error)
-                                    : open_temporary(output, grows, exists ? &present : NULL, error);
+    output->file = output->descriptor >= 0 ? fdopen(output->descriptor, "w") : NULL;
+    return output->file != NULL ? STATUS_OK : fail_output(output, error);
+}
+
+enum status output_open(struct output *output, const char *name, bool grows, struct error *error)
+{
+    enum status status = STATUS_OK;
+    *output = (struct output){.descriptor = STDOUT_FILENO, .file = stdout, .name = "standard output"};
+    if (name != NULL) {
+        *output = (struct output){.descriptor = -1, .name = name};
+        status = open_named(output, grows, error);
+    }
     if (status != STATUS_OK) {
         abandon(output);
     }
+    errno = 0;
     return status;
 }
 
-enum status output_open(struct output *output, const char *name, struct error *error)
+enum status output_open_stream(struct output *output, const struct tool *tool, bool grows,
+                               struct error *error)
 {
-    return open_output(output, name, false, error);
-}
-
-enum status output_open_part(struct output *output, const char *name, struct error *error)
-{
-    return open_output(output, name, true, error);
+    return tool->output == NULL && !tool->text && isatty(STDOUT_FILENO)
+               ? fail(error, STATUS_INPUT,
+                      "no binary to a terminal: redirect it, name a file by -o, or ask for text")
+               : output_open(output, tool->output, grows, error);
 }
 
 enum status output_end(struct output *output, enum status status, struct error *error)
 {
-    int descriptor = output->descriptor;
-    if (status != STATUS_OK) {
+    int cause = ferror(output->file) != 0 ? errno + (errno == 0) * EIO : 0;
+    if (cause == 0 && fflush(output->file) != 0) {
+        cause = errno;
+    }
+    if (status == STATUS_OK && cause != 0) {
+        status = fail(error, STATUS_SYSTEM, "%s", strerror(cause));
+    }
+    if (status != STATUS_OK || output->file == stdout) {
+        bool is_stdout = output->file == stdout;
         abandon(output);
-        return fail_in(error, status, "%s", output->name);
+        status = fail_in(error, status, "%s", output->name);
+        return status == STATUS_OK && is_stdout ? tool_close_stdout(error) : status;
     }
-    output->descriptor = -1;
     /* Some file systems report only now that there is no space. */
-    if (output->temporary != NULL && fsync(descriptor) != 0) {
+    if (output->temporary != NULL && fsync(output->descriptor) != 0) {
         status = fail_output(output, error);
     }
-    if (close(descriptor) != 0 && status == STATUS_OK) {
+    if (fclose(output->file) != 0 && status == STATUS_OK) {
         status = fail_output(output, error);
     }
+    output->file = NULL;
+    output->descriptor = -1;
     if (status == STATUS_OK && output->temporary != NULL) {
         if (rename(output->temporary, output->target) == 0) {
             pending = NULL;
@@ -174,42 +198,12 @@ enum status output_end(struct output *output, enum status status, struct error *
     return status;
 }
 
-/* ---- printing ---- */
-
-void target_open(const struct tool *tool, struct target *target, const char *name)
+void tool_print_to(const struct tool *tool, struct output *output, const char *name)
 {
-    *target = (struct target){.name = name, .file = stdout, .output.descriptor = STDOUT_FILENO};
-    if (name == NULL) {
-        return;
-    }
-    TOOL_TRY(tool, output_open(&target->output, name, &error));
-    int descriptor = dup(target->output.descriptor); /* the output closes the original */
-    target->file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    if (target->file == NULL) {
-        int cause = errno;
-        abandon(&target->output);
-        tool_fail(tool, STATUS_SYSTEM, "%s: %s", name, strerror(cause));
-    }
-    errno = 0;
+    TOOL_TRY(tool, output_open(output, name, false, &error));
 }
 
-void target_close(const struct tool *tool, struct target *target, enum status status, struct error *error)
+void tool_printed(const struct tool *tool, struct output *output)
 {
-    bool named = target->name != NULL;
-    int cause = named && ferror(target->file) != 0 ? errno : 0;
-    if (named && fclose(target->file) != 0 && cause == 0) {
-        cause = errno;
-    }
-    if (status == STATUS_OK && cause != 0) {
-        status = fail(error, STATUS_SYSTEM, "%s", strerror(cause));
-    }
-    tool_check(tool,
-               named ? output_end(&target->output, status, error) : fail_in(error, status, "standard output"),
-               error);
-}
-
-void target_end(const struct tool *tool, struct target *target)
-{
-    struct error error;
-    target_close(tool, target, STATUS_OK, &error);
+    TOOL_TRY(tool, output_end(output, STATUS_OK, &error));
 }

@@ -242,7 +242,7 @@ void tool_put(const struct tool *tool, struct stream *stream, const char *name, 
     TOOL_TRY(tool, stream_put(stream, name, type, rows, cols, attributes, data, true, &error));
 }
 
-static enum status close_stdout(struct error *error)
+enum status tool_close_stdout(struct error *error)
 {
     stdout_closed = close(STDOUT_FILENO) == 0;
     return stdout_closed ? STATUS_OK : fail(error, STATUS_SYSTEM, "standard output: %s", strerror(errno));
@@ -254,34 +254,11 @@ void tool_write(const struct tool *tool, struct stream *stream)
     tool_copy(tool, stream);
 }
 
-enum status tool_output_open(const struct tool *tool, bool grows, struct output *output, struct error *error)
-{
-    if (tool->output != NULL) {
-        return grows ? output_open_part(output, tool->output, error)
-                     : output_open(output, tool->output, error);
-    }
-    *output = (struct output){.descriptor = STDOUT_FILENO, .name = "standard output"};
-    if (!tool->text && isatty(STDOUT_FILENO)) {
-        return fail(error, STATUS_INPUT,
-                    "no binary to a terminal: redirect it, name a file by -o, or ask for text");
-    }
-    return STATUS_OK;
-}
-
-enum status tool_output_end(const struct tool *tool, struct output *output, enum status status,
-                            struct error *error)
-{
-    if (tool->output != NULL) {
-        return output_end(output, status, error);
-    }
-    return status != STATUS_OK ? fail_in(error, status, "%s", output->name) : close_stdout(error);
-}
-
 static enum status write_output(const struct tool *tool, const struct stream *stream, struct error *error)
 {
     struct output output;
-    RETURN_IF_ERROR(tool_output_open(tool, false, &output, error));
-    return tool_output_end(tool, &output, stream_write(stream, output.descriptor, tool->text, error), error);
+    RETURN_IF_ERROR(output_open_stream(&output, tool, false, error));
+    return output_end(&output, stream_write(stream, output.descriptor, tool->text, error), error);
 }
 
 /* The first of several processes writes; all get its status. */
@@ -300,7 +277,7 @@ int tool_end(const struct tool *tool)
     if (!stdout_closed && (fflush(stdout) != 0 || failed)) {
         tool_fail(tool, STATUS_SYSTEM, "standard output: %s", errno != 0 ? strerror(errno) : "write error");
     }
-    TOOL_TRY(tool, stdout_closed ? STATUS_OK : close_stdout(&error));
+    TOOL_TRY(tool, stdout_closed ? STATUS_OK : tool_close_stdout(&error));
     process_end();
     return (int)STATUS_OK;
 }

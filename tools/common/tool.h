@@ -109,6 +109,8 @@ void tool_write(const struct tool *tool, struct stream *stream);
 /* The same without a provenance line, for a change of only the form of a stream. */
 void tool_copy(const struct tool *tool, const struct stream *stream);
 
-/* Close standard output and report delayed write errors; for tools that print with stdio. Returns STATUS_OK,
- * or exits with 3. */
+/* Close standard output, once all is written to it, and report delayed write errors. */
+MUST_CHECK enum status tool_close_stdout(struct error *error);
+
+/* The same, unless it is closed, for tools that print with stdio. Returns STATUS_OK, or exits with 3. */
 int tool_end(const struct tool *tool);

@@ -80,22 +80,27 @@ void tool_check_image_output(const struct tool *tool)
     check_data_file(tool);
 }
 
+static enum status write_image(const struct tool *tool, const struct image *image, const char *data,
+                               struct error *error)
+{
+    int format = tool->output != NULL ? format_of(tool->output, (int)image->format) : (int)image->format;
+    struct output output;
+    if (data != NULL) { /* before the header, without which they are no image */
+        RETURN_IF_ERROR(output_open(&output, data, false, error));
+        RETURN_IF_ERROR(output_end(&output, image_write_data(image, output.descriptor, error), error));
+    }
+    RETURN_IF_ERROR(output_open(&output, tool->output, false, error));
+    int to = output.descriptor;
+    enum status status =
+        data != NULL ? image_write_header(image, to, (enum image_format)format, within_folder(data), error)
+                     : image_write(image, to, (enum image_format)format, error);
+    return output_end(&output, status, error);
+}
+
 void tool_write_image(const struct tool *tool, const struct image *image)
 {
-    struct target target;
-    struct error error;
-    int format = tool->output != NULL ? format_of(tool->output, (int)image->format) : (int)image->format;
     SCRATCH char *data = data_file(tool);
-    if (data != NULL) { /* before the header, without which they are no image */
-        target_open(tool, &target, data);
-        target_close(tool, &target, image_write_data(image, target.output.descriptor, &error), &error);
-    }
-    target_open(tool, &target, tool->output);
-    int to = target.output.descriptor;
-    enum status status =
-        data != NULL ? image_write_header(image, to, (enum image_format)format, within_folder(data), &error)
-                     : image_write(image, to, (enum image_format)format, &error);
-    target_close(tool, &target, status, &error);
+    TOOL_TRY(tool, write_image(tool, image, data, &error));
 }
 
 const char *image_text(const struct image *image, char text[128])

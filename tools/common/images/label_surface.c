@@ -207,7 +207,7 @@ static void print_surface(const struct tool *tool, FILE *file, const struct labe
 void label_surface_write(const struct tool *tool, const struct label_cells *mesh,
                          const struct label_surface_options *options)
 {
-    struct target target;
+    struct output output;
     int64_t count = 0;
     for (int64_t f = 0; f < mesh->facet_count; f++) {
         count += is_chosen(mesh, options, f);
@@ -215,7 +215,7 @@ void label_surface_write(const struct tool *tool, const struct label_cells *mesh
     if (count == 0) {
         tool_fail(tool, STATUS_INPUT, "--surface: these labels do not touch");
     }
-    target_open(tool, &target, tool->output);
-    print_surface(tool, target.file, mesh, options);
-    target_end(tool, &target);
+    tool_print_to(tool, &output, tool->output);
+    print_surface(tool, output.file, mesh, options);
+    tool_printed(tool, &output);
 }

@@ -125,7 +125,7 @@ static enum status begin(struct run *run, struct error *error)
     if (frames->kept_file != NULL) {
         RETURN_IF_ERROR(open_kept(run, error));
     }
-    RETURN_IF_ERROR(tool_output_open(run->tool, true, &frames->output, error));
+    RETURN_IF_ERROR(output_open_stream(&frames->output, run->tool, true, error));
     RETURN_IF_ERROR(fail_in(
         error,
         stream_writer_begin(&frames->writer, frames->output.descriptor, run->tool->text, run->stream, error),
@@ -227,7 +227,7 @@ void run_frames_end(struct run *run)
     if (process_speaks()) {
         status = put_sections(run, true, &error);
         status = status == STATUS_OK ? stream_writer_end(&frames->writer, NULL, &error) : status;
-        status = tool_output_end(run->tool, &frames->output, status, &error);
+        status = output_end(&frames->output, status, &error);
     }
     check(run, status, &error);
 }
