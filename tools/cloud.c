@@ -115,9 +115,7 @@ static void put_field(const struct tool *tool, struct stream *stream, const stru
 static enum status put_cloud(struct stream *stream, const struct cloud *cloud, int32_t region[],
                              struct error *error)
 {
-    static char names[][5] = {"body", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
-    char *regions[] = {names[0]};
-    char *sides[] = {names[1], names[2], names[3], names[4], names[5], names[6]};
+    static char body[] = "body", plane[] = "xmin,xmax,ymin,ymax", space[] = "xmin,xmax,ymin,ymax,zmin,zmax";
     struct mesh mesh = {.dim = cloud->dim,
                         .node_count = cloud->node_count,
                         .x = cloud->x,
@@ -127,8 +125,8 @@ static enum status put_cloud(struct stream *stream, const struct cloud *cloud, i
                         .facet_count = cloud->facet_count,
                         .facets = cloud->facets,
                         .facet_set = cloud->facet_set,
-                        .regions = {1, regions},
-                        .facet_sets = {2 * cloud->dim, sides}};
+                        .regions = {.count = 1, .list = body},
+                        .facet_sets = {.count = 2 * cloud->dim, .list = cloud->dim == 2 ? plane : space}};
     return mesh_put(&mesh, stream, error);
 }
 

@@ -159,7 +159,7 @@ int main(int argc, char *argv[])
     bool by_entity = msh.by_entity[mesh.dim - 1];
     msh_free(&msh);
     check_joined(&tool, &mesh, by_entity);
-    for (int32_t i = 0; i < mesh.notes.count; i++) {
+    for (int64_t i = 0; i < mesh.notes.count; i++) {
         tool_note(&tool, "%s", mesh.notes.name[i]);
     }
     if (mesh.facet_sets.count == 0) {

@@ -35,11 +35,6 @@ struct body {
     struct named_sets sets;
 };
 
-static struct mesh_names names_in(const struct names *names)
-{
-    return (struct mesh_names){(int32_t)names->count, names->name};
-}
-
 static void body_free(struct body *body)
 {
     cell_regions_free(&body->regions);
@@ -60,16 +55,16 @@ static enum status find_body(const struct stream *stream, struct body *body, str
     mesh->cell_count = cells.count;
     mesh->cells = cells.node;
     mesh->region = body->regions.of_cell;
-    mesh->regions = names_in(&body->regions.names);
+    mesh->regions = body->regions.names;
     mesh->facet_count = body->facets.count;
     mesh->facets = body->facets.facet;
     mesh->facet_set = body->facets.group;
-    mesh->facet_sets = names_in(&body->facets.names);
+    mesh->facet_sets = body->facets.names;
     if (stream_find(stream, "sets.ptr") != NULL) {
         RETURN_IF_ERROR(stream_sets(stream, true, cells.node_count, &body->sets, error));
         mesh->set_ptr = body->sets.lists.ptr;
         mesh->set_idx = body->sets.lists.idx;
-        mesh->node_sets = names_in(&body->sets.names);
+        mesh->node_sets = body->sets.names;
     }
     return STATUS_OK;
 }

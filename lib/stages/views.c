@@ -141,33 +141,8 @@ enum status names_of(const struct section *section, const char *key, struct name
 {
     size_t size = strlen(section->attributes) + 1;
     *names = (struct names){0};
-    /* The list, followed by a copy that is cut at the commas. */
-    RETURN_IF_ERROR(NEW_ARRAY(&names->list, 2 * (int64_t)size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&names->name, (int64_t)size, error));
-    char *rest = NULL;
-    if (section_attribute(section, key, names->list, size) && names->list[0] != '\0') {
-        rest = memcpy(names->list + size, names->list, size);
-    }
-    while (rest != NULL) {
-        names->name[names->count++] = strsep(&rest, ",");
-    }
-    return STATUS_OK;
-}
-
-void names_free(struct names *names)
-{
-    FREE_ALL(names->list, names->name);
-    *names = (struct names){0};
-}
-
-int64_t names_find(const struct names *names, const char *name)
-{
-    for (int64_t i = 0; i < names->count; i++) {
-        if (strcmp(names->name[i], name) == 0) {
-            return i;
-        }
-    }
-    return -1;
+    NEW_SCRATCH(char, list, (int64_t)size, error);
+    return section_attribute(section, key, list, size) ? names_split(names, list, error) : STATUS_OK;
 }
 
 enum status stream_regions(const struct stream *stream, struct cell_regions *regions, struct error *error)

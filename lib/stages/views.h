@@ -4,6 +4,7 @@
 
 #include "approx/cells/cells.h"
 #include "approx/shape/shape.h"
+#include "base/names.h"
 #include "io/stream/sections.h"
 
 /* A section that is in the table of sections, with the type, columns and rows that it states. */
@@ -35,18 +36,8 @@ MUST_CHECK enum status stream_field(const struct stream *stream, const char *nam
 
 /* The names in an attribute of a section: names= of groups, or another list such as rows=, separated by
  * commas; to be freed also on failure. */
-struct names {
-    char *list; /* "body,lump", as in the section; "" if it has none */
-    int64_t count;
-    char **name; /* count */
-};
 MUST_CHECK enum status names_of(const struct section *section, const char *key, struct names *names,
                                 struct error *error);
-void names_free(struct names *names);
-
-/* Index of `name`, or -1. */
-int64_t names_find(const struct names *names, const char *name);
-
 /* The region of each cell: of_cell[cells.count], each below names.count; to be freed, also on failure. */
 struct cell_regions {
     const int32_t *of_cell;

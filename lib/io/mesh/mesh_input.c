@@ -142,6 +142,6 @@ void input_note(struct msh_reader *r, const char *format, ...)
     vsnprintf(note, sizeof note, format, arguments);
     va_end(arguments);
     if (r->status == STATUS_OK) {
-        r->status = mesh_add_name(&r->msh->notes, note, r->error);
+        r->status = names_add(&r->msh->notes, note, r->error);
     }
 }

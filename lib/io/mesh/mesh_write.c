@@ -35,7 +35,7 @@ struct group_kind {
     int dim, type, corners; /* type: gmsh's number of the element */
     int64_t count;          /* elements */
     const int32_t *element, *group;
-    const struct mesh_names *names;
+    const struct names *names;
 };
 
 static void print_names(FILE *file, const struct group_kind kind[3])

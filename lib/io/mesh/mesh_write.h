@@ -14,7 +14,7 @@ struct mesh_view {
     const int32_t *cells, *region, *facets, *facet_set; /* region: cell_count, facet_set: facet_count */
     const int64_t *set_ptr;                             /* node_sets.count + 1 */
     const int32_t *set_idx;
-    struct mesh_names regions, facet_sets, node_sets;
+    struct names regions, facet_sets, node_sets;
 };
 
 /* Print the body as a file of gmsh, MSH 4.1 as text: regions, groups of facets and node sets as physical

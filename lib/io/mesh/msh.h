@@ -2,6 +2,7 @@
  * two steps: msh_read reads a file as it is; mesh_build makes cells, facets and node sets of it. */
 #pragma once
 
+#include "base/names.h"
 #include "base/status.h"
 #include "io/stream/stream.h"
 
@@ -18,16 +19,6 @@ struct msh_group {
     int64_t element_count; /* 0 for a group with a name but no elements */
     char *written; /* the name in the file if it differs: in `name` blanks, commas and quotes are '_' */
 };
-
-/* Names of regions, facet sets or node sets. */
-struct mesh_names {
-    int32_t count;
-    char **name; /* count, distinct, without blanks and commas */
-};
-
-/* Append a name, a copy. */
-MUST_CHECK enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error);
-void mesh_names_free(struct mesh_names *names);
 
 struct msh_node {
     int64_t tag;    /* distinct */
@@ -54,7 +45,7 @@ struct msh {
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */
-    struct mesh_names notes;  /* what the file says that is not read */
+    struct names notes;  /* what the file says that is not read */
 };
 
 /* A type of element. */
@@ -99,8 +90,8 @@ struct mesh {
     int32_t *facet_set; /* facet_count: index into facet_sets; ascending */
     int64_t *set_ptr;   /* node_sets.count + 1 */
     int32_t *set_idx;   /* nodes, ascending within each set */
-    struct mesh_names regions, facet_sets, node_sets;
-    struct mesh_names notes; /* remarks on what was left out, one line each, first those of the file; these
+    struct names regions, facet_sets, node_sets;
+    struct names notes; /* remarks on what was left out, one line each, first those of the file; these
                                 may contain blanks */
 };
 

@@ -7,17 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status mesh_add_name(struct mesh_names *names, const char *name, struct error *error)
-{
-    RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
-    names->name[names->count] = strdup(name);
-    if (names->name[names->count] == NULL) {
-        return fail_memory(error, "names");
-    }
-    names->count++;
-    return STATUS_OK;
-}
-
 enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
 {
     char note[512];
@@ -25,26 +14,7 @@ enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(note, sizeof note, format, arguments);
     va_end(arguments);
-    return mesh_add_name(&draft->mesh->notes, note, draft->error);
-}
-
-int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length)
-{
-    for (int32_t i = 0; i < names->count; i++) {
-        if (strncmp(names->name[i], name, length) == 0 && names->name[i][length] == '\0') {
-            return i;
-        }
-    }
-    return -1;
-}
-
-void mesh_names_free(struct mesh_names *names)
-{
-    for (int32_t i = 0; i < names->count; i++) {
-        free(names->name[i]);
-    }
-    free(names->name);
-    *names = (struct mesh_names){0};
+    return names_add(&draft->mesh->notes, note, draft->error);
 }
 
 enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
@@ -53,7 +23,7 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     enum status status = STATUS_OK;
     struct mesh_draft draft = {.mesh = mesh, .msh = msh, .options = options, .error = error};
     *mesh = (struct mesh){0};
-    for (int32_t i = 0; i < msh->notes.count; i++) {
+    for (int64_t i = 0; i < msh->notes.count; i++) {
         TRY(mesh_add_note(&draft, "%s", msh->notes.name[i]));
     }
     TRY(mesh_find_roles(&draft));
@@ -75,45 +45,28 @@ void mesh_free(struct mesh *mesh)
 {
     FREE_ALL(mesh->x, mesh->cells, mesh->cell_region, mesh->facets, mesh->facet_set, mesh->set_ptr,
              mesh->set_idx);
-    mesh_names_free(&mesh->regions);
-    mesh_names_free(&mesh->facet_sets);
-    mesh_names_free(&mesh->node_sets);
-    mesh_names_free(&mesh->notes);
+    names_free(&mesh->regions);
+    names_free(&mesh->facet_sets);
+    names_free(&mesh->node_sets);
+    names_free(&mesh->notes);
     *mesh = (struct mesh){0};
 }
 
 /* ---- into a stream ---- */
 
-/* "names=a,b,c" (allocated), or NULL. */
-static char *names_attribute(const struct mesh_names *names)
-{
-    size_t size = sizeof "names=";
-    for (int32_t i = 0; i < names->count; i++) {
-        size += strlen(names->name[i]) + 1;
-    }
-    char *text = malloc(size);
-    char *at = text != NULL ? stpcpy(text, "names=") : NULL;
-    for (int32_t i = 0; i < names->count && text != NULL; i++) {
-        at = stpcpy(stpcpy(at, i > 0 ? "," : ""), names->name[i]);
-    }
-    return text;
-}
-
 /* A section whose header lists names. */
 static enum status put_named(struct stream *stream, const char *section, enum element_type type, int64_t rows,
-                             const struct mesh_names *names, void *data, struct error *error)
+                             const struct names *names, void *data, struct error *error)
 {
-    SCRATCH char *attributes = names_attribute(names);
-    if (attributes == NULL) {
-        return fail_memory(error, "names");
-    }
+    SCRATCH char *attributes = NULL;
+    RETURN_IF_ERROR(names_attribute(names, &attributes, error));
     return stream_put(stream, section, type, rows, 1, attributes, data, false, error);
 }
 
 enum status mesh_put(const struct mesh *mesh, struct stream *stream, struct error *error)
 {
     int dim = mesh->dim;
-    int32_t sets = mesh->node_sets.count;
+    int64_t sets = mesh->node_sets.count;
     RETURN_IF_ERROR(stream_put(stream, "nodes.x", TYPE_F8, mesh->node_count, dim,
                                dim == 2 ? "unit=m cols=x,y" : "unit=m cols=x,y,z", mesh->x, false, error));
     if (mesh->cell_count > 0) {

@@ -29,9 +29,6 @@ struct mesh_draft {
 MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* The index of a name, of this length, or -1. */
-int32_t mesh_find_name(const struct mesh_names *names, const char *name, size_t length);
-
 /* The dimension of an element, and the number of its corners: no other nodes are used. */
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element);
 int mesh_corners(const struct mesh_draft *draft, int64_t element);

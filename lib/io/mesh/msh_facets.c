@@ -72,14 +72,14 @@ static enum status add_set_node(struct gathering *g, int32_t group, int32_t node
 static enum status close_set(struct gathering *g, int32_t group)
 {
     struct mesh *mesh = g->draft->mesh;
-    int32_t set = mesh->node_sets.count;
+    int64_t set = mesh->node_sets.count;
     int64_t first = mesh->set_ptr[set];
     int64_t count = mesh->set_ptr[set + 1] - first;
     if (count == 0) {
         return STATUS_OK;
     }
     qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_int32);
-    RETURN_IF_ERROR(mesh_add_name(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error));
+    RETURN_IF_ERROR(names_add(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error));
     mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
     return STATUS_OK;
 }
@@ -116,7 +116,7 @@ static enum status add_face(struct gathering *g, int32_t group, const int32_t no
         g->face_stamp[face] = group + 1;
         tally->boundary++;
         msh_face_nodes(&g->faces, face, &mesh->facets[mesh->facet_count * dim]);
-        mesh->facet_set[mesh->facet_count++] = mesh->facet_sets.count;
+        mesh->facet_set[mesh->facet_count++] = (int32_t)mesh->facet_sets.count;
     }
     return STATUS_OK;
 }
@@ -151,7 +151,7 @@ static enum status gather_facets(struct gathering *g, int32_t group)
     if (msh->by_entity[mesh->dim - 1] && tally.boundary == g->boundary_count) {
         mesh->facet_count -= tally.boundary; /* one entity all over the boundary tells nothing */
     } else if (tally.boundary > 0) {
-        RETURN_IF_ERROR(mesh_add_name(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
+        RETURN_IF_ERROR(names_add(&mesh->facet_sets, msh->groups[group].name, g->draft->error));
     }
     RETURN_IF_ERROR(close_set(g, group));
     return note_tally(g, &msh->groups[group], &tally);
@@ -211,14 +211,14 @@ static int compare_names(const void *left, const void *right)
 /* Check that node sets have different names: groups differ only within a dimension. */
 static enum status check_set_names(const struct mesh_draft *draft)
 {
-    const struct mesh_names *sets = &draft->mesh->node_sets;
+    const struct names *sets = &draft->mesh->node_sets;
     SCRATCH char **order = NULL;
     RETURN_IF_ERROR(NEW_ARRAY(&order, sets->count, draft->error));
-    for (int32_t i = 0; i < sets->count; i++) {
+    for (int64_t i = 0; i < sets->count; i++) {
         order[i] = sets->name[i];
     }
     qsort(order, (size_t)sets->count, sizeof *order, compare_names);
-    for (int32_t i = 1; i < sets->count; i++) {
+    for (int64_t i = 1; i < sets->count; i++) {
         if (strcmp(order[i], order[i - 1]) == 0) {
             return fail(draft->error, STATUS_INPUT,
                         "physical groups of two dimensions are named '%s', both sets of nodes: rename one",

@@ -295,6 +295,6 @@ void msh_free(struct msh *msh)
         FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }
     free(msh->groups);
-    mesh_names_free(&msh->notes);
+    names_free(&msh->notes);
     *msh = (struct msh){0};
 }

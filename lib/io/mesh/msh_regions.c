@@ -140,32 +140,14 @@ static enum status note_names(struct mesh_draft *draft)
     return STATUS_OK;
 }
 
-/* Whether `name` is an item of the list. */
-static bool is_listed(const char *list, const char *name)
-{
-    size_t length = strlen(name);
-    for (const char *at = list; at != NULL; at = strchr(at, ',')) {
-        at += *at == ',';
-        if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0')) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /* Check that every wanted region exists. */
-static enum status check_wanted(const struct mesh_draft *draft, const struct mesh_names *present)
+static enum status check_wanted(const struct mesh_draft *draft, const struct names *wanted,
+                                const struct names *present)
 {
-    char list[256] = "";
-    for (int32_t i = 0; i < present->count; i++) {
-        text_append(list, sizeof list, "%s%s", i > 0 ? ", " : "", present->name[i]);
-    }
-    for (const char *at = draft->options->regions; at != NULL; at = strchr(at, ',')) {
-        at += *at == ',';
-        size_t length = strcspn(at, ",");
-        if (mesh_find_name(present, at, length) < 0) {
-            return fail(draft->error, STATUS_INPUT, "no cells in a region '%.*s': there are %s",
-                        length < 100 ? (int)length : 100, at, list);
+    for (int64_t i = 0; i < wanted->count; i++) {
+        if (names_find(present, wanted->name[i]) < 0) {
+            return fail(draft->error, STATUS_INPUT, "no cells in a region '%.100s': there are %s",
+                        wanted->name[i], present->list);
         }
     }
     return STATUS_OK;
@@ -176,9 +158,11 @@ static enum status check_wanted(const struct mesh_draft *draft, const struct mes
 static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of[], int32_t region_of_group[])
 {
     const struct msh *msh = draft->msh;
-    struct mesh_names *regions = &draft->mesh->regions;
-    FREED_BY(mesh_names_free) struct mesh_names present = {0};
+    struct names *regions = &draft->mesh->regions;
+    FREED_BY(names_free) struct names present = {0}, wanted = {0};
     const char *unnamed = "body"; /* "unnamed" if there are other regions */
+    RETURN_IF_ERROR(
+        names_split(&wanted, draft->options->regions != NULL ? draft->options->regions : "", draft->error));
     for (int32_t g = 0; g <= msh->group_count; g++) {
         region_of_group[g] = -1;
         if (cells_of[g] == 0) {
@@ -187,17 +171,17 @@ static enum status name_regions(struct mesh_draft *draft, const int64_t cells_of
         bool named = g < msh->group_count;
         unnamed = named ? "unnamed" : unnamed;
         const char *name = named ? msh->groups[g].name : unnamed;
-        RETURN_IF_ERROR(mesh_add_name(&present, name, draft->error));
-        if (draft->options->regions != NULL && !is_listed(draft->options->regions, name)) {
+        RETURN_IF_ERROR(names_add(&present, name, draft->error));
+        if (draft->options->regions != NULL && names_find(&wanted, name) < 0) {
             continue;
         }
-        int32_t same = named ? -1 : mesh_find_name(regions, name, strlen(name));
-        region_of_group[g] = same >= 0 ? same : regions->count;
+        int64_t same = named ? -1 : names_find(regions, name);
+        region_of_group[g] = (int32_t)(same >= 0 ? same : regions->count);
         if (same < 0) {
-            RETURN_IF_ERROR(mesh_add_name(regions, name, draft->error));
+            RETURN_IF_ERROR(names_add(regions, name, draft->error));
         }
     }
-    RETURN_IF_ERROR(check_wanted(draft, &present));
+    RETURN_IF_ERROR(check_wanted(draft, &wanted, &present));
     if (cells_of[msh->group_count] > 0 && regions->count > 1) {
         RETURN_IF_ERROR(mesh_add_note(draft, "cells in no physical group, region '%s': %lld", unnamed,
                                       (long long)cells_of[msh->group_count]));

@@ -2,22 +2,18 @@
 #include "groups/group_body.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 
 #include <string.h>
 
 /* *text = "names=a,b" of the groups, to be freed. */
-static enum status names_attribute(const struct group_list *list, char **text, struct error *error)
+static enum status names_of_groups(const struct group_list *list, char **text, struct error *error)
 {
-    size_t size = sizeof "names=";
+    FREED_BY(names_free) struct names names = {0};
     for (int64_t g = 0; g < list->count; g++) {
-        size += strlen(list->group[g].name) + 1;
+        RETURN_IF_ERROR(names_add(&names, list->group[g].name, error));
     }
-    enum status status = NEW_ARRAY(text, (int64_t)size, error);
-    char *at = status == STATUS_OK ? stpcpy(*text, "names=") : NULL;
-    for (int64_t g = 0; g < list->count && at != NULL; g++) {
-        at = stpcpy(stpcpy(at, g > 0 ? "," : ""), list->group[g].name);
-    }
-    return status;
+    return names_attribute(&names, text, error);
 }
 
 static int64_t item_count(const struct group_list *list)
@@ -44,7 +40,7 @@ static enum status write_facets(const struct group_body *body, struct stream *st
     }
     NEW_SCRATCH(int32_t, node, count * dim, error);
     RETURN_IF_ERROR(NEW_ARRAY(&set, count, error));
-    RETURN_IF_ERROR(names_attribute(list, &names, error));
+    RETURN_IF_ERROR(names_of_groups(list, &names, error));
     for (int64_t g = 0; g < list->count; g++) {
         for (int64_t i = 0; i < list->group[g].count; i++, at++) {
             memcpy(&node[at * dim], &body->boundary.node[(int64_t)list->group[g].item[i] * dim],
@@ -70,7 +66,7 @@ static enum status write_sets(const struct group_body *body, struct stream *stre
     }
     RETURN_IF_ERROR(NEW_ARRAY(&ptr, list->count + 1, error));
     RETURN_IF_ERROR(NEW_ARRAY(&idx, count, error));
-    RETURN_IF_ERROR(names_attribute(list, &names, error));
+    RETURN_IF_ERROR(names_of_groups(list, &names, error));
     for (int64_t g = 0; g < list->count; g++) {
         ptr[g + 1] = ptr[g] + list->group[g].count;
         memcpy(&idx[ptr[g]], list->group[g].item, (size_t)list->group[g].count * sizeof *idx);
@@ -93,7 +89,7 @@ static enum status write_regions(const struct group_body *body, struct stream *s
                     (long long)lacking, (long long)body->cells.count);
     }
     RETURN_IF_ERROR(NEW_ARRAY(&region, body->cells.count, error));
-    RETURN_IF_ERROR(names_attribute(list, &names, error));
+    RETURN_IF_ERROR(names_of_groups(list, &names, error));
     for (int64_t g = 0; g < list->count; g++) {
         for (int64_t i = 0; i < list->group[g].count; i++) {
             region[list->group[g].item[i]] = (int32_t)g;

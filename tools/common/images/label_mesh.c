@@ -20,14 +20,13 @@ static bool same_group(const struct member *a, const struct member *b)
     return a->inner == b->inner && a->outer == b->outer;
 }
 
-static enum status add_name(struct mesh_names *names, const char *first, const char *second,
-                            struct error *error)
+static enum status add_name(struct names *names, const char *first, const char *second, struct error *error)
 {
     SCRATCH char *joined = NULL;
     if (asprintf(&joined, "%s|%s", first, second) < 0) {
         return fail_memory(error, "a name");
     }
-    return mesh_add_name(names, joined, error);
+    return names_add(names, joined, error);
 }
 
 static enum status make_regions(const struct label_image *image, const struct label_cells *result,
@@ -40,8 +39,8 @@ static enum status make_regions(const struct label_image *image, const struct la
     }
     for (int32_t l = 1; l <= image->table.name_count; l++) {
         if (region[l] != 0) {
-            region[l] = mesh->regions.count;
-            RETURN_IF_ERROR(mesh_add_name(&mesh->regions, label_image_name(image, l), error));
+            region[l] = (int32_t)mesh->regions.count;
+            RETURN_IF_ERROR(names_add(&mesh->regions, label_image_name(image, l), error));
         }
     }
     for (int64_t c = 0; c < result->cell_count; c++) {
@@ -66,7 +65,7 @@ static enum status make_facets(const struct label_image *image, const struct lab
             RETURN_IF_ERROR(add_name(&mesh->facet_sets, label_image_name(image, member[f].inner),
                                      label_image_name(image, member[f].outer), error));
         }
-        mesh->facet_set[f] = mesh->facet_sets.count - 1;
+        mesh->facet_set[f] = (int32_t)mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
                (size_t)dim * sizeof *mesh->facets);
     }

@@ -1,0 +1,57 @@
+#include "base/names.h"
+
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status names_add(struct names *names, const char *name, struct error *error)
+{
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->list, names->length + (int64_t)strlen(name) + 2, error));
+    const char *end = stpcpy(stpcpy(names->list + names->length, names->count > 0 ? "," : ""), name);
+    names->length = end - names->list;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
+    names->name[names->count] = strdup(name);
+    return names->name[names->count++] != NULL ? STATUS_OK : fail_memory(error, "names");
+}
+
+enum status names_split(struct names *names, const char *list, struct error *error)
+{
+    SCRATCH char *copy = strdup(list);
+    if (copy == NULL) {
+        return fail_memory(error, "names");
+    }
+    RETURN_IF_ERROR(RESIZE_ARRAY(&names->list, names->length + 1, error));
+    names->list[names->length] = '\0';
+    for (char *rest = copy[0] != '\0' ? copy : NULL; rest != NULL;) {
+        RETURN_IF_ERROR(names_add(names, strsep(&rest, ","), error));
+    }
+    return STATUS_OK;
+}
+
+void names_free(struct names *names)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        free(names->name[i]);
+    }
+    FREE_ALL(names->name, names->list);
+    *names = (struct names){0};
+}
+
+int64_t names_find(const struct names *names, const char *name)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        if (strcmp(names->name[i], name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+enum status names_attribute(const struct names *names, char **text, struct error *error)
+{
+    return asprintf(text, "names=%s", names->list != NULL ? names->list : "") >= 0
+               ? STATUS_OK
+               : (*text = NULL, fail_memory(error, "names"));
+}

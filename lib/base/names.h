@@ -1,0 +1,26 @@
+/* Lists of names: of regions, facet sets, node sets; of notes. */
+#pragma once
+
+#include "base/status.h"
+
+#include <stdint.h>
+
+/* To be freed. */
+struct names {
+    int64_t count;
+    char **name; /* count */
+    char *list;  /* "body,lump", of `length` bytes; NULL or "": none */
+    int64_t length;
+};
+
+/* Append a copy of a name; of each item of a list "body,lump", of which "" has none: names->list is then not
+ * NULL. */
+MUST_CHECK enum status names_add(struct names *names, const char *name, struct error *error);
+MUST_CHECK enum status names_split(struct names *names, const char *list, struct error *error);
+void names_free(struct names *names);
+
+/* Index of `name`, or -1. */
+int64_t names_find(const struct names *names, const char *name);
+
+/* *text = "names=body,lump", to be freed. */
+MUST_CHECK enum status names_attribute(const struct names *names, char **text, struct error *error);
