@@ -49,14 +49,14 @@ OPTIMISE := $(if $(SAN)$(FUZZ),-O1 -fno-omit-frame-pointer,$(if $(COVERAGE),-O1,
 comma := ,
 SANITIZE := $(if $(SAN)$(FUZZ),-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined) \
     $(if $(FUZZ),-fsanitize=fuzzer-no-link) $(if $(COVERAGE),--coverage -fprofile-update=atomic)
-CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
+CFLAGS := -std=c11 -D_GNU_SOURCE -g -Ilib -Itools -Itools/common $(WARNINGS) $(HARDENING) $(OPTIMISE) $(SANITIZE) -fopenmp
 LDFLAGS := -pie -Wl,-z,relro -Wl,-z,now -fopenmp $(SANITIZE)
 LDLIBS := -lgsl -lgslcblas -lexpat -lz -lm
 
 LIBRARY := $(BUILD)/libmtled.a
 LIBRARY_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard lib/*/*.c lib/*/*/*.c))
-# What several tools share lies in tools/common; each other .c of tools/ is a program.
-COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tools/common/*.c tools/common/*/*.c))
+# Each .c of tools/ is a program. What belongs to one alone lies in a folder of its name, what several share in tools/common.
+COMMON_OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tools/mpi/%,$(wildcard tools/*/*.c tools/common/*/*.c)))
 TOOLS := $(patsubst tools/%.c,%,$(wildcard tools/*.c))
 PROGRAMS := $(TOOLS:%=$(BUILD)/bin/%)
 UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*.c))

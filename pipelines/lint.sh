@@ -5,19 +5,19 @@
 set -u -o pipefail
 cd "$(dirname "$0")/.." || exit 3
 found=0
-mapfile -t sources < <(printf '%s\n' lib/*/*.c lib/*/*/*.c tools/*.c tools/common/*.c tools/common/*/*.c)
+mapfile -t sources < <(printf '%s\n' lib/*/*.c lib/*/*/*.c tools/*.c tools/{common,mtled,sample,tovtk,voxels,warp}/*.c tools/common/*/*.c)
 mapfile -t scripts < <(find . -name '*.sh' -not -path './build*'; echo .ci/run)
 
 tidy() {
     printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 8 bash -c \
-        'clang-tidy --quiet "$@" -- -std=c11 -D_GNU_SOURCE -Ilib -Itools/common -fopenmp 2> /dev/null' tidy
+        'clang-tidy --quiet "$@" -- -std=c11 -D_GNU_SOURCE -Ilib -Itools -Itools/common -fopenmp 2> /dev/null' tidy
 }
 
 # What is not asked for, and why: missingInclude: system headers need not be read. uninitvar, ctuuninitvar, ctunullpointer: wrong
 # where an array is filled in a loop or an error text by who is called; gcc and clang warn of these as well.
 # arrayIndexOutOfBoundsCond: one wrong finding (tools/mts.c), of calls that do not return.
 cpp() {
-    cppcheck --quiet --std=c11 --enable=warning,performance,portability -D_GNU_SOURCE -Ilib -Itools/common --error-exitcode=1 \
+    cppcheck --quiet --std=c11 --enable=warning,performance,portability -D_GNU_SOURCE -Ilib -Itools -Itools/common --error-exitcode=1 \
         --library=pipelines/cppcheck.cfg --template='{file}:{line}: {id}: {message}' --suppress=missingInclude \
         --suppress=uninitvar --suppress=ctuuninitvar --suppress=ctunullpointer --suppress=arrayIndexOutOfBoundsCond \
         "${sources[@]}"

@@ -72,7 +72,7 @@ static const char usage[] =
 
 #include "stage_options.h"
 #include "process.h"
-#include "run/run.h"
+#include "mtled/run.h"
 
 #include "io/stream/sections.h"
 

@@ -48,9 +48,9 @@ static const char usage[] =
 
 #include "images/image_body.h"
 #include "images/images.h"
-#include "images/sample_points.h"
+#include "sample/sample_points.h"
 #include "output.h"
-#include "model/tissue.h"
+#include "images/tissue.h"
 #include "stages/views.h"
 
 #include "base/box.h"

@@ -42,7 +42,7 @@ static const char usage[] =
     "  mtled brain2d.scene < table.mts | tovtk -o brain2d.pvd\n"
     "  tovtk -o u.vtu u.dat && paraview u.vtu\n";
 
-#include "plot.h"
+#include "tovtk/plot.h"
 #include "output.h"
 
 #include <stdlib.h>

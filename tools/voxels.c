@@ -63,7 +63,7 @@ static const char usage[] =
     "  voxels -h 4mm a.nii.gz 9=mask.nii.gz | tag -r label_1=all --replace -m 'label_9|outside=part'\n";
 
 #include "cell_report.h"
-#include "images/label_image.h"
+#include "voxels/label_image.h"
 
 #include "approx/cells/parts.h"
 

@@ -55,7 +55,7 @@ static const char usage[] =
 #include "images/image_body.h"
 #include "images/images.h"
 #include "stages/stages.h"
-#include "images/warp_voxels.h"
+#include "warp/warp_voxels.h"
 
 #include "approx/field/motion.h"
 #include "io/image/image_sample.h"

@@ -1,0 +1,252 @@
+/* Displacements, loads, supports and contacts of a scene, as input of assembly. */
+#include "mtled/model.h"
+
+#include "io/files/surface.h"
+#include "io/files/table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum status model_add_curve(struct model *model, const struct scene_label *label,
+                            const struct scene_curve *curve, int32_t *index, struct error *error)
+{
+    struct assembly *input = &model->assembly;
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(RESIZE_ARRAY(&input->curves, input->curve_count + 1, error));
+    struct load_curve *added = &input->curves[input->curve_count];
+    if (curve->kind != CURVE_TABLE) {
+        *added = curve_of_kind(curve->kind);
+    } else {
+        double end = input->in_time                 ? model->scene->solver.end_time
+                     : model->scene->duration > 0.0 ? model->scene->duration
+                                                    : 1.0;
+        RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
+                                "%s: curve: not smooth, linear or step, and as a file", label->where));
+        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error),
+                                "%s: curve %s", label->where, curve->file));
+    }
+    *index = (int32_t)input->curve_count++;
+    return STATUS_OK;
+}
+
+static enum status add_displacement(struct model *model, const struct scene_displacement *section,
+                                    struct condition *condition, struct error *error)
+{
+    int dim = model->assembly.cells.dim;
+    FREED_BY(table_free) struct table table = {0};
+    *condition = section->condition;
+    condition->name = section->label.name;
+    condition->where = section->label.where;
+    RETURN_IF_ERROR(model_add_curve(model, &section->label, &section->curve, &condition->curve, error));
+    if (condition->kind == CONDITION_POINTS) {
+        return model_points(model, section, condition, error);
+    }
+    if (condition->kind == CONDITION_TABLE) {
+        RETURN_IF_ERROR(table_read(condition->table, 2 * dim, 2 * dim, &table, error));
+        condition->row_count = table.rows;
+        condition->rows = table.values;
+        table.values = NULL;
+        RETURN_IF_ERROR(model_own(model, (void *)condition->rows, error));
+    }
+    if (section->facets.count > 0) {
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &condition->facets, error));
+    } else {
+        RETURN_IF_ERROR(model_nodes(model, &section->label, &section->nodes, &condition->nodes,
+                                    &condition->node_count, error));
+    }
+    return STATUS_OK;
+}
+
+/* Set the fluid of a load, if its section has one. */
+static enum status set_fluid(const struct model *model, const struct scene_load *section, struct load *load,
+                             struct error *error)
+{
+    double length = hypot(hypot(section->gravity[0], section->gravity[1]), section->gravity[2]);
+    const double *gravity = length > 0.0 ? section->gravity : model->scene->gravity;
+    if (!(hypot(hypot(gravity[0], gravity[1]), gravity[2]) > 0.0)) {
+        return fail(error, STATUS_INPUT,
+                    "%s: density: a fluid without weight: give gravity here or in [scene]",
+                    section->label.where);
+    }
+    for (int a = 0; a < 3; a++) {
+        load->weight[a] = section->density * gravity[a];
+    }
+    load->is_fluid = true;
+    return STATUS_OK;
+}
+
+static enum status add_load(struct model *model, const struct scene_load *section, enum load_kind kind,
+                            struct load *load, struct error *error)
+{
+    *load = section->load;
+    load->kind = kind;
+    if (kind == LOAD_FORCE) {
+        RETURN_IF_ERROR(
+            model_nodes(model, &section->label, &section->nodes, &load->nodes, &load->node_count, error));
+    } else {
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &load->facets, error));
+    }
+    if (section->density > 0.0) {
+        RETURN_IF_ERROR(set_fluid(model, section, load, error));
+    }
+    return model_add_curve(model, &section->label, &section->curve, &load->curve, error);
+}
+
+static enum status add_loads(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    const struct {
+        const struct scene_load *sections;
+        int64_t count;
+        enum load_kind kind;
+    } kinds[] = {{scene->tractions, scene->traction_count, LOAD_TRACTION},
+                 {scene->forces, scene->force_count, LOAD_FORCE},
+                 {scene->pressures, scene->pressure_count, LOAD_PRESSURE}};
+    /* In time gravity acts from the start; in other scenes it grows smoothly. */
+    bool from_start = input->in_time || scene->duration > 0.0;
+    const struct scene_curve curve = {.kind = from_start ? CURVE_STEP : CURVE_SMOOTH};
+    struct load *loads;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &loads,
+                                scene->traction_count + scene->force_count + scene->pressure_count, error));
+    input->loads = loads;
+    memcpy(input->gravity, scene->gravity, sizeof input->gravity);
+    if (assembly_has_gravity(input)) {
+        RETURN_IF_ERROR(model_add_curve(model, NULL, &curve, &input->gravity_curve, error));
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int64_t i = 0; i < kinds[k].count; i++) {
+            RETURN_IF_ERROR(
+                add_load(model, &kinds[k].sections[i], kinds[k].kind, &loads[input->load_count++], error));
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status add_contact(struct model *model, const struct scene_contact *section,
+                               struct contact_condition *contact, struct error *error)
+{
+    struct rigid_motion *motion = &contact->motion;
+    double *corners = NULL;
+    *contact = section->condition;
+    contact->where = section->label.where;
+    if (section->against.count > 0) {
+        return model_between(model, section, contact, error);
+    }
+    RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &contact->facets, error));
+    RETURN_IF_ERROR(surface_facets(section->rigid, model->assembly.cells.dim, section->rigid_unit, &corners,
+                                   &contact->rigid_count, error));
+    contact->corners = corners;
+    RETURN_IF_ERROR(model_own(model, corners, error));
+    contact->flip = section->side == SCENE_LEFT || section->side == SCENE_BACK;
+    if (!motion->moves) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(
+        model_add_curve(model, &section->label, &section->curve, &motion->translation_curve, error));
+    return model_add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
+}
+
+/* Add the contacts of the scene that the model does not have; those it has keep their curves, which belong to
+ * the system. */
+static enum status add_contacts(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct contact_condition *contacts;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
+    for (int64_t c = 0; c < input->contact_count; c++) {
+        contacts[c] = input->contacts[c];
+    }
+    input->contacts = contacts;
+    for (; input->contact_count < scene->contact_count; input->contact_count++) {
+        int64_t c = input->contact_count;
+        RETURN_IF_ERROR(add_contact(model, &scene->contacts[c], &contacts[c], error));
+    }
+    return STATUS_OK;
+}
+
+static enum status add_supports(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    const struct scene_curve any = {.kind = CURVE_SMOOTH};
+    struct support_condition *supports;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &supports, scene->support_count, error));
+    input->supports = supports;
+    for (int64_t i = 0; i < scene->support_count; i++) {
+        const struct scene_support *section = &scene->supports[i];
+        supports[i] = section->condition;
+        supports[i].where = section->label.where;
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &supports[i].facets, error));
+        RETURN_IF_ERROR(model_add_curve(model, &section->label, &any, &supports[i].curve, error));
+        input->support_count++;
+    }
+    return STATUS_OK;
+}
+
+static enum status add_membranes(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct membrane_condition *membranes;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &membranes, scene->membrane_count, error));
+    input->membranes = membranes;
+    for (int64_t i = 0; i < scene->membrane_count; i++) {
+        const struct scene_membrane *section = &scene->membranes[i];
+        membranes[i] = section->condition;
+        membranes[i].where = section->label.where;
+        RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &membranes[i].facets, error));
+        input->membrane_count++;
+    }
+    return STATUS_OK;
+}
+
+enum status model_conditions(struct model *model, struct error *error)
+{
+    const struct scene *scene = model->scene;
+    struct assembly *input = &model->assembly;
+    struct condition *conditions;
+    input->in_time = scene->analysis == SCENE_DYNAMIC;
+    input->pointwise_volume = scene->solver.pointwise_volume;
+    input->node_values = scene->solver.node_values;
+    input->direct = scene->solver.direct;
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
+    input->conditions = conditions;
+    for (; input->condition_count < scene->displacement_count; input->condition_count++) {
+        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[input->condition_count],
+                                         &conditions[input->condition_count], error));
+    }
+    RETURN_IF_ERROR(add_loads(model, error));
+    RETURN_IF_ERROR(add_supports(model, error));
+    RETURN_IF_ERROR(add_membranes(model, error));
+    return add_contacts(model, error);
+}
+
+enum status model_initial(const struct model *model, double *u, double *v, struct error *error)
+{
+    const struct scene_initial *initial = &model->scene->initial;
+    const struct cells *cells = &model->assembly.cells;
+    int dim = cells->dim;
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(table_read(initial->table, 3 * dim, 3 * dim, &table, error));
+    if (table.rows != cells->node_count) {
+        return fail(error, STATUS_INPUT,
+                    "%s: [initial]: table %s: %lld rows for %lld nodes: give one for each",
+                    model->scene->path, initial->table, (long long)table.rows, (long long)cells->node_count);
+    }
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        const double *row = table.values + n * table.cols;
+        if (!(model_away(model, row, initial->table_unit, cells->x + n * dim) <= MODEL_SAME_PLACE)) {
+            return fail(error, STATUS_INPUT,
+                        "%s:%lld: not the place of node %lld: give the nodes in the order of the mesh",
+                        initial->table, (long long)table.line[n], (long long)n);
+        }
+        for (int a = 0; a < dim; a++) {
+            u[n * dim + a] = row[dim + a] * initial->table_unit;
+            v[n * dim + a] = row[2 * dim + a] * initial->table_unit;
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,91 @@
+#include "mtled/model.h"
+
+#include <string.h>
+
+/* wanted[present->count]: whether each group is among the names; `what` are groups in messages. */
+static enum status choose(const struct scene_label *label, const struct name_list *names, const char *what,
+                          const struct names *present, bool *wanted, struct error *error)
+{
+    for (int64_t i = 0; i < names->count; i++) {
+        int64_t group = names_find(present, names->names[i]);
+        if (group < 0) {
+            return fail(error, STATUS_INPUT, "%s: the mesh has no %s '%s'; present: %s", label->where, what,
+                        names->names[i], present->count > 0 ? present->list : "none");
+        }
+        wanted[group] = true;
+    }
+    return STATUS_OK;
+}
+
+bool model_is_whole(const struct name_list *names)
+{
+    return names->count == 1 && strcmp(names->names[0], "*") == 0;
+}
+
+enum status model_facets(struct model *model, const struct scene_label *label, const struct name_list *names,
+                         struct facet_set *set, struct error *error)
+{
+    const struct faces *boundary = &model->assembly.boundary;
+    FREED_BY(named_facets_free) struct named_facets facets = {0};
+    int32_t *chosen;
+    int dim = model->assembly.cells.dim;
+    *set = (struct facet_set){0};
+    if (model_is_whole(names)) {
+        *set = (struct facet_set){boundary->count, boundary->node};
+        return STATUS_OK;
+    }
+    if (stream_find(model->stream, "facets") == NULL || stream_find(model->stream, "facets.set") == NULL) {
+        return fail(error, STATUS_INPUT, "%s: no named facets: give the mesh physical groups, or run tag",
+                    label->where);
+    }
+    RETURN_IF_ERROR(stream_facets(model->stream, true, &model->assembly.cells, &facets, error));
+    NEW_SCRATCH(bool, wanted, facets.names.count, error);
+    RETURN_IF_ERROR(choose(label, names, "facet group", &facets.names, wanted, error));
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, facets.count * dim, error));
+    NEW_SCRATCH(int64_t, face, facets.count, error);
+    RETURN_IF_ERROR(faces_find(boundary, facets.count, facets.facet, face, error));
+    NEW_SCRATCH(bool, taken, boundary->count, error);
+    for (int64_t f = 0; f < facets.count; f++) {
+        if (!wanted[facets.group[f]] || (face[f] >= 0 && taken[face[f]])) {
+            continue;
+        }
+        if (face[f] >= 0) {
+            taken[face[f]] = true;
+        }
+        memcpy(chosen + set->count++ * dim, facets.facet + f * dim, (size_t)dim * sizeof *chosen);
+    }
+    set->facet = chosen;
+    if (set->count == 0) {
+        return fail(error, STATUS_INPUT, "%s: its facet groups are empty", label->where);
+    }
+    return STATUS_OK;
+}
+
+enum status model_nodes(struct model *model, const struct scene_label *label, const struct name_list *names,
+                        const int32_t **nodes, int64_t *count, struct error *error)
+{
+    FREED_BY(named_sets_free) struct named_sets sets = {0};
+    int32_t *chosen;
+    int64_t node_count = model->assembly.cells.node_count;
+    *count = 0;
+    if (stream_find(model->stream, "sets.ptr") == NULL) {
+        return fail(error, STATUS_INPUT, "%s: no node sets: run tag -n", label->where);
+    }
+    RETURN_IF_ERROR(stream_sets(model->stream, true, node_count, &sets, error));
+    NEW_SCRATCH(bool, wanted, sets.names.count, error);
+    RETURN_IF_ERROR(choose(label, names, "node set", &sets.names, wanted, error));
+    NEW_SCRATCH(bool, member, node_count, error);
+    for (int64_t set = 0; set < sets.lists.count; set++) {
+        for (int64_t k = sets.lists.ptr[set]; k < sets.lists.ptr[set + 1] && wanted[set]; k++) {
+            member[sets.lists.idx[k]] = true;
+        }
+    }
+    RETURN_IF_ERROR(MODEL_ARRAY(model, &chosen, node_count, error));
+    *nodes = chosen;
+    for (int64_t n = 0; n < node_count; n++) {
+        if (member[n]) {
+            chosen[(*count)++] = (int32_t)n;
+        }
+    }
+    return STATUS_OK;
+}

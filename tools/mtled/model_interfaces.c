@@ -1,0 +1,189 @@
+/* Interfaces between materials: which side owns them, and whether supports stop there. */
+#include "mtled/model.h"
+
+#include "approx/support/support.h"
+#include "base/sets.h"
+#include "base/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Jumps of the shear modulus by more than this count: layers in series are 2 % too stiff where supports reach
+ * across a jump of 3. */
+static const double least_jump = 2.0;
+
+/* The shear moduli at the integration points of a cell. */
+struct moduli {
+    double low, high;
+};
+
+static void read_moduli(const struct assembly *input, struct moduli *of)
+{
+    const struct material_list *materials = &input->materials;
+    for (int64_t c = 0; c < input->cells.count; c++) {
+        of[c] = (struct moduli){INFINITY, 0.0};
+    }
+    for (int64_t q = 0; q < input->point_count; q++) {
+        double modulus = materials->items[materials->of_point[q]].shear_modulus;
+        struct moduli *cell = &of[input->point_cell[q]];
+        *cell = (struct moduli){fmin(cell->low, modulus), fmax(cell->high, modulus)};
+    }
+}
+
+/* The ratio of the largest shear modulus of two cells to the least. */
+static double jump_between(const struct moduli *a, const struct moduli *b)
+{
+    return fmax(a->high, b->high) / fmin(a->low, b->low);
+}
+
+/* Whether two cells are on one side of the input's interfaces. */
+static bool on_one_side(const struct assembly *input, int32_t a, int32_t b)
+{
+    return input->cell_side == NULL || input->cell_side[a] == input->cell_side[b];
+}
+
+/* side[cells]: the parts into which jumps of the modulus within a region divide the sides of the input.
+ * `*divided`: whether there are such. Cells on both sides of a jump that hang together around it stay on one
+ * side. */
+static enum status divide(const struct assembly *input, const struct faces *faces, const int32_t *region,
+                          const struct moduli *of, int32_t *side, bool *divided, struct error *error)
+{
+    int64_t cells = input->cells.count, count = 0;
+    NEW_SCRATCH(int32_t, first, cells, error);
+    *divided = false;
+    for (int64_t c = 0; c < cells; c++) {
+        first[c] = (int32_t)c;
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        if (b >= 0 && on_one_side(input, a, b) &&
+            !(region[a] == region[b] && jump_between(&of[a], &of[b]) > least_jump)) {
+            set_join(first, a, b);
+        }
+    }
+    for (int64_t c = 0; c < cells; c++) {
+        int32_t head = set_first(first, (int32_t)c);
+        side[c] = head == c ? (int32_t)count++ : side[head];
+    }
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        *divided = *divided || (b >= 0 && on_one_side(input, a, b) && side[a] != side[b]);
+    }
+    return STATUS_OK;
+}
+
+/* What there is at the faces between cells. */
+struct found {
+    bool softer;  /* a jump where supports stop, and the softer side owns the interface */
+    double ratio; /* the largest jump across which supports reach */
+    int64_t face; /* there */
+};
+
+static struct found search(const struct faces *faces, const int32_t *side, const struct moduli *of)
+{
+    struct found found = {.ratio = least_jump};
+    for (int64_t f = 0; f < faces->count; f++) {
+        int32_t a = faces->cell[2 * f], b = faces->cell[2 * f + 1];
+        double ratio = b < 0 ? 1.0 : jump_between(&of[a], &of[b]);
+        if (ratio > least_jump && side != NULL && side[a] != side[b]) {
+            found.softer = found.softer || (side[a] < side[b]) == (of[a].high < of[b].high);
+        } else if (ratio > found.ratio) {
+            found.ratio = ratio;
+            found.face = f;
+        }
+    }
+    return found;
+}
+
+/* A side, and the mean shear modulus of its cells. */
+struct ranked {
+    double modulus;
+    int32_t side;
+};
+
+static int compare_ranked(const void *a, const void *b)
+{
+    const struct ranked *first = a, *second = b;
+    return first->modulus != second->modulus ? (first->modulus < second->modulus ? 1 : -1)
+                                             : (first->side > second->side) - (first->side < second->side);
+}
+
+/* Number the sides by falling stiffness, and make the shape functions anew: the lower side owns an interface.
+ */
+static enum status stiffest_first(struct stream *stream, int64_t cells, const int32_t *side,
+                                  const struct moduli *of, struct error *error)
+{
+    int64_t sides = 0;
+    NEW_SCRATCH(int32_t, renewed, cells, error);
+    for (int64_t c = 0; c < cells; c++) {
+        sides = side[c] >= sides ? side[c] + 1 : sides;
+    }
+    NEW_SCRATCH(int64_t, count, sides, error);
+    NEW_SCRATCH(int32_t, rank, sides, error);
+    NEW_SCRATCH(struct ranked, ranked, sides, error);
+    for (int64_t c = 0; c < cells; c++) {
+        count[side[c]]++;
+        ranked[side[c]].modulus += of[c].high;
+    }
+    for (int64_t s = 0; s < sides; s++) {
+        ranked[s] = (struct ranked){count[s] > 0 ? ranked[s].modulus / (double)count[s] : 0.0, (int32_t)s};
+    }
+    qsort(ranked, (size_t)sides, sizeof *ranked, compare_ranked);
+    for (int64_t s = 0; s < sides; s++) {
+        rank[ranked[s].side] = (int32_t)s;
+    }
+    for (int64_t c = 0; c < cells; c++) {
+        renewed[c] = rank[side[c]];
+    }
+    return stage_renew(stream, renewed, error);
+}
+
+/* Say where supports reach across a jump; `distance`: they reach across everything. */
+static void note_jump(struct model *model, const struct faces *faces, const struct cell_regions *regions,
+                      const struct found *found, bool distance)
+{
+    const struct cells *cells = &model->assembly.cells;
+    const int32_t *cell = faces->cell + 2 * found->face, *node = faces->node + found->face * cells->dim;
+    double middle[3];
+    char place[96];
+    vector_middle(cells->dim, cells->x, cells->dim, node, middle);
+    point_text(cells->dim, middle, place);
+    int32_t first = regions->of_cell[cell[0]], second = regions->of_cell[cell[1]];
+    (void)fail(&model->interfaces, STATUS_OK,
+               "the shear modulus jumps %.3g : 1 between cells of %s%s%s at %s, and supports reach across: "
+               "stress and forces are wrong there: %s",
+               found->ratio, regions->names.name[first], first == second ? "" : " and ",
+               first == second ? "" : regions->names.name[second], place,
+               first == second && !distance ? "smooth the table, or refine the mesh"
+                                            : "let supports stop there (support without -i and --reach)");
+}
+
+enum status model_interfaces(struct model *model, struct stream *stream, bool *renewed, struct error *error)
+{
+    const struct assembly *input = &model->assembly;
+    FREED_BY(faces_free) struct faces built = {0};
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    struct recorded recorded;
+    bool divided = false;
+    NEW_SCRATCH(struct moduli, of, input->cells.count, error);
+    NEW_SCRATCH(int32_t, divided_side, input->cells.count, error);
+    if (!input->smoothed) {
+        RETURN_IF_ERROR(faces_build(&input->cells, false, &built, error));
+    }
+    const struct faces *faces = input->smoothed ? &input->faces : &built;
+    RETURN_IF_ERROR(stream_regions(stream, &regions, error));
+    RETURN_IF_ERROR(stage_recorded(stream, "support", &recorded, error));
+    read_moduli(input, of);
+    const int32_t *side = input->cell_side;
+    bool distance = recorded.support.visibility == VISIBILITY_DISTANCE;
+    if (!distance) {
+        RETURN_IF_ERROR(divide(input, faces, regions.of_cell, of, divided_side, &divided, error));
+        side = divided ? divided_side : side;
+    }
+    struct found found = search(faces, side, of);
+    if (found.ratio > least_jump) {
+        note_jump(model, faces, &regions, &found, distance);
+    }
+    *renewed = divided || found.softer;
+    return *renewed ? stiffest_first(stream, input->cells.count, side, of, error) : STATUS_OK;
+}

@@ -1,0 +1,246 @@
+#include "mtled/run.h"
+
+#include "base/processor.h"
+
+#include <string.h>
+
+/* ---- signals: the run ends after the current step ---- */
+
+static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+static volatile sig_atomic_t caught;
+
+static void on_signal(int number)
+{
+    caught = number;
+}
+
+/* Let SIGINT, SIGTERM and SIGHUP, unless ignored, only set `caught` to their number; it is initially 0. A
+ * second signal of the same kind ends the process at once. */
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler != SIG_IGN) {
+            sigaction(numbers[i], &action, NULL);
+        }
+    }
+}
+
+/* ---- checkpoints ---- */
+
+/* Put a section of another stream, which outlives this one. */
+static void share(const struct run *run, struct stream *stream, const struct section *section)
+{
+    TOOL_TRY(run->tool, stream_put(stream, section->name, section->type, section->rows, section->cols,
+                                   section->attributes, section->data, false, &error));
+}
+
+/* Copy the tables of frames of the restored run into the stream. */
+static void take_tables(struct run *run)
+{
+    const struct stream *restored = &run->checkpoint.restored;
+    for (int64_t i = 0; i < restored->section_count; i++) {
+        const struct section *section = &restored->sections[i];
+        if (run_is_of_frames(section->name) && section->type == TYPE_F8) {
+            share(run, run->stream, section);
+        }
+    }
+}
+
+/* Whether all processes have the same number. */
+static bool agree(int64_t number)
+{
+    const struct ranks *ranks = process_ranks();
+    return ranks_most(ranks, number) == number && ranks_most(ranks, -number) == -number;
+}
+
+/* Exit if several processes have different scenes, inputs or checkpoints: they would not do the same. */
+static void compare_processes(const struct run *run)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int64_t set = 0;
+    for (const char *letter = processor_best_set(); *letter != '\0'; letter++) {
+        set = 256 * set + *letter;
+    }
+    bool same[] = {agree(checkpoint->identity.scene), agree(checkpoint->identity.input),
+                   agree(checkpoint->file != NULL), agree(set)};
+    if (!same[0] || !same[1] || !same[2]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes do not read the same: give all the same scene, tables, stream and options");
+    }
+    if (!same[3]) {
+        tool_fail(run->tool, STATUS_INPUT,
+                  "the processes run on processors with different instructions: take machines of one kind");
+    }
+}
+
+static void resume(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    int64_t step = 0;
+    TOOL_TRY(run->tool, checkpoint_read(checkpoint->file, &checkpoint->identity, &checkpoint->restored,
+                                        &checkpoint->is_restored, &step, &error));
+    if (!agree(step) || !agree(checkpoint->is_restored)) {
+        tool_fail(run->tool, STATUS_INPUT, "%s: not the same file for all processes: put it where all see it",
+                  checkpoint->file);
+    }
+    if (!checkpoint->is_restored) {
+        return;
+    }
+    tool_note(run->tool, "going on from step %lld, kept in %s", (long long)step, checkpoint->file);
+    checkpoint->state = checkpoint_state(&checkpoint->restored);
+    take_tables(run);
+    TOOL_TRY(run->tool, run_frames_state(run, &checkpoint->state, &error));
+}
+
+void run_checkpoint_begin(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    if (checkpoint->file != NULL || process_ranks() != NULL) {
+        TOOL_TRY(run->tool, checkpoint_identify(run->scene, run->stream, &checkpoint->identity, &error));
+        if (run->start_file != NULL) {
+            checkpoint->identity.input += checkpoint_identify_input(&run->start.stream);
+        }
+        compare_processes(run);
+    }
+    if (checkpoint->file != NULL) {
+        resume(run);
+    }
+    checkpoint->last = clock_seconds();
+    checkpoint->interrupted = &caught;
+    catch_signals();
+}
+
+const struct state *run_checkpoint_state(const struct run *run)
+{
+    return run->checkpoint.is_restored ? &run->checkpoint.state : NULL;
+}
+
+/* Put sections for viewing the checkpoint: the cloud, and the field at this step; and the tables of frames.
+ */
+static void put_view(struct run *run, const struct progress *progress, struct stream *stream)
+{
+    static const char *const names[] = {"nodes.x", "cells", "cells.region"};
+    int64_t nodes = run->model->system.node_count, dim = run->scene->dim;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const struct section *section = stream_find(run->stream, names[i]);
+        if (section != NULL) {
+            share(run, stream, section);
+        }
+    }
+    for (int64_t i = 0; i < run->stream->section_count; i++) {
+        if (run_is_of_frames(run->stream->sections[i].name)) {
+            share(run, stream, &run->stream->sections[i]);
+        }
+    }
+    double *field = run_new_values(run, nodes * dim);
+    assembly_nodal_field(&run->model->assembly, progress->u, field);
+    tool_put(run->tool, stream, "u.last", TYPE_F8, nodes, dim, "unit=m", field);
+}
+
+/* The state of the run, and of the checks of this program. */
+struct whole_state {
+    struct run *run;
+    const struct progress *progress;
+};
+
+static enum status visit_whole(void *owner, const struct state *state, struct error *error)
+{
+    const struct whole_state *whole = owner;
+    RETURN_IF_ERROR(whole->progress->state(whole->progress->run, state, error));
+    RETURN_IF_ERROR(run_folds_state(whole->run, state, error));
+    RETURN_IF_ERROR(run_stability_state(whole->run, state, error));
+    return run_frames_state(whole->run, state, error);
+}
+
+static enum status write_now(struct run *run, const struct progress *progress, struct error *error)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    struct stream stream = {0};
+    enum status status;
+    put_view(run, progress, &stream);
+    struct whole_state whole = {run, progress};
+    TRY(run_frames_sync(run, error));
+    TRY(checkpoint_fill(&stream, &checkpoint->identity, progress->step, visit_whole, &whole, error));
+    TRY(checkpoint_write(checkpoint->file, &stream, error));
+    checkpoint->is_there = true;
+done:
+    stream_free(&stream);
+    checkpoint->last = clock_seconds();
+    return status;
+}
+
+/* Write a checkpoint, by the first process. Returns a failure that must end the run. */
+static enum status keep(struct run *run, const struct progress *progress, bool interrupted)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    bool is_first = !checkpoint->is_there && !checkpoint->is_restored;
+    if (!process_speaks() ||
+        (!interrupted && clock_seconds() - checkpoint->last < checkpoint->interval && !is_first)) {
+        return STATUS_OK;
+    }
+    checkpoint->status = write_now(run, progress, &checkpoint->error);
+    if (checkpoint->status != STATUS_OK && !interrupted) {
+        run_clear_progress(&run->display);
+        if (is_first) { /* fail now rather than when the checkpoint is needed */
+            struct error unused;
+            enum status ignored = checkpoint_remove(checkpoint->file, &unused);
+            (void)ignored;
+            return checkpoint->status;
+        }
+        tool_note(run->tool, "no checkpoint at step %lld: %s; the one before stays",
+                  (long long)progress->step, checkpoint->error.text);
+    }
+    return STATUS_OK;
+}
+
+bool run_checkpoint_step(struct run *run, const struct progress *progress)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    const struct ranks *ranks = process_ranks();
+    bool interrupted = ranks_most(ranks, *checkpoint->interrupted) != 0;
+    if (checkpoint->file != NULL) {
+        enum status status = keep(run, progress, interrupted);
+        tool_check(run->tool, ranks_agree(ranks, status, &checkpoint->error), &checkpoint->error);
+    }
+    return !interrupted;
+}
+
+void run_checkpoint_end(void)
+{
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction present;
+        if (sigaction(numbers[i], NULL, &present) == 0 && present.sa_handler == on_signal) {
+            signal(numbers[i], SIG_DFL);
+        }
+    }
+}
+
+void run_checkpoint_stop(struct run *run, int64_t steps)
+{
+    const struct run_checkpoint *checkpoint = &run->checkpoint;
+    int number = (int)ranks_most(process_ranks(), *checkpoint->interrupted);
+    const char *name = sigabbrev_np(number);
+    enum status status = (enum status)(128 + number);
+    if (checkpoint->file == NULL) {
+        run_fail(run, status, "ended by SIG%s after step %lld: to be able to go on, use -c", name,
+                 (long long)steps);
+    }
+    if (checkpoint->status != STATUS_OK) {
+        run_fail(run, status, "ended by SIG%s after step %lld: no checkpoint: %s", name, (long long)steps,
+                 checkpoint->error.text);
+    }
+    run_fail(run, status, "ended by SIG%s after step %lld: the same command goes on from %s", name,
+             (long long)steps, checkpoint->file);
+}
+
+void run_checkpoint_remove(struct run *run)
+{
+    struct run_checkpoint *checkpoint = &run->checkpoint;
+    stream_free(&checkpoint->restored);
+    if (checkpoint->file != NULL && process_speaks()) {
+        TOOL_TRY(run->tool, checkpoint_remove(checkpoint->file, &error));
+    }
+}

@@ -1,0 +1,179 @@
+/* Notes and verdicts on contacts: where they begin, penetration, and sides that slide. */
+#include "mtled/run.h"
+
+#include "approx/field/field_compare.h"
+#include "solid/equilibrium/statics.h"
+#include "solid/system/energy.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A result of which more than this share of the forces is missing, because of the remaining penetration, is
+ * refused; sliding sides are reported if they leave their surface by more than this share of how far they
+ * slide. */
+static const double most_missing = 0.01;
+
+/* The largest displacement prescribed by rows of conditions, m. */
+static double prescribed_motion(const struct solid_system *system, const struct constraint_rows *rows)
+{
+    double most = 0.0;
+    for (int64_t r = 0; r < rows->count; r++) {
+        most = fmax(most, fabs(rows->target[r]) * curve_largest(&system->curves[rows->curve[r]]));
+    }
+    return most;
+}
+
+/* The largest motion of the surface at the points of its contact, m: not that at the rim of a wide surface
+ * that turns. */
+static double own_motion(const struct solid_system *system, const struct contact *contact)
+{
+    const struct rigid_motion *motion = &contact->motion;
+    double length = 0.0;
+    for (int64_t p = 0; p < contact->count && motion->moves; p++) {
+        length = fmax(length, rigid_motion_path(motion, contact->dim, contact->rest + p * contact->dim));
+    }
+    return motion->moves ? length * fmax(curve_largest(&system->curves[motion->translation_curve]),
+                                         curve_largest(&system->curves[motion->rotation_curve]))
+                         : 0.0;
+}
+
+/* A motion of more than STATICS_MOST_SIZES sizes of the body is noted: the scene may have m in place of mm.
+ * More than MODEL_MOST_SIZES is refused. */
+static void check_motion(const struct run *run, const char *where, const char *what, double way)
+{
+    static const char text[] = "%s: a %s of %.3g m is prescribed, %.3g times the size of the body: "
+                               "lengths without a unit are in m";
+    double sizes = way / run->model->assembly.extent;
+    if (sizes > MODEL_MOST_SIZES) {
+        tool_fail(run->tool, STATUS_INPUT, text, where, what, way, sizes);
+    }
+    if (sizes > STATICS_MOST_SIZES) {
+        tool_note(run->tool, text, where, what, way, sizes);
+    }
+}
+
+void run_contacts_begin(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    check_motion(
+        run, run->scene->path, "displacement",
+        fmax(prescribed_motion(system, &system->rows), prescribed_motion(system, &system->penalties)));
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        if (contact->surface.facet_count > 0) {
+            check_motion(run, run->model->assembly.contacts[contact->section].where, "motion",
+                         own_motion(system, contact));
+        }
+    }
+}
+
+/* The displacement that moves a facet of a contact, or NULL. */
+static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
+{
+    size_t size = (size_t)input->cells.dim * sizeof *set->facet;
+    for (int64_t i = 0; i < input->condition_count; i++) {
+        const struct facet_set *other = &input->conditions[i].facets;
+        for (int64_t f = 0; f < other->count * set->count; f++) {
+            if (memcmp(other->facet + f / set->count * input->cells.dim,
+                       set->facet + f % set->count * input->cells.dim, size) == 0) {
+                return &input->conditions[i];
+            }
+        }
+    }
+    return NULL;
+}
+
+/* What would have to change for contact `worst` to penetrate less; room for it. */
+static const char *penetration_remedy(const struct run *run, const struct contact *worst, char text[256])
+{
+    const struct assembly *input = &run->model->assembly;
+    const struct contact_condition *contact = &input->contacts[worst->section];
+    const struct condition *mover = worst->surface.facet_count > 0 ? moved_by(input, &contact->facets) : NULL;
+    if (mover != NULL) {
+        snprintf(text, 256, "[displacement %s] moves facets of [contact %s]: leave them out of one",
+                 mover->name, run->scene->contacts[worst->section].label.name);
+        return text;
+    }
+    if (worst->surface.facet_count > 0 && contact->stiffness > 0.0) {
+        snprintf(text, 256, "[contact %s] sets its stiffness: %s",
+                 run->scene->contacts[worst->section].label.name,
+                 input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
+        return text;
+    }
+    return input->in_time
+               ? "a larger stiffness, with shorter steps, or a finer cloud there helps"
+               : "a finer cloud there may help; where contacts enclose a body that is hardly compressible, "
+                 "prescribe `normal` on sides that stay in contact";
+}
+
+void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final)
+{
+    struct solid_system *system = &run->model->system;
+    const struct contact *worst = system->contacts;
+    double missing = 0.0, miss;
+    char text[256], forces[64] = "";
+    system_measure_contacts(system, run->u, false);
+    for (int64_t c = 1; c < system->contact_count; c++) {
+        worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
+    }
+    miss = system_contact_miss(system);
+    if (miss <= DBL_EPSILON * run->model->assembly.extent) { /* as at the start, where nothing has moved */
+        return;
+    }
+    if (!run->model->assembly.in_time && miss > run->scene->solver.tolerance * motion) {
+        missing = system_missing_work(system) / (2.0 * energy_internal(system, run->u));
+    }
+    if (missing > most_missing) {
+        run->last_good = -1.0; /* all frames have been given */
+        run_fail(run, STATUS_VERDICT,
+                 "%s: contacts penetrate by %.2g m, so that forces are too small by about %.2g %%: %s",
+                 run->scene->path, miss, 100.0 * fmin(missing, 1.0), penetration_remedy(run, worst, text));
+    }
+    if (missing > 0.0) {
+        snprintf(forces, sizeof forces, ", so that forces may be %.2g %% too small", 100.0 * missing);
+    }
+    if (final && miss > allowed) {
+        tool_note(run->tool, "%s: contacts penetrate by %.2g m, not %.2g m%s: %s", run->scene->path, miss,
+                  allowed, forces, penetration_remedy(run, worst, text));
+    }
+}
+
+void run_contacts_touch(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        if (contact->deepest == 0.0 && contact->surface.facet_count > 0) {
+            tool_note(run->tool,
+                      "%s: [contact %s]: the body never touches the rigid surface: has that the right unit "
+                      "and place, and does it begin outside the body?",
+                      run->scene->path, run->scene->contacts[contact->section].label.name);
+        }
+    }
+}
+
+void run_sliding_judge(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    struct sliding_error worst;
+    char place[96];
+    if (system->sliding.facet_count == 0) {
+        return;
+    }
+    SCRATCH double *field = run_new_values(run, system->node_count * system->dim);
+    assembly_nodal_field(&run->model->assembly, run->u, field);
+    TOOL_TRY(run->tool, sliding_measure(&system->sliding, system->dim, system->node_count, system->X, field,
+                                        &worst, &error));
+    if (worst.share > most_missing) {
+        point_text(system->dim, worst.place, place);
+        tool_note(
+            run->tool,
+            "%s: [displacement %s]: the side slides by %.2g m where its radius is %.2g m, at %s m: it leaves "
+            "its surface by %.2g m, as `normal` acts along the normal at rest: use a [contact] with that "
+            "surface as rigid one, or smaller loads",
+            run->scene->path, system->conditions[worst.section].name, worst.slide,
+            0.5 * worst.slide * worst.slide / worst.distance, place, worst.distance);
+    }
+}

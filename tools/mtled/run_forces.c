@@ -1,0 +1,200 @@
+/* Forces and moments of the conditions, supports and contacts of a scene. */
+#include "io/stream/sections.h"
+#include "base/vector.h"
+#include "mtled/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Sums over the conditions, supports and contacts of a scene: a row for each displacement, then for each
+ * support, then for each contact. */
+struct totals {
+    int dim, moment_count; /* components of a force, of a moment */
+    const double *about;   /* dim: the point of the moments, m */
+    double *force;         /* rows * dim, N (2D: N/m) */
+    double *moment;        /* rows * moment_count, N m (2D: N) */
+};
+
+/* Add a force on an average. It acts at the average of the deformed positions, as the weights have the sum 1
+ * and reproduce linear fields. */
+static void add_force(const struct run *run, const struct average *average, const double *force, int64_t row,
+                      struct totals *totals)
+{
+    int dim = totals->dim, count = totals->moment_count;
+    double arm[3] = {0.0, 0.0, 0.0}, f[3] = {0.0, 0.0, 0.0}, moment[3];
+    for (int64_t i = 0; i < average->length; i++) {
+        for (int a = 0; a < dim; a++) {
+            int64_t at = (int64_t)average->idx[i] * dim + a;
+            arm[a] += average->phi[i] * (run->model->system.X[at] + run->u[at]);
+        }
+    }
+    for (int a = 0; a < dim; a++) {
+        arm[a] -= totals->about[a];
+        f[a] = force[a];
+        totals->force[row * dim + a] += f[a];
+    }
+    vector_cross(arm, f, moment);
+    add_scaled(count, 1.0, moment + 3 - count,
+               totals->moment + row * count); /* in 2D only the last component */
+}
+
+/* Add the forces of the conditions and of their constraint penalties, and those of the springs of supports.
+ */
+static void add_conditions(const struct run *run, struct totals *totals)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct constraint_rows *rows = &system->rows, *penalties = &system->penalties;
+    int dim = totals->dim;
+    double force[3];
+    for (int64_t r = 0; r < rows->count; r++) {
+        double share = 0.0;
+        struct average average = constraint_rows_average(rows, r);
+        for (int64_t i = 0; i < average.length; i++) {
+            share += average.phi[i]; /* 1 up to round-off */
+        }
+        for (int a = 0; a < dim; a++) {
+            force[a] = share * run->model->row_force[r] * rows->direction[r * dim + a];
+        }
+        add_force(run, &average, force, rows->section[r], totals);
+    }
+    for (int64_t r = 0; r < penalties->count; r++) {
+        double pull = system_penalty_force(system, r, run->u);
+        struct average average = constraint_rows_average(penalties, r);
+        for (int a = 0; a < dim; a++) {
+            force[a] = pull * penalties->direction[r * dim + a];
+        }
+        add_force(run, &average, force, penalties->section[r], totals);
+    }
+}
+
+static void add_contacts(const struct run *run, struct totals *totals)
+{
+    const struct solid_system *system = &run->model->system;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        int64_t row = run->scene->displacement_count + run->scene->support_count + contact->section;
+        double force[3], moment[3];
+        contact_total(contact, force);
+        contact_moment(contact, totals->about, moment);
+        add_scaled(totals->dim, 1.0, force, totals->force + row * totals->dim);
+        add_scaled(totals->moment_count, 1.0, moment + 3 - totals->moment_count,
+                   totals->moment + row * totals->moment_count);
+    }
+}
+
+static const char *name_of_row(const struct scene *scene, int64_t r)
+{
+    int64_t support = r - scene->displacement_count, contact = support - scene->support_count;
+    return support < 0   ? scene->displacements[r].label.name
+           : contact < 0 ? scene->supports[support].label.name
+                         : scene->contacts[contact].label.name;
+}
+
+/* The attributes of a table of vectors, to be freed: "unit=N MORE rows=bottom,top" with a row for each
+ * condition; or in one row, after the time: "unit=1,N,N,N,N MORE cols=time,bottom.x,bottom.y,top.x,top.y".
+ * `components`: the letters of the components. */
+static char *attributes_of_rows(const struct run *run, const char *unit, const char *more,
+                                const char *components, int64_t rows, bool in_one_row)
+{
+    const struct scene *scene = run->scene;
+    int64_t each = (int64_t)strlen(components);
+    char *attributes = NULL;
+    size_t size;
+    FILE *text = open_memstream(&attributes, &size);
+    if (text != NULL) {
+        fprintf(text, "unit=%s", !in_one_row ? unit : scene->duration > 0.0 ? "s" : "1");
+        for (int64_t i = 0; in_one_row && i < rows * each; i++) {
+            fprintf(text, ",%s", unit);
+        }
+        fprintf(text, "%s%s", more, in_one_row ? " cols=time" : " rows=");
+        for (int64_t r = 0; r < rows; r++) {
+            for (int64_t a = 0; in_one_row && a < each; a++) {
+                fprintf(text, ",%s.%c", name_of_row(scene, r), components[a]);
+            }
+            if (!in_one_row) {
+                fprintf(text, "%s%s", r > 0 ? "," : "", name_of_row(scene, r));
+            }
+        }
+    }
+    bool failed = text == NULL || fflush(text) != 0 || ferror(text) != 0;
+    if ((text != NULL && fclose(text) != 0) || failed ||
+        attributes == NULL) { /* fclose cuts it to size, unchecked */
+        tool_fail(run->tool, STATUS_SYSTEM, "out of memory");
+    }
+    return attributes;
+}
+
+/* Put section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
+static void put_vectors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *name_of_frames, const char *unit, const char *more,
+                        const char *components, int64_t rows, double *values)
+{
+    bool in_one_row = moment->frame != FRAME_NONE;
+    int64_t each = (int64_t)strlen(components);
+    SCRATCH char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
+    if (in_one_row) {
+        run_append_row(run, name_of_frames, moment->time, values, rows * each, attributes);
+    } else {
+        run_put(run, name, rows, each, attributes, values);
+    }
+}
+
+void run_put_forces(struct run *run, const struct moment *moment)
+{
+    const struct scene *scene = run->scene;
+    const struct scene_output *output = &scene->output;
+    bool is_plane = scene->dim == 2;
+    int64_t rows = scene->displacement_count + scene->support_count + scene->contact_count;
+    struct totals totals = {.dim = scene->dim, .moment_count = is_plane ? 1 : 3, .about = output->about};
+    char more[128];
+    if (!output->reactions && !output->moments) {
+        return;
+    }
+    totals.force = run_new_values(run, rows * totals.dim);
+    totals.moment = run_new_values(run, rows * totals.moment_count);
+    add_conditions(run, &totals);
+    add_contacts(run, &totals);
+    if (output->reactions) {
+        put_vectors(run, moment, "reactions", "reactions.frames", is_plane ? "N/m" : "N", "",
+                    is_plane ? "xy" : "xyz", rows, totals.force);
+    } else {
+        free(totals.force);
+    }
+    if (output->moments) {
+        snprintf(more, sizeof more, " about=%.12g,%.12g", output->about[0], output->about[1]);
+        if (!is_plane) {
+            text_append(more, sizeof more, ",%.12g", output->about[2]);
+        }
+        text_append(more, sizeof more, "%s",
+                    moment->frame != FRAME_NONE ? ""
+                    : is_plane                  ? " cols=z"
+                                                : " cols=x,y,z");
+        put_vectors(run, moment, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
+                    is_plane ? "z" : "xyz", rows, totals.moment);
+    } else {
+        free(totals.moment);
+    }
+}
+
+void run_report_springs(const struct run *run)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct constraint_rows *penalties = &system->penalties;
+    for (int64_t d = 0; d < run->scene->displacement_count; d++) {
+        double sum = 0.0;
+        int64_t count = 0;
+        for (int64_t r = penalties->count - system->spring_count; r < penalties->count; r++) {
+            if (penalties->section[r] == d) {
+                double elongation = system_penalty_force(system, r, run->u) / system->penalty_stiffness[r];
+                sum += elongation * elongation;
+                count++;
+            }
+        }
+        if (count > 0) {
+            fprintf(stderr, "springs of %s\t%lld components, off by %.4g m (root mean square)\n",
+                    run->scene->displacements[d].label.name, (long long)count, sqrt(sum / (double)count));
+        }
+    }
+}

@@ -1,0 +1,299 @@
+/* The sections that a run adds to its stream. */
+#include "io/stream/sections.h"
+#include "mtled/run.h"
+
+#include "approx/field/field_compare.h"
+#include "base/vector.h"
+#include "solid/system/energy.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Add section `name` of a state. */
+static void put(const struct run *run, const struct moment *moment, const char *name, int64_t rows,
+                int64_t cols, const char *attributes, double *values)
+{
+    char full[64], timed[192];
+    if (moment->frame == FRAME_NONE) {
+        run_put(run, name, rows, cols, attributes, values);
+        return;
+    }
+    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)moment->frame);
+    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, moment->time);
+    run_put(run, full, rows, cols, timed, values);
+}
+
+void run_put_field(const struct run *run, const struct moment *moment, const double *u)
+{
+    int dim = run->scene->dim;
+    int64_t nodes = run->model->system.node_count;
+    char vector[64];
+    double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
+    assembly_nodal_field(&run->model->assembly, u, field);
+    memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
+    put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
+    put(run, moment, "parameters", nodes, dim, vector, parameters);
+}
+
+void run_put_supports(const struct run *run)
+{
+    const struct section *radius = stream_find(run->stream, "support.radius"),
+                         *nodes = stream_find(run->stream, "nodes.x"),
+                         *side = stream_find(run->stream, "support.side");
+    if (radius == NULL || nodes == NULL || radius->rows != nodes->rows) {
+        return;
+    }
+    TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.radius", TYPE_F8, radius->rows, 1,
+                                        radius->attributes, radius->data, &error));
+    if (side != NULL) {
+        TOOL_TRY(run->tool, stream_put_copy(run->stream, "parameters.side", TYPE_I4, side->rows, 1, "",
+                                            side->data, &error));
+    }
+}
+
+void run_put_frame(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    run_put_field(run, &(struct moment){number, time}, u);
+    run_folds_check(run, u, time, true);
+    run_frames_write(run, number);
+}
+
+bool run_is_of_frames(const char *name)
+{
+    size_t length;
+    return frame_of(name, &length) != FRAME_NONE || strcmp(name, "reactions.frames") == 0 ||
+           strcmp(name, "moments.frames") == 0 || strcmp(name, "energy.frames") == 0;
+}
+
+void run_drop_frames(struct stream *stream)
+{
+    for (int64_t i = stream->section_count - 1; i >= 0; i--) {
+        if (run_is_of_frames(stream->sections[i].name)) {
+            stream_remove(stream, stream->sections[i].name);
+        }
+    }
+}
+
+/* P F^T / J */
+static void cauchy_stress(const double F[9], const double P[9], double stress[9])
+{
+    double J = determinant(F);
+    for (int k = 0; k < 9; k++) {
+        const double *p = P + k / 3 * 3, *f = F + k % 3 * 3;
+        stress[k] = (p[0] * f[0] + p[1] * f[1] + p[2] * f[2]) / J;
+    }
+}
+
+/* (F^T F - 1) / 2 */
+static void green_lagrange_strain(const double F[9], double strain[9])
+{
+    for (int k = 0; k < 9; k++) {
+        int i = k / 3, j = k % 3;
+        strain[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
+    }
+}
+
+/* Put the symmetric components of tensors[points * 9] as section `name`. */
+static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
+                        const char *kind, const double *tensors)
+{
+    static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
+    static const char *const cols[2] = {"xx,yy,zz,xy", "xx,yy,zz,xy,xz,yz"};
+    int dim = run->scene->dim, count = dim == 2 ? 4 : 6;
+    int64_t points = run->model->system.body.point_count;
+    char attributes[96];
+    double *values = run_new_values(run, points * count);
+    for (int64_t i = 0; i < points * count; i++) {
+        values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
+    }
+    snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
+    put(run, moment, name, points, count, attributes, values);
+}
+
+/* Put the deformed directions F a of the fibres, 0 where there are none. */
+static void put_fibres(const struct run *run, const struct moment *moment, const double *F)
+{
+    const struct material_list *list = &run->model->assembly.materials;
+    int dim = run->scene->dim;
+    int64_t points = run->model->system.body.point_count;
+    double *values = run_new_values(run, points * dim);
+    for (int64_t i = 0; i < points * dim; i++) {
+        const double *fibre = list->items[list->of_point[i / dim]].fibre;
+        values[i] = fibre != NULL ? vector_dot(dim, F + i / dim * 9 + i % dim * 3, fibre) : 0.0;
+    }
+    put(run, moment, "fibre", points, dim, "unit=1", values);
+}
+
+/* Put the requested fields at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
+ * ratio. */
+static void put_point_fields(struct run *run, const struct moment *moment)
+{
+    struct body *body = &run->model->system.body;
+    const struct scene_output *output = &run->scene->output;
+    int64_t points = body->point_count;
+    if (output->volume_ratio) {
+        double *ratio = run_new_values(run, points);
+        body_volume_ratio(body, ratio);
+        put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
+    }
+    if (!output->stress && !output->strain && !output->pressure && !output->fibre) {
+        return;
+    }
+    double *F = run_new_values(run, points * 9), *P = run_new_values(run, points * 9);
+    double *pressure = run_new_values(run, points);
+    body_gradient(body, F);
+    body_stress(body, P);
+    if (output->fibre) {
+        put_fibres(run, moment, F);
+    }
+    for (int64_t q = 0; q < points; q++) {
+        double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
+        cauchy_stress(f, p, stress);
+        green_lagrange_strain(f, strain);
+        memcpy(f, strain, sizeof strain);
+        memcpy(p, stress, sizeof stress);
+        pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
+    }
+    if (output->stress) {
+        put_tensors(run, moment, "stress", "unit=Pa measure=cauchy", P);
+    }
+    if (output->strain) {
+        put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
+    }
+    FREE_ALL(F, P);
+    if (output->pressure) {
+        put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
+    } else {
+        free(pressure);
+    }
+}
+
+void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
+                    const char *attributes)
+{
+    const struct section *before = stream_find(run->stream, name);
+    bool fits = before != NULL && before->type == TYPE_F8 && before->cols == count + 1;
+    int64_t rows = fits ? before->rows : 0;
+    double *table = run_new_values(run, (rows + 1) * (count + 1)), *row = table + rows * (count + 1);
+    if (fits) {
+        memcpy(table, before->data, (size_t)(rows * (count + 1)) * sizeof *table);
+    }
+    row[0] = time;
+    memcpy(row + 1, values, (size_t)count * sizeof *row);
+    free(values);
+    run_put(run, name, rows + 1, count + 1, attributes, table);
+}
+
+/* Put place, gap, and nominal and true pressure of every contact node of every contact. */
+static void put_gaps(const struct run *run, const struct moment *moment)
+{
+    const struct solid_system *system = &run->model->system;
+    const struct assembly *assembly = &run->model->assembly;
+    const bool friction = system_has_friction(system);
+    int dim = run->scene->dim, cols = dim + 3 + (friction ? dim + 1 : 0);
+    int64_t rows = 0, size = system->node_count * dim;
+    SCRATCH double *x = run_new_values(run, size);
+    assembly_nodal_field(assembly, run->u, x);
+    for (int64_t i = 0; i < size; i++) {
+        x[i] += system->X[i];
+    }
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        rows += contact_nodes(&system->contacts[c])->count;
+    }
+    double *values = run_new_values(run, rows * cols), *row = values;
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        const struct contact *contact = &system->contacts[c];
+        const struct boundary_averages *nodes = contact_nodes(contact);
+        const struct facet_set *facets = &assembly->contacts[contact->section].facets;
+        for (int64_t a = 0; a < nodes->count; a++, row += cols) {
+            struct contact_node node = contact_node(contact, a);
+            memcpy(row, nodes->position + a * dim, (size_t)dim * sizeof *values);
+            row[dim] = node.gap;
+            row[dim + 1] = node.pressure;
+            row[dim + 2] = node.pressure / boundary_stretch(nodes, &assembly->face_table, facets, a, x);
+            for (int k = 0; k < dim && friction; k++) {
+                row[dim + 3 + k] = node.friction[k];
+            }
+            if (friction) {
+                row[2 * dim + 3] = node.slips;
+            }
+        }
+    }
+    put(run, moment, "gaps", rows, cols,
+        friction   ? dim == 2 ? "unit=m,m,m,Pa,Pa,Pa,Pa,1 "
+                                "cols=x,y,gap,pressure,true_pressure,friction.x,friction.y,slips"
+                              : "unit=m,m,m,m,Pa,Pa,Pa,Pa,Pa,1 "
+                                "cols=x,y,z,gap,pressure,true_pressure,friction.x,friction.y,friction.z,slips"
+        : dim == 2 ? "unit=m,m,m,Pa,Pa cols=x,y,gap,pressure,true_pressure"
+                   : "unit=m,m,m,m,Pa,Pa cols=x,y,z,gap,pressure,true_pressure",
+        values);
+}
+
+/* Put the energies of the equilibrium. The work of loads during a relaxation has no meaning. */
+static void put_energy(struct run *run, const struct moment *moment)
+{
+    struct solid_system *system = &run->model->system;
+    bool is_plane = run->scene->dim == 2;
+    bool in_time = run->scene->duration > 0.0, in_steps = run->scene->solver.time_steps > 0;
+    const char *unit = is_plane ? "J/m" : "J", *more = in_steps ? "," : "";
+    int count = in_steps ? 3 : 2;
+    char attributes[96];
+    double *values = run_new_values(run, count);
+    values[0] = energy_internal(system, run->u);
+    values[1] = energy_contact(system);
+    bool is_frame = moment->frame != FRAME_NONE;
+    if (in_steps) {
+        values[2] = system->body.prony.dissipated + system_friction_work(system);
+    }
+    snprintf(attributes, sizeof attributes, "unit=%s%s,%s%s%s cols=%sinternal,contact%s",
+             !is_frame ? ""
+             : in_time ? "s,"
+                       : "1,",
+             unit, unit, more, in_steps ? unit : "", is_frame ? "time," : "", in_steps ? ",dissipated" : "");
+    if (is_frame) {
+        run_append_row(run, "energy.frames", moment->time, values, count, attributes);
+    } else {
+        run_put(run, "energy", 1, count, attributes, values);
+    }
+}
+
+/* Put the requested output besides u, for the state run->u at which the system was evaluated last. */
+static void put_state(struct run *run, const struct moment *moment)
+{
+    const struct scene_output *output = &run->scene->output;
+    put_point_fields(run, moment);
+    run_put_forces(run, moment);
+    if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
+        put_energy(run, moment);
+    }
+    if (output->gaps && run->model->system.contact_count > 0) {
+        put_gaps(run, moment);
+    }
+}
+
+void run_put_equilibrium(void *context, int64_t number, double time, const double *u)
+{
+    struct run *run = context;
+    const double duration = run->scene->duration;
+    const struct moment moment = {number, duration > 0.0 ? time * duration : time};
+    run_put_field(run, &moment, u);
+    run_folds_check(run, u, time, true);
+    run_stability_check(run, time);
+    run_stability_elliptic(run, time, false);
+    run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
+    put_state(run, &moment);
+    run_frames_write(run, number);
+}
+
+void run_put_results(struct run *run)
+{
+    struct model *model = run->model;
+    SCRATCH double *scratch = run_new_values(run, model->system.node_count * run->scene->dim);
+    /* Evaluate F, stresses and gaps at the final state. */
+    (void)system_residual(&model->system, run->u, scratch);
+    system_measure_contacts(&model->system, run->u, true);
+    put_state(run, &(struct moment){.frame = FRAME_NONE});
+    run_put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
+}

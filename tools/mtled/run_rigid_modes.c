@@ -1,0 +1,205 @@
+/* Free rigid-body modes: reported before the first step. */
+#include "mtled/run.h"
+
+#include "approx/support/support.h"
+#include "base/sets.h"
+#include "solid/contact/contact_between.h"
+#include "solid/system/rigid_modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The bodies of a model: parts that are connected by cells. */
+struct bodies {
+    int32_t count;
+    int32_t *of_node;          /* node_count */
+    int64_t *cell;             /* count: one of its cells, whose region is named in messages */
+    bool *touches;             /* count: a contact acts on it, with a rigid surface or a constrained body */
+    bool *stays;               /* count: it is constrained in some direction, or touches */
+    struct rigid_modes *modes; /* count */
+};
+
+/* Number the bodies: of_node[n]. Nodes without cell are bodies of their own. */
+static void join_cells(const struct cells *cells, struct bodies *bodies)
+{
+    int32_t *first = bodies->of_node;
+    set_join_cells(cells->node_count, cells->count, cells->dim + 1, cells->node, first);
+    for (int64_t n = 0; n < cells->node_count; n++) {
+        /* The first node of a body comes before the others, so it already has a number. */
+        int32_t of = first[n];
+        first[n] = of == n ? bodies->count++ : first[of];
+    }
+}
+
+/* Mark the bodies of the nodes of `at`. */
+static void mark_bodies(const struct bodies *bodies, const struct boundary_averages *at, bool *marked)
+{
+    for (int64_t a = 0; a < at->count; a++) {
+        marked[bodies->of_node[at->node[a]]] = true;
+    }
+}
+
+/* Mark bodies of a contact between facets as touching if another one of them stays. Returns whether more
+ * bodies touch. */
+static bool hold_each_other(struct bodies *bodies, const struct contact *contact, bool *there)
+{
+    int64_t staying = 0;
+    bool more = false;
+    memset(there, 0, (size_t)bodies->count * sizeof *there);
+    mark_bodies(bodies, contact->points, there);
+    mark_bodies(bodies, &contact->between->opposite.rows, there);
+    for (int64_t b = 0; b < bodies->count; b++) {
+        staying += there[b] && bodies->stays[b];
+    }
+    for (int64_t b = 0; b < bodies->count; b++) {
+        if (there[b] && !bodies->touches[b] && staying > (bodies->stays[b] ? 1 : 0)) {
+            bodies->touches[b] = bodies->stays[b] = more = true;
+        }
+    }
+    return more;
+}
+
+/* Find the bodies on which contacts act. */
+static enum status find_touching(const struct solid_system *system, struct bodies *bodies,
+                                 struct error *error)
+{
+    bool more = true;
+    int all = system->dim == 2 ? 3 : 6;
+    NEW_SCRATCH(bool, there, bodies->count, error);
+    for (int64_t c = 0; c < system->contact_count; c++) {
+        if (system->contacts[c].between == NULL) {
+            mark_bodies(bodies, &system->contact_points[c], bodies->touches);
+        }
+    }
+    for (int64_t b = 0; b < bodies->count; b++) {
+        bodies->stays[b] = bodies->touches[b] || bodies->modes[b].translations + bodies->modes[b].turns < all;
+    }
+    while (more) {
+        more = false;
+        for (int64_t c = 0; c < system->contact_count; c++) {
+            const struct contact *contact = &system->contacts[c];
+            more = (contact->between != NULL && hold_each_other(bodies, contact, there)) || more;
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status bodies_find(const struct model *model, struct bodies *bodies, struct error *error)
+{
+    const struct cells *cells = &model->assembly.cells;
+    const struct solid_system *system = &model->system;
+    *bodies = (struct bodies){0};
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->of_node, cells->node_count, error));
+    join_cells(cells, bodies);
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->cell, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->touches, bodies->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->modes, bodies->count, error));
+    for (int64_t c = 0; c < cells->count; c++) {
+        bodies->cell[bodies->of_node[cells->node[c * (cells->dim + 1)]]] = c;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&bodies->stays, bodies->count, error));
+    RETURN_IF_ERROR(system_rigid_modes(system, bodies->count, bodies->of_node, bodies->modes, error));
+    return find_touching(system, bodies, error);
+}
+
+static void bodies_free(struct bodies *bodies)
+{
+    FREE_ALL(bodies->of_node, bodies->cell, bodies->touches, bodies->stays, bodies->modes);
+}
+
+/* text = a direction with positive largest component, without round-off. */
+static void direction_text(int dim, const double *direction, char text[96])
+{
+    double x[3];
+    int largest = 0;
+    for (int a = 0; a < dim; a++) {
+        largest = fabs(direction[a]) > fabs(direction[largest]) + 1e-6 ? a : largest;
+    }
+    for (int a = 0; a < dim; a++) {
+        x[a] = fabs(direction[a]) > 1e-6 ? direction[a] * copysign(1.0, direction[largest]) : 0.0;
+    }
+    point_text(dim, x, text);
+}
+
+/* text = "may move along (1, 0), may turn about (0, 0.1)". */
+static void modes_text(int dim, double size, const struct rigid_modes *modes, char *text, size_t room)
+{
+    char what[96], where[96];
+    snprintf(text, room, "%s", modes->translations == dim ? "may move along any direction" : "");
+    for (int k = 0; k < modes->translations && modes->translations < dim; k++) {
+        direction_text(dim, modes->along[k], what);
+        text_append(text, room, "%smay move along %s", text[0] != '\0' ? ", " : "", what);
+    }
+    if (modes->turns == (dim == 2 ? 1 : 3) && modes->translations == dim) {
+        text_append(text, room, " and turn about any axis");
+        return;
+    }
+    for (int k = 0; k < modes->turns; k++) {
+        double through[3];
+        for (int a = 0; a < dim; a++) {
+            through[a] = fabs(modes->through[k][a]) > 1e-9 * size ? modes->through[k][a] : 0.0;
+        }
+        point_text(dim, through, where);
+        direction_text(dim, modes->axis[k], what);
+        text_append(text, room, "%smay turn about %s%s%s%s", text[0] != '\0' ? ", " : "",
+                    dim == 2 ? "" : "the axis through ", where, dim == 2 ? "" : " along ",
+                    dim == 2 ? "" : what);
+    }
+}
+
+/* text = "the body", or "body 2 (region lump, near (0.1, 0.2))", numbered from 1. */
+static enum status body_text(const struct model *model, const struct bodies *bodies, int64_t b,
+                             char text[256], struct error *error)
+{
+    char place[96];
+    FREED_BY(cell_regions_free) struct cell_regions regions = {0};
+    snprintf(text, 256, "the body");
+    if (bodies->count > 1) {
+        RETURN_IF_ERROR(stream_regions(model->stream, &regions, error));
+        point_text(model->assembly.cells.dim, bodies->modes[b].centre, place);
+        snprintf(text, 256, "body %lld (region %s, near %s)", (long long)b + 1,
+                 regions.names.name[regions.of_cell[bodies->cell[b]]], place);
+    }
+    return STATUS_OK;
+}
+
+/* The number of bodies from `first` on that may move or turn, and on which no contact acts. */
+static int64_t count_free(const struct bodies *bodies, int64_t first)
+{
+    int64_t count = 0;
+    for (int64_t b = first; b < bodies->count; b++) {
+        count += !bodies->touches[b] && bodies->modes[b].translations + bodies->modes[b].turns > 0;
+    }
+    return count;
+}
+
+void run_check_rigid_modes(struct run *run)
+{
+    FREED_BY(bodies_free) struct bodies bodies = {0};
+    const struct model *model = run->model;
+    TOOL_TRY(run->tool, bodies_find(model, &bodies, &error));
+    for (int64_t b = 0; b < bodies.count; b++) {
+        const struct rigid_modes *modes = &bodies.modes[b];
+        char body[256], what[512];
+        if (modes->translations + modes->turns == 0) {
+            continue;
+        }
+        modes_text(model->assembly.cells.dim, model->assembly.extent, modes, what, sizeof what);
+        TOOL_TRY(run->tool, body_text(model, &bodies, b, body, &error));
+        if (!bodies.touches[b]) {
+            int64_t more = count_free(&bodies, b + 1);
+            char others[64] = "";
+            if (more > 0) {
+                snprintf(others, sizeof others, "; %lld more bod%s free as well", (long long)more,
+                         more == 1 ? "y is" : "ies are");
+            }
+            run_fail(run, STATUS_VERDICT,
+                     "%s: nothing holds %s: it %s: add a [displacement] that forbids that%s",
+                     run->scene->path, body, what, others);
+        }
+        if (run->verbose) {
+            tool_note(run->tool, "%s: only contact holds %s: it %s otherwise", run->scene->path, body, what);
+        }
+    }
+}

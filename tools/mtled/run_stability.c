@@ -1,0 +1,73 @@
+#include "mtled/run.h"
+
+/* A result is refused if the law is not strongly elliptic in more than this share of the body. It is a few
+ * percent if it is so at singular corners only, and half if the body has become irregular. */
+static const double most_inelliptic = 0.1;
+
+void run_stability_begin(struct run *run)
+{
+    const struct state *restored = run_checkpoint_state(run);
+    run->stability = (struct run_stability){0};
+    if (restored != NULL) {
+        TOOL_TRY(run->tool, run_stability_state(run, restored, &error));
+    }
+}
+
+void run_stability_check(struct run *run, double load)
+{
+    const struct stability *found = &run->model->system.stability;
+    if (found->least < 0.0 && !run->stability.seen) {
+        run->stability = (struct run_stability){true, load, found->node};
+    }
+}
+
+void run_stability_elliptic(struct run *run, double load, bool final)
+{
+    static const char text[] =
+        "%s: %s the material law is not strongly elliptic in %.2g %% of the body, as at "
+        "%s: what it does there depends on the mesh: use another model, as "
+        "neo-hookean, or a smaller load";
+    struct inelliptic found = body_inelliptic(&run->model->system.body);
+    char place[96], when[48] = "at the whole load,";
+    if (found.point < 0) {
+        return;
+    }
+    point_text(run->scene->dim, run->model->assembly.x + found.point * run->scene->dim, place);
+    if (load < 1.0) {
+        snprintf(when, sizeof when, "at %.4g of the load,", load);
+    }
+    if (found.share > most_inelliptic) {
+        run->last_good = -1.0; /* all frames have been given */
+        run_fail(run, STATUS_VERDICT, text, run->scene->path, when, 100.0 * found.share, place);
+    }
+    if (final) {
+        tool_note(run->tool, text, run->scene->path, when, 100.0 * found.share, place);
+    }
+}
+
+enum status run_stability_state(struct run *run, const struct state *state, struct error *error)
+{
+    struct run_stability *s = &run->stability;
+    const struct state_value values[] = {{"seen", STATE_FLAGS, &s->seen, 1},
+                                         {"since", STATE_NUMBERS, &s->since, 1},
+                                         {"node", STATE_COUNTS, &s->node, 1}};
+    return state_visit(state, "stability", values, sizeof values / sizeof *values, error);
+}
+
+void run_stability_describe(const struct run *run, char *text, size_t size)
+{
+    const struct run_stability *stability = &run->stability;
+    const struct solid_system *system = &run->model->system;
+    char place[96], when[48] = "at the whole load";
+    text[0] = '\0';
+    if (stability->seen) {
+        point_text(system->dim, system->X + stability->node * system->dim, place);
+        if (stability->since < 1.0) {
+            snprintf(when, sizeof when, "at %.4g of the load", stability->since);
+        }
+        snprintf(text, size,
+                 "the body folds %s: its equilibrium is not stable, and would buckle or wrinkle, most of all "
+                 "at %s",
+                 when, place);
+    }
+}

@@ -1,0 +1,40 @@
+/* The mesh, fields and frames that tovtk writes of a stream. */
+#pragma once
+
+#include "tovtk/derived.h"
+#include "io/stream/sections.h"
+#include "io/vtk/vtk.h"
+
+struct plot {
+    struct stream stream;
+    struct derived derived; /* fields derived from those of the stream */
+    struct cells cells;
+    struct cell_regions regions;
+    struct vtk_mesh mesh;     /* a view of the cells and regions */
+    struct vtk_field *fields; /* of the frame chosen last; room for every section */
+    char (*labels)[128];      /* names of the fields of frames */
+    int64_t field_count;
+    struct vtk_number *numbers; /* of the frame chosen last: its rows of reactions.frames and the like */
+    int64_t number_count;
+    int64_t *frames; /* the numbers of the frames, ascending */
+    int64_t frame_count;
+};
+
+/* Find mesh, fields, groups and frames of plot->stream; the other members of *plot are zero. To be freed also
+ * on failure. */
+MUST_CHECK enum status plot_find(struct plot *plot, struct error *error);
+
+/* Release everything, including the stream. */
+void plot_free(struct plot *plot);
+
+/* Number of states to write: the frames, or the final state if there are none. */
+int64_t plot_state_count(const struct plot *plot);
+
+/* The number of frame i; FRAME_NONE, the final state, if there are none. */
+int64_t plot_frame(const struct plot *plot, int64_t i);
+
+/* Choose the fields and numbers of a frame, or of the final state for FRAME_NONE, which has no numbers. */
+MUST_CHECK enum status plot_choose(struct plot *plot, int64_t frame, struct error *error);
+
+/* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
+MUST_CHECK enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error);

@@ -1,0 +1,113 @@
+#include "warp/warp_voxels.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+/* place[]: the position in the other state that corresponds to x; outside of the body x itself. */
+static void find_place(const struct warp_job *job, int64_t v, const double x[3], double place[3],
+                       struct warp_report *report)
+{
+    int dim = job->motion->cells.dim;
+    double residual = 0;
+    memcpy(place, x, 3 * sizeof *x);
+    if (job->owner[v] < 0) {
+        return;
+    }
+    if (job->request->inverse) {
+        motion_place(job->motion, job->owner[v], x, place);
+    } else if (!motion_inverse(job->motion, job->owner[v], x, job->tolerance, place, &residual)) {
+        report->inexact++;
+    }
+    report->moved++;
+    report->farthest = fmax(report->farthest, vector_distance(dim, place, x));
+    report->inconsistency = fmax(report->inconsistency, residual);
+}
+
+/* The value for a voxel of this label; NULL: none. */
+static const double *value_of(const struct warp_values *values, double label)
+{
+    for (int i = 0; i < values->count; i++) {
+        if (values->label[i] == label) {
+            return &values->value[i];
+        }
+    }
+    return values->others ? &values->other : NULL;
+}
+
+/* The value that the options give a voxel outside of the moved body; NULL: none. */
+static const double *given_value(const struct warp_job *job, const double voxel[3], bool vacated)
+{
+    const struct warp_request *request = job->request;
+    double old[4], label = NAN;
+    if (job->source->components == 1 && image_sample(job->source, IMAGE_NEAREST, voxel, old)) {
+        label = image_whole(job->source, *old);
+    }
+    const double *value = vacated ? value_of(&request->vacated, label) : NULL;
+    return value != NULL ? value : value_of(&request->fill, label);
+}
+
+/* Set the value of the moved image at voxel v, that of the source at `place`. */
+static void put_value(const struct warp_job *job, int64_t v, const double place[3],
+                      struct warp_report *report)
+{
+    const struct warp_values *fill = &job->request->fill;
+    size_t components = job->result->components;
+    double voxel[3], *value = job->result->values + (size_t)v * components;
+    bool outside = job->owner[v] < 0, vacated = outside && job->other != NULL && job->other[v] >= 0;
+    image_map(&job->source_voxel[0][0], place, voxel);
+    const double *given = outside ? given_value(job, voxel, vacated) : NULL;
+    report->vacated += vacated;
+    report->left += vacated && given == NULL;
+    if (given == NULL && image_sample(job->source, job->request->method, voxel, value)) {
+        return;
+    }
+    report->beyond += given == NULL;
+    for (size_t c = 0; c < components; c++) {
+        value[c] = given != NULL ? *given : fill->others ? fill->other : 0;
+    }
+}
+
+/* Process one row of voxels. */
+static void do_row(const struct warp_job *job, int64_t row, struct warp_report *report)
+{
+    struct image *result = job->result;
+    int64_t width = (int64_t)result->size[0], height = (int64_t)result->size[1];
+    int64_t j = row % height, k = row / height;
+    for (int64_t i = 0; i < width; i++) {
+        int64_t v = row * width + i;
+        const double voxel[3] = {(double)i, (double)j, (double)k};
+        double x[3], place[3];
+        image_world(result, voxel, x);
+        find_place(job, v, x, place, report);
+        if (job->source != NULL) {
+            put_value(job, v, place, report);
+            continue;
+        }
+        for (int c = 0; c < 3; c++) { /* to ITK's axes and unit */
+            int axis = job->axes->world[c];
+            result->values[3 * v + axis] = (axis < 2 ? -1e3 : 1e3) * (place[c] - x[c]);
+        }
+    }
+}
+
+void warp_voxels(const struct warp_job *job, struct warp_report *report)
+{
+    int64_t rows = (int64_t)(job->result->size[1] * job->result->size[2]);
+    int64_t moved = 0, vacated = 0, left = 0, beyond = 0, inexact = 0;
+    double farthest = 0, inconsistency = 0;
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : moved, vacated, left, beyond, inexact)                \
+    reduction(max : farthest, inconsistency)
+    for (int64_t row = 0; row < rows; row++) {
+        struct warp_report own = {0};
+        do_row(job, row, &own);
+        left += own.left;
+        moved += own.moved, vacated += own.vacated, beyond += own.beyond, inexact += own.inexact;
+        farthest = fmax(farthest, own.farthest);
+        inconsistency = fmax(inconsistency, own.inconsistency);
+    }
+    report->left = left;
+    report->moved = moved, report->vacated = vacated, report->beyond = beyond, report->inexact = inexact;
+    report->farthest = farthest, report->inconsistency = inconsistency;
+}
