@@ -316,7 +316,7 @@ END
             printf '%s\n' '[displacement b]' 'facets = bottom' 'components = 0, 0, 0' '[contact c]' 'facets = sides' 'against = top' '[initial]' \
                 'table = begin.tsv' 'unit = m' '[output]' 'folds = allowed' '[solver]' 'end_time = 0.12'; } > corner.scene
         run --separate-stderr mtled corner.scene corner.mts
-        [[ "$stderr" == *'the energy balance is off by 0.'*' of the largest energy'*', facets come into contact, or part, at about 120 degrees'* ]]
+        [[ "$stderr" == *'the energy balance is off by 0.'*' of the largest energy'*'facets come into contact, or part, at about 120 degrees'* ]]
     done
 }
 

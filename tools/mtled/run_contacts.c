@@ -69,51 +69,12 @@ void run_contacts_begin(const struct run *run)
     }
 }
 
-/* The displacement that moves a facet of a contact, or NULL. */
-static const struct condition *moved_by(const struct assembly *input, const struct facet_set *set)
-{
-    size_t size = (size_t)input->cells.dim * sizeof *set->facet;
-    for (int64_t i = 0; i < input->condition_count; i++) {
-        const struct facet_set *other = &input->conditions[i].facets;
-        for (int64_t f = 0; f < other->count * set->count; f++) {
-            if (memcmp(other->facet + f / set->count * input->cells.dim,
-                       set->facet + f % set->count * input->cells.dim, size) == 0) {
-                return &input->conditions[i];
-            }
-        }
-    }
-    return NULL;
-}
-
-/* What would have to change for contact `worst` to penetrate less; room for it. */
-static const char *penetration_remedy(const struct run *run, const struct contact *worst, char text[256])
-{
-    const struct assembly *input = &run->model->assembly;
-    const struct contact_condition *contact = &input->contacts[worst->section];
-    const struct condition *mover = worst->surface.facet_count > 0 ? moved_by(input, &contact->facets) : NULL;
-    if (mover != NULL) {
-        snprintf(text, 256, "[displacement %s] moves facets of [contact %s]: leave them out of one",
-                 mover->name, run->scene->contacts[worst->section].label.name);
-        return text;
-    }
-    if (worst->surface.facet_count > 0 && contact->stiffness > 0.0) {
-        snprintf(text, 256, "[contact %s] sets its stiffness: %s",
-                 run->scene->contacts[worst->section].label.name,
-                 input->in_time ? "raise it, which shortens the steps" : "leave it out, or raise it");
-        return text;
-    }
-    return input->in_time
-               ? "a larger stiffness, with shorter steps, or a finer cloud there helps"
-               : "a finer cloud there may help; where contacts enclose a body that is hardly compressible, "
-                 "prescribe `normal` on sides that stay in contact";
-}
-
 void run_contacts_penetrate(struct run *run, double motion, double allowed, bool final)
 {
     struct solid_system *system = &run->model->system;
     const struct contact *worst = system->contacts;
     double missing = 0.0, miss;
-    char text[256], forces[64] = "";
+    char forces[64] = "";
     system_measure_contacts(system, run->u, false);
     for (int64_t c = 1; c < system->contact_count; c++) {
         worst = contact_miss(&system->contacts[c]) > contact_miss(worst) ? &system->contacts[c] : worst;
@@ -125,18 +86,24 @@ void run_contacts_penetrate(struct run *run, double motion, double allowed, bool
     if (!run->model->assembly.in_time && miss > run->scene->solver.tolerance * motion) {
         missing = system_missing_work(system) / (2.0 * energy_internal(system, run->u));
     }
+    const char *name = run->scene->contacts[worst->section].label.name;
+    const char *remedy = run->model->assembly.in_time
+                             ? "a larger stiffness, with shorter steps, or a finer cloud there helps"
+                             : "leave its stiffness out, leave facets that a [displacement] moves out of it, "
+                               "refine there, or prescribe `normal` on sides that stay in contact";
     if (missing > most_missing) {
         run->last_good = -1.0; /* all frames have been given */
         run_fail(run, STATUS_VERDICT,
-                 "%s: contacts penetrate by %.2g m, so that forces are too small by about %.2g %%: %s",
-                 run->scene->path, miss, 100.0 * fmin(missing, 1.0), penetration_remedy(run, worst, text));
+                 "%s: contacts penetrate by %.2g m, most [contact %s], so that forces are too small by about "
+                 "%.2g %%: %s",
+                 run->scene->path, miss, name, 100.0 * fmin(missing, 1.0), remedy);
     }
     if (missing > 0.0) {
         snprintf(forces, sizeof forces, ", so that forces may be %.2g %% too small", 100.0 * missing);
     }
     if (final && miss > allowed) {
-        tool_note(run->tool, "%s: contacts penetrate by %.2g m, not %.2g m%s: %s", run->scene->path, miss,
-                  allowed, forces, penetration_remedy(run, worst, text));
+        tool_note(run->tool, "%s: contacts penetrate by %.2g m, not %.2g m, most [contact %s]%s: %s",
+                  run->scene->path, miss, allowed, name, forces, remedy);
     }
 }
 

@@ -8,20 +8,10 @@
 
 /* What lets the energy drift. Contact between facets begins or ends with a jump where they turn by the limit
  * of what faces each other, whatever the time step. */
-static const char *drift_remedy(const struct run *run)
-{
-    const struct solid_system *system = &run->model->system;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        if (system->contacts[c].between != NULL) {
-            return "lower time_step_margin; if that changes little, facets come into contact, or part, at "
-                   "about "
-                   "120 degrees to each other, as at a sharp corner, where the contact energy jumps: round "
-                   "or "
-                   "refine the corner";
-        }
-    }
-    return "lower time_step_margin, or apply the load more slowly";
-}
+static const char drift_remedy[] =
+    "lower time_step_margin, or apply the load more slowly; where facets come into contact, or part, at "
+    "about "
+    "120 degrees to each other, as at a sharp corner, the contact energy jumps: round or refine the corner";
 
 /* End the run with a verdict if it is not done, with the place of the failure and the remedy. */
 static void judge(struct run *run, const struct dynamics_report *report)
@@ -39,7 +29,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
     case DYNAMICS_DONE:
         if (report->largest_drift > DYNAMICS_NOTED_DRIFT) {
             tool_note(run->tool, "%s: the energy balance is off by %.2g of the largest energy: %s",
-                      scene->path, report->largest_drift, drift_remedy(run));
+                      scene->path, report->largest_drift, drift_remedy);
         }
         run_folds_judge(run);
         run_contacts_penetrate(run, largest_move, system_penetration_allowed(largest_move), true);
@@ -63,7 +53,7 @@ static void judge(struct run *run, const struct dynamics_report *report)
                  "%s: step %lld, t = %.6g s: the energy balance is off by %.2g of the largest energy (most "
                  "%g), the fastest is node %lld at %s: %s",
                  scene->path, (long long)report->steps, report->time, report->last_drift, DYNAMICS_MOST_DRIFT,
-                 (long long)report->node, place, drift_remedy(run));
+                 (long long)report->node, place, drift_remedy);
     case DYNAMICS_STOPPED:
         run_checkpoint_stop(run, report->steps);
     case DYNAMICS_TOO_MANY_STEPS:
