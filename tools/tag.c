@@ -37,9 +37,9 @@ static const char usage[] =
     "A facet or cell lies where its centre lies. Facets and nodes of a region or body are those of its\n"
     "cells; facets and cells of a set have all nodes in it.\n"
     "\n"
-    "An empty selection and a name that exists are errors. A new group that overlaps another is noted,\n"
-    "unless one was made of the other. A new region takes its cells from the other regions; a region\n"
-    "without cells is removed. When facets change, the sections of support and shapefn are removed.\n"
+    "An empty selection and a name that exists are errors. Groups may overlap, but a new region takes\n"
+    "its cells from the other regions; a region without cells is removed. When facets change, the\n"
+    "sections of support and shapefn are removed.\n"
     "\n"
     "Options:\n"
     "  -f, --facets NAME=EXPRESSION ...  a group of facets of the boundary\n"
@@ -128,7 +128,7 @@ static enum status make_group(const struct request *request, enum group_kind kin
         return fail(error, STATUS_INPUT, "chooses none of %lld %s; the body's box is %s",
                     (long long)items->count, plural(kind), cell_report_box(&box, place));
     }
-    return group_put(body, kind, name, chosen, request->use->value, error);
+    return group_put(body, kind, name, chosen, error);
 }
 
 /* The kind and place of the group "NAME" or "KIND:NAME". */
@@ -219,47 +219,6 @@ static void drop_empty_regions(const struct tool *tool, struct group_list *regio
     }
 }
 
-/* The number of marked facets of a group. */
-static int64_t count_marked(const struct group *group, const bool *marked)
-{
-    int64_t count = 0;
-    for (int64_t i = 0; i < group->count; i++) {
-        count += marked[group->item[i]];
-    }
-    return count;
-}
-
-/* Note groups that have facets in common with a new one, unless one of the two was made from the other. */
-static enum status note_overlaps(const struct tool *tool, const struct group_body *body, struct error *error)
-{
-    const struct group_list *list = &body->groups[GROUP_FACETS];
-    NEW_SCRATCH(bool, marked, body->boundary.count, error);
-    for (int64_t g = 0; g < list->count; g++) {
-        const struct group *fresh = &list->group[g];
-        char others[256] = "";
-        for (int64_t i = 0; i < fresh->count && fresh->expression != NULL; i++) {
-            marked[fresh->item[i]] = true;
-        }
-        for (int64_t h = 0; h < list->count && fresh->expression != NULL; h++) {
-            const struct group *other = &list->group[h];
-            bool related =
-                h == g || strstr(fresh->expression, other->name) != NULL ||
-                (other->expression != NULL && (h > g || strstr(other->expression, fresh->name) != NULL));
-            int64_t common = related ? 0 : count_marked(other, marked);
-            if (common > 0) {
-                text_append(others, sizeof others, "%s%s (%lld)", others[0] != '\0' ? ", " : "", other->name,
-                            (long long)common);
-            }
-        }
-        if (others[0] != '\0') {
-            tool_note(tool, "facets %s overlap %s: conditions on both would meet twice there", fresh->name,
-                      others);
-        }
-        memset(marked, false, (size_t)body->boundary.count * sizeof *marked);
-    }
-    return STATUS_OK;
-}
-
 /* "facets held: 34, area 0.00012 m2, box 0 0 0 to 0.1 0.1 0 m, mean normal 0 0 -1" */
 static void report(const struct tool *tool, const struct group_body *body, enum group_kind kind,
                    const struct group *group)
@@ -315,7 +274,6 @@ static void drop_stale(const struct tool *tool, struct stream *stream)
 static void finish(const struct tool *tool, struct group_body *body, struct stream *stream, bool verbose)
 {
     drop_empty_regions(tool, &body->groups[GROUP_REGION]);
-    TOOL_TRY(tool, note_overlaps(tool, body, &error));
     for (int kind = 0; kind < GROUP_KINDS && verbose; kind++) {
         for (int64_t g = 0; g < body->groups[kind].count; g++) {
             report(tool, body, (enum group_kind)kind, &body->groups[kind].group[g]);

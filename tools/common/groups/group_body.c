@@ -207,7 +207,7 @@ static void take_cells(struct group_list *regions, const bool *chosen)
 }
 
 enum status group_put(struct group_body *body, enum group_kind kind, const char *name, const bool *chosen,
-                      const char *expression, struct error *error)
+                      struct error *error)
 {
     struct group_list *list = &body->groups[kind];
     int64_t place = group_find(list, name);
@@ -233,7 +233,6 @@ enum status group_put(struct group_body *body, enum group_kind kind, const char 
     free(group->item);
     group->item = array_take(&item);
     group->count = count;
-    group->expression = expression;
     list->changed = true;
     return STATUS_OK;
 }

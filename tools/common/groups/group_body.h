@@ -14,8 +14,7 @@ extern const char *const group_kind_names[GROUP_KINDS];
 struct group {
     char *name;
     int64_t count;
-    int32_t *item;          /* count: facets of the boundary, nodes or cells */
-    const char *expression; /* that made it, the caller's; NULL: from the stream */
+    int32_t *item; /* count: facets of the boundary, nodes or cells */
 };
 
 struct group_list {
@@ -43,9 +42,9 @@ void group_body_free(struct group_body *body);
 int64_t group_find(const struct group_list *list, const char *name);
 
 /* Add a group of the chosen items, or replace the one with this name; cells of a region are removed from
- * other regions. `expression` is kept and must outlive the body. */
+ * other regions. */
 MUST_CHECK enum status group_put(struct group_body *body, enum group_kind kind, const char *name,
-                                 const bool *chosen, const char *expression, struct error *error);
+                                 const bool *chosen, struct error *error);
 void group_remove(struct group_list *list, int64_t index);
 
 /* STATUS_INPUT for an invalid name: one with blanks, commas, quotes or colons, or a word of the
