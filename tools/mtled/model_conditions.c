@@ -148,21 +148,16 @@ static enum status add_contact(struct model *model, const struct scene_contact *
     return model_add_curve(model, &section->label, &section->angle_curve, &motion->rotation_curve, error);
 }
 
-/* Add the contacts of the scene that the model does not have; those it has keep their curves, which belong to
- * the system. */
 static enum status add_contacts(struct model *model, struct error *error)
 {
     const struct scene *scene = model->scene;
     struct assembly *input = &model->assembly;
     struct contact_condition *contacts;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &contacts, scene->contact_count, error));
-    for (int64_t c = 0; c < input->contact_count; c++) {
-        contacts[c] = input->contacts[c];
-    }
     input->contacts = contacts;
-    for (; input->contact_count < scene->contact_count; input->contact_count++) {
-        int64_t c = input->contact_count;
+    for (int64_t c = 0; c < scene->contact_count; c++) {
         RETURN_IF_ERROR(add_contact(model, &scene->contacts[c], &contacts[c], error));
+        input->contact_count++;
     }
     return STATUS_OK;
 }
@@ -214,9 +209,9 @@ enum status model_conditions(struct model *model, struct error *error)
     input->direct = scene->solver.direct;
     RETURN_IF_ERROR(MODEL_ARRAY(model, &conditions, scene->displacement_count, error));
     input->conditions = conditions;
-    for (; input->condition_count < scene->displacement_count; input->condition_count++) {
-        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[input->condition_count],
-                                         &conditions[input->condition_count], error));
+    for (int64_t i = 0; i < scene->displacement_count; i++) {
+        RETURN_IF_ERROR(add_displacement(model, &scene->displacements[i], &conditions[i], error));
+        input->condition_count++;
     }
     RETURN_IF_ERROR(add_loads(model, error));
     RETURN_IF_ERROR(add_supports(model, error));

@@ -265,41 +265,18 @@ enum status landmarks_read(const char *path, struct table *table, struct error *
 
 /* ---- writing ---- */
 
-/* The bytes of a character of UTF-8; 0: it is none. */
-static int utf8_length(const char *text)
-{
-    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
-    unsigned char c = (unsigned char)*text;
-    int length = c < 0x80 ? 1 : c < 0xc0 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : c < 0xf8 ? 4 : 0;
-    unsigned code = length > 1 ? c & (0x7fu >> length) : c;
-    for (int k = 1; k < length; k++) {
-        c = (unsigned char)text[k];
-        if ((c & 0xc0) != 0x80) {
-            return 0;
-        }
-        code = code << 6 | (c & 0x3f);
-    }
-    bool is_none = code < least[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000);
-    return is_none ? 0 : length;
-}
-
-/* Print a label: with what must be escaped, and '?' for what is no text. */
+/* Print a label as it was read: with what must be escaped, and '?' for control characters. */
 static void print_label(FILE *file, const char *label, int64_t row, bool json)
 {
     if (label == NULL || label[0] == '\0') {
         fprintf(file, "F-%lld", (long long)row + 1);
         return;
     }
-    for (int length; *label != '\0'; label += length > 0 ? length : 1) {
-        length = utf8_length(label);
+    for (; *label != '\0'; label++) {
         if (*label == '"' || (json && *label == '\\')) {
             fputc(json ? '\\' : '"', file);
         }
-        if (length == 0 || (unsigned char)*label < ' ') {
-            fputc('?', file);
-        } else {
-            fwrite(label, 1, (size_t)length, file);
-        }
+        fputc((unsigned char)*label < ' ' ? '?' : *label, file);
     }
 }
 
