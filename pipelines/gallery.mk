@@ -1,5 +1,6 @@
-# make gallery: examples with pictures: a liver (make liver), a bar of silicone whose bending was measured (make phantom), a probe pressed into
-# tissue beside Hertz (make indentation), and a needle with friction (make needle)
+# make gallery: examples with pictures: a liver (make liver), a bar of silicone whose bending was measured (make phantom), a probe pressed
+# into tissue beside Hertz (make indentation), a needle with friction (make needle), and brain tissue compressed at three rates (make
+# compression)
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
@@ -8,8 +9,8 @@ PHANTOM_SIZES := 3.5 2.5 1.8
 GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: gallery liver phantom indentation needle
-gallery: liver phantom indentation needle
+.PHONY: gallery liver phantom indentation needle compression
+gallery: liver phantom indentation needle compression
 
 $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -88,3 +89,37 @@ $(GALLERY)/needle.tsv: $(GALLERY)/needle.dat $(GALLERY)/needle-smooth.dat
 $(GALLERY)/needle.png: $(GALLERY)/needle.tsv $(GALLERY)/needle.dat pipelines/gallery/needle.awk pipelines/gallery/needle.gp
 	awk -f pipelines/stream.awk -f pipelines/gallery/needle.awk -v field=$(word 2,$^) -v frame=24 > $(@:.png=.rows)
 	gnuplot -e "data='$<'; tissue='$(@:.png=.rows)'; out='$@'" pipelines/gallery/needle.gp
+
+# ---- compression -----------------------------------------------------------------------------------------------------
+
+COMPRESSION_RATES := 0.64 0.0064 0.0000064
+
+compression: $(GALLERY)/compression.tsv $(GALLERY)/compression.png
+	@cat $<
+	$(PICTURES)
+
+$(GALLERY)/compression.mts: examples/tissue/sample.geo $(GALLERY_PROGRAMS)
+	@mkdir -p $(@D)
+	gmsh -3 -nt 1 -v 2 $< -o $(@:.mts=.msh)
+	nodes -u mm $(@:.mts=.msh) | shapefn > $@ 2> $(@:.mts=.log)
+
+$(COMPRESSION_RATES:%=$(GALLERY)/compression-%.dat): $(GALLERY)/compression-%.dat: $(GALLERY)/compression.mts examples/tissue/compression.scene
+	sed "s/^duration = .*/duration = $$(awk 'BEGIN { print 0.3 / $* }')/" $(word 2,$^) > $(@:.dat=.scene)
+	mtled -v $(@:.dat=.scene) $< > $@ $(GALLERY_LOG)
+
+# The force by the area at rest, which is the volume by the height of 10 mm.
+$(COMPRESSION_RATES:%=$(GALLERY)/compression-%.rows): %.rows: %.dat $(GALLERY)/compression.mts
+	mts print reactions.frames $< | awk -v area=$$(mts print points.weight $(word 2,$^) | awk '{ sum += $$1 } END { print sum / 0.01 }') \
+	    '{ printf "%.6g\t%.6g\n", 1 - 0.3 * (NR - 1) / 12, $$13 / area }' > $@
+
+$(COMPRESSION_RATES:%=$(GALLERY)/compression-%.closed): $(GALLERY)/compression-%.closed: pipelines/gallery/compression.awk
+	@mkdir -p $(@D)
+	awk -v rate=$* -f $< > $@
+
+$(GALLERY)/compression.tsv: $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.rows) $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.closed) pipelines/gallery.mk
+	(printf 'rate_per_s\tstretch\tours_Pa\tclosed_form_Pa\tratio\n'; for rate in $(COMPRESSION_RATES); do \
+	    paste <(tail -n 1 $(@:.tsv=)-$$rate.rows) <(tail -n 1 $(@:.tsv=)-$$rate.closed) | \
+	        awk -v rate=$$rate '{ printf "%g\t%g\t%.2f\t%.2f\t%.5f\n", rate, $$1, $$2, $$4, $$2 / $$4 }'; done) > $@
+
+$(GALLERY)/compression.png: pipelines/gallery/compression.gp $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.rows) $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.closed)
+	gnuplot -e "data='$(@:.png=)'; rates='$(COMPRESSION_RATES)'; out='$@'" $<
