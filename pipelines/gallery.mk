@@ -1,6 +1,6 @@
-# make gallery: examples with pictures: a liver (make liver), a bar of silicone whose bending was measured (make phantom), a probe pressed
-# into tissue beside Hertz (make indentation), a needle with friction (make needle), and brain tissue compressed at three rates (make
-# compression)
+# make gallery: examples that others can judge, each with a picture: a liver (make liver), with and without its capsule (make capsule), a bar of silicone whose bending was
+# measured (make phantom), a probe pressed into tissue beside Hertz (make indentation), a needle with friction (make needle),
+# and brain tissue compressed at three rates (make compression).
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
@@ -9,8 +9,8 @@ PHANTOM_SIZES := 3.5 2.5 1.8
 GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: gallery liver phantom indentation needle compression
-gallery: liver phantom indentation needle compression
+.PHONY: gallery liver phantom indentation needle compression capsule
+gallery: liver phantom indentation needle compression capsule
 
 $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -20,13 +20,27 @@ liver: $(GALLERY)/liver.dat $(GALLERY)/liver.png
 	@printf 'forces, N: what is held, the kidney, what is lifted\n'; PATH=$(abspath $(BUILD))/bin:$$PATH mts print reactions $<
 	$(PICTURES)
 
-$(GALLERY)/liver.dat: $(addprefix $(LIVER)/,labels.nii.gz labels.tsv liver.scene) $(GALLERY_PROGRAMS)
+$(GALLERY)/liver.dat $(GALLERY)/capsule.dat: $(GALLERY)/%.dat: $(LIVER)/labels.nii.gz $(LIVER)/labels.tsv $(LIVER)/%.scene $(GALLERY_PROGRAMS)
 	@mkdir -p $(@D)
 	(voxels -h 15mm -l $(LIVER)/labels.tsv $< | tag -u mm -d 'liver|outside' -f 'tip=low:x,6%' \
-	    -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | shapefn | mtled -v $(LIVER)/liver.scene) > $@ $(GALLERY_LOG)
+	    -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | shapefn | mtled -v $(LIVER)/$*.scene) > $@ $(GALLERY_LOG)
 
 $(GALLERY)/liver.png: $(GALLERY)/liver.dat pipelines/render.py
 	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 $< $@
+
+capsule: $(GALLERY)/capsule.tsv $(GALLERY)/capsule.png
+	@cat $<
+	$(PICTURES)
+
+# The force that lifts the tip.
+$(GALLERY)/capsule.tsv: $(GALLERY)/liver.dat $(GALLERY)/capsule.dat
+	(printf 'liver\tforce_N\n'; for case in liver capsule; do mts print reactions $(@D)/$$case.dat | \
+	    awk -v name=$$case 'END { printf "%s\t%.3f\n", name == "liver" ? "without capsule" : "with capsule", sqrt($$1^2 + $$2^2 + $$3^2) }'; done) > $@
+
+$(GALLERY)/capsule.png: $(GALLERY)/liver.dat $(GALLERY)/capsule.dat pipelines/render.py
+	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 --most 34 --title 'without capsule' $< $(@:.png=-without.png)
+	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 --most 34 --title 'with its capsule' $(word 2,$^) $(@:.png=-with.png)
+	convert $(@:.png=-without.png) $(@:.png=-with.png) -append -resize 60% -colors 128 $@
 
 # ---- phantom ---------------------------------------------------------------------------------------------------------
 
