@@ -40,7 +40,7 @@ $(GALLERY)/capsule.tsv: $(GALLERY)/liver.dat $(GALLERY)/capsule.dat
 $(GALLERY)/capsule.png: $(GALLERY)/liver.dat $(GALLERY)/capsule.dat pipelines/render.py
 	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 --most 34 --title 'without capsule' $< $(@:.png=-without.png)
 	pipelines/render.py --view=-0.3,1,0.25 --cut=0,1,0,45 --most 34 --title 'with its capsule' $(word 2,$^) $(@:.png=-with.png)
-	convert $(@:.png=-without.png) $(@:.png=-with.png) -append -resize 60% -colors 128 $@
+	convert $(@:.png=-without.png) $(@:.png=-with.png) -append -resize 60% +dither -colors 256 $@
 
 # ---- phantom ---------------------------------------------------------------------------------------------------------
 

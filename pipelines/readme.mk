@@ -11,7 +11,7 @@ LIVER_PICTURES := profile=openings advances=cut
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
 RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d brain3d/meshes=brain3d-meshes table1/beside=table1 speed-error/speed-error=speed-error \
-    speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses \
+    speed-error/reach=reach convergence/convergence=convergence hard/hard=hard hard/summary=hard-summary hard/misses=hard-misses tissue/tissue=tissue \
     estimate/estimate=estimate estimate/summary=estimate-summary foreign/foreign=foreign gallery/phantom=phantom \
     gallery/indentation=indentation adaptive/effectivity=effectivity adaptive/effectivity-summary=effectivity-summary \
     adaptive/refinement=refinement adaptive/reach=refinement-reach adaptive/unattended=unattended neurosurgery/neurosurgery=neurosurgery neurosurgery/volumes=neurosurgery-volumes neurosurgery/rounds=neurosurgery-rounds \

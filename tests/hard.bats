@@ -26,6 +26,7 @@ passes() {
 @test "slit" { passes 24-slit; }
 @test "reactions on curved faces" { passes 27-curved; }
 @test "redundant conditions" { passes 28-redundant; }
+@test "supports and membranes" { passes 35-around; }
 
 # rows TEXT: what these lines of a script print.
 rows_of() {

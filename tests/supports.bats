@@ -1,4 +1,4 @@
-# [support NAME]: facets on springs and dashpots, against closed forms; what it lacks is one line.
+# [support NAME]: facets on springs and dashpots, against closed forms (more: pipelines/hard/35-around.sh); what it lacks is one line.
 
 load common.bash
 
@@ -48,22 +48,6 @@ drift() {
                     END { exit bad || NR != 3 }'
             done
         done
-    done
-}
-
-@test "a bar dragged along a tangential support: u'' = k p / (E A) u, within a third of a percent, and nearer as the bar is thinner" {
-    dim=2
-    for height in 0.08 0.04; do
-        cloud -d 2 -k jittered -n 161,9 --jitter 0.1 --box 0,1,0,$height | shapefn > table.mts 2> note
-        scene quasi-static "[support sides]\nfacets = ymin, ymax\ntangential = $(awk -v h=$height 'BEGIN { print 6000 * h }')" \
-            '[displacement end]\nfacets = xmax\ncomponents = 0.001, 0' '[output]\nreactions = yes' > run.scene
-        mtled run.scene table.mts > u.dat
-        # cosh (2 x) / cosh 2, with the force E A 2 tanh 2; shear makes the thicker bar softer by k h / (6 G) of the support.
-        paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v h=$height 'BEGIN { cosh2 = (exp(2) + exp(-2)) / 2 }
-            { d = $3 / 0.001 - (exp(2 * $1) + exp(-2 * $1)) / 2 / cosh2; if (d ^ 2 > worst) worst = d ^ 2 }
-            END { print sqrt(worst); exit !(NR == 1449 && worst < (0.05 * h) ^ 2) }'
-        mts print reactions u.dat | awk -v h=$height 'BEGIN { f = 3000 * h * 0.002 * (exp(4) - 1) / (exp(4) + 1) }
-            { d = $1 / f - (NR == 1 ? 1 : -1); if (d ^ 2 > (0.05 * h) ^ 2) bad = 1 } END { exit bad || NR != 2 }'
     done
 }
 
@@ -122,17 +106,7 @@ drift() {
     try '13: [support ground]: stiffness: unknown key: allowed are facets, normal, tangential, damping' 'facets = ymin\nstiffness = 1'
 }
 
-@test "a membrane: a coated bar, a coated ring under inner pressure, the balance in time; what is wrong with it is one line" {
-    cloud -d 3 -k jittered --jitter 0.1 -n 21,6,6 --box 0,0.1,0,0.02,0,0.02 | shapefn > table.mts 2> note
-    dim=3
-    scene quasi-static '[membrane skin]\nfacets = ymin, ymax, zmin, zmax\nthickness = 1e-4\nE = 1e5\nnu = 0' '[displacement a]\nfacets = xmin\nnormal = 0' \
-        '[displacement b]\nfacets = xmax\nnormal = 1e-5' '[displacement c]\nfacets = ymin\nnormal = 0' '[displacement d]\nfacets = zmin\nnormal = 0\n[output]\nreactions = yes' > bar.scene
-    mtled bar.scene table.mts > u.dat
-    # E A + E_m t p = 1.2 + 0.8 N by the strain in the middle, away from the ends.
-    force=$(mts print reactions u.dat | awk 'NR == 2 { print $1 }')
-    paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v force="$force" '
-        ($1 - 0.05) ^ 2 < 0.025 ^ 2 { n++; x += $1; u += $4; xx += $1 * $1; xu += $1 * $4 }
-        END { d = force / 2 / ((xu - x * u / n) / (xx - x * x / n)) - 1; print "bar off " d; exit d > 0.01 || d < -0.01 }'
+@test "a membrane: the balance in time; what is wrong with it is one line" {
     cat > ring.geo << 'END'
 Point(1)={0,0,0}; Point(2)={50,0,0}; Point(3)={-50,0,0}; Point(4)={100,0,0}; Point(5)={-100,0,0};
 Circle(1)={2,1,3}; Circle(2)={3,1,2}; Circle(3)={4,1,5}; Circle(4)={5,1,4}; Curve Loop(1)={3,4}; Curve Loop(2)={1,2}; Plane Surface(1)={1,2};
@@ -141,16 +115,8 @@ END
     dim=2
     scene quasi-static '[membrane skin]\nfacets = out\nthickness = 1e-4\nE = 1e6\nnu = 0.4' '[support weak]\nfacets = in\nnormal = 0.01\ntangential = 0.01' \
         '[pressure in]\nfacets = in\nvalue = 0.03' | sed 's/^nu = 0$/nu = 0.3/' > ring.scene
-    for size in 12 6; do
-        gmsh -v 1 -2 ring.geo -clmax $size -clmin $size -o ring.msh
-        nodes -u mm ring.msh 2> note | shapefn > table.mts 2> note
-        mtled ring.scene table.mts > u.dat
-        # Lame, with -N u / b^2 on the outside; second order in the size.
-        paste -d ' ' <(mts print nodes.x u.dat) <(mts print u u.dat) | awk -v size=$size 'BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b ^ 2 * 1.3 / 3000
-                c = 1 + k * 0.4 * b; B = c * 0.03 / (c / a ^ 2 - 1 / b ^ 2 + k / b); A = B / a ^ 2 - 0.03 }
-            { r = sqrt($1 ^ 2 + $2 ^ 2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)) - 1; n++ }
-            END { print "ring off " sum / n; exit !((sum / n) ^ 2 < (5e-5 * size ^ 2) ^ 2) }'
-    done
+    gmsh -v 1 -2 ring.geo -clmax 6 -clmin 6 -o ring.msh
+    nodes -u mm ring.msh 2> note | shapefn > table.mts 2> note
     sed 's/quasi-static/dynamic/; s/^value.*/value = 200/; $ a [output]\nenergy = yes\n[solver]\nend_time = 0.1' ring.scene > moving.scene
     mtled moving.scene table.mts > u.dat
     mts print energy u.dat | awk '{ if ($7 ^ 2 > 1e-6) bad = 1 } END { exit bad || NR < 100 }'

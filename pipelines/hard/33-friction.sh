@@ -26,7 +26,7 @@ friction = 0.4
 reactions = yes
 END
 relax "$work/drag.scene" "$work/block.mts" "$work/drag.dat"
-row 33 'block dragged on a flat: tangential force / normal force' \
+row 33 'friction: a block dragged on a flat, tangential force / normal force' \
     "$(calc "-($(reaction "$work/drag.dat" flat 1)) / ($(reaction "$work/drag.dat" flat 2))")" 0.4 slides
 
 gmsh -3 -nt 1 -v 0 "$(dirname "$0")/../../examples/hard/mindlin.geo" -o "$work/body.msh" > /dev/null
@@ -64,7 +64,7 @@ END
 done
 # Columns 8 to 10 are the force of the ball on a half; of the block's bottom the way is that of the curve, by then.
 for frame in 5 6; do
-    row 33 "ball pressed and dragged, frame $frame: displacement / Mindlin's" "$([ ! -s "$work/ball-0.3.dat" ] && echo nan || paste \
+    row 33 "friction: a ball pressed and dragged, frame $frame, displacement / Mindlin's" "$([ ! -s "$work/ball-0.3.dat" ] && echo nan || paste \
         <(mts print reactions.frames "$work/ball-0.3.dat") <(mts print reactions.frames "$work/ball-10.dat") \
         <(for f in 0 1 2 3 4 5 6; do paste <(mts print nodes.x "$work/body.mts") <(mts print "u.frame.$f" "$work/ball-0.3.dat") | awk '$3 < -0.0599 { print -$4; exit }'; done) |
         awk -v row="$frame" 'NR == row + 1 { nu = 0.49; G = 30000 / 2 / (1 + nu); P = -2 * $10; Q = 2 * $8; way = $21; mu = 0.3

@@ -72,6 +72,15 @@ scene() {
     sed -i "1i [scene]\ndim = ${dim:-3}\nanalysis = ${analysis:-quasi-static}\n${head:-}" "$1"
 }
 
+# cube LINES [ANALYSIS]: a scene of a unit cube with faces xmin, ymin, zmin that slide, to standard output: LINES of its material and, after
+# them, what else there is; ANALYSIS: more lines of [scene]. The cube of 8 nodes itself: unit_cube.
+cube() {
+    printf '[scene]\ndim = 3\nanalysis = quasi-static\n%b\n[material body]\nregion = body\n%b\n' "${2:-}" "$1"
+    printf '[displacement %s]\nfacets = %s\nnormal = 0\n' x xmin y ymin z zmin
+    printf '[output]\nreactions = yes\n'
+}
+unit_cube() { cloud -d 3 -k regular -n 2 --box 0,1,0,1,0,1 2> /dev/null | shapefn > "$work/cube.mts" 2> /dev/null; }
+
 # relax SCENE TABLE OUT: run mtled; what it says on standard error goes to OUT.log. When it fails its message is shown and
 # OUT is empty: the rows made of it then read `none` and FAIL.
 relax() {
@@ -126,6 +135,12 @@ estimate_run() {
 # no_estimate TOLERANCE: the row of a run that fails.
 no_estimate() {
     printf '%s\t%s\tnone\tnone\t-\t-\t-\t-\tFAIL\n' "$(basename "$0" .sh)" "$1"
+}
+
+# place FILE POINT: where the point, in mm, has gone to along z, mm.
+place() {
+    echo "$2" > "$work/point.tsv"
+    interp -p "$work/point.tsv" -u mm "$1" 2> /dev/null | mts print u | awk -v z="${2##* }" '{ print z + 1000 * $3 }' || echo nan
 }
 
 # count TABLE: the number of nodes of $work/TABLE.mts.

@@ -1,0 +1,95 @@
+#!/bin/bash
+# Row 35: what surrounds an organ. A block on an elastic support sinks by p / k more; a bar that is dragged along a tangential support follows
+# u'' = k p / (E A) u. A coated bar has the axial stiffness E A + E_m t p; a coated ring (plane strain) under inner pressure is Lame's with
+# the membrane's hoop stress outside.
+. "$(dirname "$0")/common.sh"
+
+cloud -d 3 -k jittered --jitter 0.1 -n 6 --box 0,0.1,0,0.1,0,0.1 | shapefn > "$work/block.mts" 2> /dev/null
+youngs=3000 nu=0 scene "$work/sink.scene" << 'END'
+[support ground]
+facets = zmin
+normal = 50000
+[traction top]
+facets = zmax
+components = 0, 0, -30
+[displacement a]
+facets = xmin
+normal = 0
+[displacement b]
+facets = ymin
+normal = 0
+[solver]
+tolerance = 1e-8
+END
+relax "$work/sink.scene" "$work/block.mts" "$work/u.dat"
+row 35 'support: a block pressed by p sinks by p / k, m' "$(mean_at "$work/u.dat" '$3 < 1e-9' '-$6')" 0.0006 around-exact
+
+cloud -d 2 -k jittered --jitter 0.1 -n 161,9 --box 0,1,0,0.04 | shapefn > "$work/bar.mts" 2> /dev/null
+dim=2 youngs=3000 nu=0 scene "$work/drag.scene" << 'END'
+[support sides]
+facets = ymin, ymax
+tangential = 240
+[displacement end]
+facets = xmax
+components = 0.001, 0
+[output]
+reactions = yes
+END
+relax "$work/drag.scene" "$work/bar.mts" "$work/u.dat"
+row 35 'support: a bar dragged along one, force at its end, N/m' "$(reaction "$work/u.dat" end 1)" \
+    "$(calc '3000 * 0.04 * 0.002 * (exp(4) - 1) / (exp(4) + 1)')" around
+row 35 'support: a bar dragged along one, its other end, m' "$(mean_at "$work/u.dat" '$1 < 1e-9' '$3')" "$(calc '0.002 / (exp(2) + exp(-2))')" around
+
+cloud -d 3 -k jittered --jitter 0.1 -n 21,6,6 --box 0,0.1,0,0.02,0,0.02 | shapefn > "$work/coated.mts" 2> /dev/null
+youngs=3000 nu=0 scene "$work/coated.scene" << 'END'
+[membrane skin]
+facets = ymin, ymax, zmin, zmax
+thickness = 1e-4
+E = 1e5
+nu = 0
+[displacement a]
+facets = xmin
+normal = 0
+[displacement b]
+facets = xmax
+normal = 1e-5
+[displacement c]
+facets = ymin
+normal = 0
+[displacement d]
+facets = zmin
+normal = 0
+[output]
+reactions = yes
+END
+relax "$work/coated.scene" "$work/coated.mts" "$work/u.dat"
+# By the strain in the middle, away from the ends.
+strain=$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") | awk '
+    ($1 - 0.05)^2 < 0.025^2 { n++; x += $1; u += $4; xx += $1 * $1; xu += $1 * $4 } END { printf "%.12g\n", (xu - x * u / n) / (xx - x * x / n) }')
+row 35 'membrane: a coated bar, E A + E_m t p, N' "$(calc "$(reaction "$work/u.dat" b 1) / ($strain)")" 2 coated
+
+cat > "$work/ring.geo" << 'END'
+Point(1)={0,0,0}; Point(2)={50,0,0}; Point(3)={-50,0,0}; Point(4)={100,0,0}; Point(5)={-100,0,0};
+Circle(1)={2,1,3}; Circle(2)={3,1,2}; Circle(3)={4,1,5}; Circle(4)={5,1,4}; Curve Loop(1)={3,4}; Curve Loop(2)={1,2}; Plane Surface(1)={1,2};
+Physical Surface("body")={1}; Physical Curve("out")={3,4}; Physical Curve("in")={1,2};
+END
+gmsh -v 0 -2 "$work/ring.geo" -clmax 6 -clmin 6 -o "$work/ring.msh" > /dev/null
+nodes -u mm "$work/ring.msh" 2> /dev/null | shapefn > "$work/ring.mts" 2> /dev/null
+dim=2 youngs=3000 nu=0.3 scene "$work/ring.scene" << 'END'
+[membrane skin]
+facets = out
+thickness = 1e-4
+E = 1e6
+nu = 0.4
+[support weak]
+facets = in
+normal = 0.01
+tangential = 0.01
+[pressure in]
+facets = in
+value = 0.03
+END
+relax "$work/ring.scene" "$work/ring.mts" "$work/u.dat"
+row 35 "membrane: a coated ring under inner pressure, radius outside, displacement / Lame's" "$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") |
+    awk 'BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b^2 * 1.3 / 3000; c = 1 + k * 0.4 * b; B = c * 0.03 / (c / a^2 - 1 / b^2 + k / b); A = B / a^2 - 0.03 }
+        { r = sqrt($1^2 + $2^2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)); n++ } END { printf "%.12g\n", sum / n }')" 1 around

@@ -1,0 +1,34 @@
+#!/bin/bash
+# Row 36: problem 2 of the cardiac mechanics benchmark (Land et al. 2015), a ventricle of an isotropic guccione law under pressure: the apex in
+# the middle of the wall, -27.33 mm of fine solutions, on three meshes, of which the finest is judged. A run that has not ended within
+# 240 s is a row without value.
+. "$(dirname "$0")/common.sh"
+geometries=$(dirname "$0")/../../examples/hard
+mtled() { timeout 240 mtled "$@"; }
+
+cat > "$work/ventricle.scene" << 'END'
+[scene]
+dim = 3
+analysis = quasi-static
+[material body]
+region = body
+model = guccione
+C = 10000
+bf = 1
+bt = 1
+bfs = 1
+kappa = 1e7
+fibre = 1, 0, 0
+[displacement base]
+facets = base
+components = 0, 0, 0
+[pressure blood]
+facets = inside
+value = 10000
+END
+for size in 2:land-coarse 1.5:land-coarse 1:land-ventricle; do
+    gmsh -3 -v 1 -setnumber h "${size%:*}" "$geometries/ventricle.geo" -o "$work/ventricle.msh" > /dev/null
+    nodes -u mm "$work/ventricle.msh" 2> /dev/null | shapefn > "$work/ventricle.mts" 2> /dev/null
+    relax "$work/ventricle.scene" "$work/ventricle.mts" "$work/u.dat"
+    row 36 "Land 2: apex in the middle of the wall, cells of ${size%:*} mm, mm" "$(place "$work/u.dat" '0 0 -18.5')" -27.33 "${size#*:}"
+done
