@@ -156,4 +156,10 @@ denied() {
     nifti segments sphere.nii.gz sphere.seg.nrrd 1 sphere
     denied voxels -h 20mm sphere.seg.nrrd
     denied sample slice.nii points.mts
+    /usr/bin/python3 -c 'import nibabel as n, numpy as m; n.save(n.Nifti1Image(m.ones((9, 9, 9, 3), m.float32), m.diag([50, 50, 50, 1])), "axes.nii")'
+    denied sample --vector --outside 0 axes.nii cube.mts
+    sample --vector --outside 0 -o along.mts axes.nii cube.mts 2> note
+    sed 's/^E = .*/model = guccione\nC = 2000\nbf = 1\nbt = 1\nbfs = 1/' cube.scene > fibres.scene
+    denied mtled fibres.scene along.mts
+    denied fibres --from zmin,60 --to zmax,-60 --axis 1,0,0 cube.mts
 }

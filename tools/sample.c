@@ -4,6 +4,7 @@ static const char usage[] =
     "usage: sample [-i METHOD] [-a SECTION] [-r REGION,...] [-u UNIT] [--outside V] [-o FILE] IMAGE [FILE]\n"
     "       sample --section NAME [-i METHOD] [-a SECTION] [--outside V] [-t] [-o FILE] IMAGE [FILE]\n"
     "       sample -p POINTS [-u UNIT] [-i METHOD] [--outside V] [-o FILE] IMAGE\n"
+    "       sample --vector [-a SECTION] [--section NAME] [...] IMAGE [FILE]\n"
     "       sample --material TABLE [...] IMAGE [FILE]\n"
     "       sample --tissue E,NU [--tissue E,NU ...] [...] IMAGE... [FILE]\n"
     "\n"
@@ -19,6 +20,13 @@ static const char usage[] =
     "coordinates, E and nu at the integration points (ipoints is run with its defaults where it was\n"
     "not), as a scene's [material] takes them: table = FILE, unit = m. Leave to -r the regions of\n"
     "that material.\n"
+    "\n"
+    "With --vector the image holds directions of fibres, as of a diffusion tensor: three values at a voxel,\n"
+    "along the world axes (to the left, to the back and up in NIfTI of intent 1007, NRRD and MetaImage).\n"
+    "Signs and lengths do not matter: a (x) a of each voxel is interpolated, and the axis is the principal\n"
+    "one. The stream is written with it at each integration point, as a section points.fibre, which mtled\n"
+    "takes for a [material] with fibres that names neither fibre nor fibres; with -p it is a table. Where\n"
+    "all voxels around a point have no length, it counts as outside; --outside 0 leaves zeros there.\n"
     "\n"
     "A point outside of the image, or where it is not finite, is an error, unless --outside gives it a\n"
     "value. Then such points are counted.\n"
@@ -36,6 +44,7 @@ static const char usage[] =
     "                        many metres\n"
     "      --outside V       the image's value at points outside of it\n"
     "      --section NAME    write the stream with a section of this name that holds the values\n"
+    "      --vector          directions of fibres from an image of vectors\n"
     "      --material TABLE  stiffness from the values of an image\n"
     "      --tissue E,NU ...  stiffness from probabilities: E, Pa, and nu of an image's tissue\n"
     "  -t, --text            write the stream as text instead of binary\n"
@@ -44,6 +53,7 @@ static const char usage[] =
     "Examples:\n"
     "  sample -i nearest labels.nii.gz body.mts > label_at_nodes.tsv\n"
     "  sample -p landmarks.tsv -u mm T1.nii.gz\n"
+    "  nodes -u mm heart.msh | sample --vector dti.nii.gz - | mtled heart.scene > u.dat\n"
     "  sample --tissue 3000,0.49 --tissue 9000,0.49 white.nii.gz tumour.nii.gz table.mts > stiffness.tsv\n";
 
 #include "images/image_body.h"
@@ -53,6 +63,7 @@ static const char usage[] =
 #include "images/tissue.h"
 #include "stages/views.h"
 
+#include "base/axis.h"
 #include "base/box.h"
 #include "io/image/image_sample.h"
 
@@ -66,7 +77,7 @@ struct request {
     enum image_method method;
     const char *at, *region, *points, *section; /* NULL: not given */
     double unit, outside;
-    bool has_outside, stiffness;
+    bool has_outside, stiffness, axes;
     struct tissue tissue;
     int image_count;
 };
@@ -84,14 +95,19 @@ static void parse(const struct tool *tool, struct request *request)
                                 .outside = tool_number(tool, "outside", -DBL_MAX, DBL_MAX, 0),
                                 .has_outside = tool_given(tool, "outside"),
                                 .stiffness = tool_given(tool, "material") || tissue_count > 0,
+                                .axes = tool_given(tool, "vector"),
                                 .image_count = tissue_count > 0 ? tissue_count : 1};
-    static const char *const exclusive[][2] = {{"material", "tissue"},
-                                               {"points", "at"},
-                                               {"points", "region"},
-                                               {"points", "section"},
-                                               {"section", "region"}};
+    static const char *const exclusive[][2] = {
+        {"material", "tissue"}, {"points", "at"},     {"points", "region"}, {"points", "section"},
+        {"vector", "material"}, {"vector", "tissue"}, {"vector", "region"}, {"section", "region"}};
     for (size_t e = 0; e < sizeof exclusive / sizeof *exclusive; e++) {
         tool_excludes(tool, exclusive[e][0], exclusive[e][1]);
+    }
+    if (request->axes && request->points == NULL && request->section == NULL) {
+        request->section = "points.fibre";
+    }
+    if (request->axes && request->outside != 0) {
+        tool_fail(tool, STATUS_INPUT, "--outside: with --vector it is 0: no direction");
     }
     if (request->section != NULL && tool_given(tool, "unit")) {
         tool_fail(tool, STATUS_INPUT, "-u is for tables: it does not go with --section");
@@ -100,7 +116,7 @@ static void parse(const struct tool *tool, struct request *request)
         tool_fail(tool, STATUS_INPUT, "-t is for streams: it needs --section (a table is text)");
     }
     if (request->at == NULL) {
-        request->at = request->stiffness || request->region != NULL ? "points.x" : "nodes.x";
+        request->at = request->stiffness || request->axes || request->region != NULL ? "points.x" : "nodes.x";
     }
     if (request->region != NULL && strcmp(request->at, "points.x") != 0) {
         tool_fail(tool, STATUS_INPUT, "--region is for integration points (points.x), not for %s",
@@ -113,15 +129,17 @@ static void parse(const struct tool *tool, struct request *request)
     }
 }
 
-/* Whether all values are finite. */
-static bool are_finite(const double *values, size_t count)
+/* Whether all values are finite and, of axes, not all 0. */
+static bool are_good(const struct request *request, const double *values, size_t count)
 {
+    bool some = !request->axes;
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(values[i])) {
             return false;
         }
+        some = some || values[i] != 0;
     }
-    return true;
+    return some;
 }
 
 /* Sample one image at all points, into columns from `first` on. */
@@ -138,7 +156,8 @@ static void sample_image(const struct tool *tool, const struct request *request,
         memcpy(place, rows->x + p * rows->dim, (size_t)rows->dim * sizeof *place);
         image_map(&inverse[0][0], place, voxel);
         box_add(&box, 1, voxel);
-        if (!image_sample(image, request->method, voxel, value) || !are_finite(value, image->components)) {
+        if (!image_sample(image, request->method, voxel, value) ||
+            !are_good(request, value, image->components)) {
             first_outside = outside++ == 0 ? p : first_outside;
             for (size_t c = 0; c < image->components; c++) {
                 value[c] = request->outside;
@@ -178,6 +197,46 @@ static void check_probabilities(const struct tool *tool, const struct image *ima
     }
 }
 
+/* Replace the vectors of an image by a (x) a in the axes of the body. */
+static void square_vectors(const struct tool *tool, const struct image_axes *axes, int dim,
+                           struct image *image, const char *name)
+{
+    int count = dim * (dim + 1) / 2;
+    double *values, mirror = image->intent == IMAGE_INTENT_VECTOR ? -1 : 1;
+    if (image->components != 3 || image->datatype == IMAGE_RGB24) {
+        tool_fail(tool, STATUS_INPUT, "%s: %s at a voxel: --vector takes images of vectors of three numbers",
+                  name, image->components == 3 ? "a colour" : "not three values");
+    }
+    TOOL_TRY(tool, NEW_ARRAY(&values, (int64_t)image_voxels(image) * count, &error));
+    for (size_t v = 0; v < image_voxels(image); v++) {
+        const double *from = image->values + 3 * v;
+        double world[3] = {mirror * from[0], mirror * from[1], from[2]}, a[3];
+        for (int i = 0; i < 3; i++) {
+            a[i] = world[axes->world[i]];
+        }
+        axis_square(dim, a, values + v * (size_t)count);
+    }
+    free(image->values);
+    image->values = values;
+    image->components = (size_t)count;
+}
+
+/* Replace the sampled a (x) a by their axes, 0 where there is none. */
+static void find_axes(const struct tool *tool, struct sample_points *rows)
+{
+    double *axes;
+    TOOL_TRY(tool, NEW_ARRAY(&axes, rows->count * rows->dim, &error));
+    for (int64_t p = 0; p < rows->count; p++) {
+        double *axis = axes + p * rows->dim;
+        if (!axis_principal(rows->dim, rows->value + p * rows->cols, axis)) {
+            memset(axis, 0, (size_t)rows->dim * sizeof *axis);
+        }
+    }
+    free(rows->value);
+    rows->value = axes;
+    rows->cols = rows->dim;
+}
+
 /* Sample all images. The first one determines the number of values at a point. */
 static void sample_images(const struct tool *tool, const struct request *request, struct sample_points *rows)
 {
@@ -189,6 +248,9 @@ static void sample_images(const struct tool *tool, const struct request *request
         if (request->stiffness && image.components != 1) {
             tool_fail(tool, STATUS_INPUT, "%s: %zu values at a voxel: stiffness comes from one",
                       tool->operands[i], image.components);
+        }
+        if (request->axes) {
+            square_vectors(tool, &axes, rows->dim, &image, tool->operands[i]);
         }
         if (request->tissue.count > 0) {
             check_probabilities(tool, &image, tool->operands[i]);
@@ -252,6 +314,7 @@ int main(int argc, char *argv[])
     struct request request;
     struct sample_points rows;
     struct output output;
+    char attributes[64];
     tool_begin(&tool, usage, 1, OPTIONS_MOST_USES + 1, argc, argv);
     parse(&tool, &request);
     int most = request.image_count + (request.points == NULL ? 1 : 0);
@@ -271,9 +334,15 @@ int main(int argc, char *argv[])
     if (request.stiffness) {
         find_moduli(&tool, &request.tissue, &rows);
     }
+    if (request.axes) {
+        find_axes(&tool, &rows);
+    }
     if (request.section != NULL) {
         tool_put(&tool, &stream, request.section, TYPE_F8, rows.count, rows.cols,
-                 request.stiffness ? "cols=E,nu" : "", array_take(&rows.value));
+                 request.stiffness ? "cols=E,nu"
+                 : request.axes    ? vector_attributes(rows.dim, "1", attributes)
+                                   : "",
+                 array_take(&rows.value));
         tool_write(&tool, &stream);
     } else {
         tool_print_to(&tool, &output, tool.output);

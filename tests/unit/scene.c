@@ -231,7 +231,6 @@ TEST(material_keys)
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nnu = 0\n", 4, "c2: missing");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nratio = 1\n", 8, "ratio: not allowed: it goes with E");
     fails(HEAD BODY "fibre = 1, 0\n", 9, "fibre: not allowed: the law has no fibres, and no active");
-    fails(HEAD BODY "active = 1\n", 4, "fibre: missing: give the direction of the fibres");
     fails(HEAD BODY "active = -1\n", 9, "active: -1 is not at least 0");
     fails(HEAD BODY "curve = step\n", 9, "curve: not allowed: it is that of active");
     fails(HEAD BODY "prony = .45 .5, .55 50\n", 9, "prony: the sum of g is 1, not below 1");
@@ -248,7 +247,6 @@ TEST(material_keys)
     fails(HEAD "duration = 1\n" BODY, 0, "[scene]: duration: of no use");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "active = 1\n", 9,
           "active: not allowed: it belongs to quasi");
-    fails(HEAD GUCCIONE, 4, "fibre: missing: give the direction of the fibres");
     fails(HEAD GUCCIONE "fibre = 0, -0\n", 12, "fibre: has no length: give a direction, as 1, 0, 0");
     fails(HEAD GUCCIONE "fibre = nan, 1\n", 12, "fibre: 'nan' is not a finite number");
     fails(HEAD GUCCIONE "fibre = 0, 0, 1\n", 12, "fibre: has 3 components: dim = 2 needs 2");

@@ -1,25 +1,14 @@
 #include "mtled/model.h"
 
 #include "approx/field/scattered_fit.h"
-#include "base/eigen.h"
+#include "base/axis.h"
 #include "base/vector.h"
 #include "io/files/table.h"
+#include "stages/views.h"
 
 #include <math.h>
+#include <string.h>
 
-/* The dim (dim + 1) / 2 entries of a symmetric matrix. */
-enum { MOST_ENTRIES = 6 };
-static const int entries[2][MOST_ENTRIES] = {{0, 1, 3}, {0, 1, 2, 4, 5, 8}};
-
-static int entry_row(int dim, int v)
-{
-    return entries[dim - 2][v] / dim;
-}
-
-static int entry_column(int dim, int v)
-{
-    return entries[dim - 2][v] % dim;
-}
 
 /* rows[table->rows * (dim + entries)]: each point, and a (x) a of its unit direction a, in which the sign is
  * lost. */
@@ -29,52 +18,36 @@ static enum status square_directions(const struct scene_material *section, const
     int count = dim * (dim + 1) / 2;
     for (int64_t r = 0; r < table->rows; r++) {
         const double *from = table->values + r * table->cols;
-        double *to = rows + r * (dim + count), along[3] = {0.0}, frame[6];
-        for (int a = 0; a < dim; a++) {
-            to[a] = from[a];
-            along[a] = from[dim + a];
-        }
-        if (!fibre_frame(dim, along, NULL, frame)) {
+        double *to = rows + r * (dim + count);
+        memcpy(to, from, (size_t)dim * sizeof *to);
+        if (!axis_square(dim, from + dim, to + dim)) {
             return fail(error, STATUS_INPUT, "%s: fibres: %s:%lld: the direction has no length",
                         section->label.where, section->fibres, (long long)table->line[r]);
-        }
-        for (int v = 0; v < count; v++) {
-            to[dim + v] = frame[entry_row(dim, v)] * frame[entry_column(dim, v)];
         }
     }
     return STATUS_OK;
 }
 
-/* The axis of the interpolated a (x) a: the eigenvector of the largest eigenvalue. */
-static void principal_axis(int dim, const double *values, double axis[3])
-{
-    double A[9], eigenvalue[3], V[9];
-    int first = 0;
-    for (int v = 0; v < dim * (dim + 1) / 2; v++) {
-        int r = entry_row(dim, v), c = entry_column(dim, v);
-        A[dim * r + c] = A[dim * c + r] = values[v];
-    }
-    eigen_symmetric(dim, A, eigenvalue, V);
-    for (int i = 1; i < dim; i++) {
-        first = eigenvalue[i] > eigenvalue[first] ? i : first;
-    }
-    for (int a = 0; a < dim; a++) {
-        axis[a] = V[dim * a + first];
-    }
-}
+/* The fibres of a section: a fit to the rows of its table, or else the stream's axis of each point. */
+struct source {
+    const struct scene_material *section;
+    struct scattered_fit fit;
+    const double *axes; /* NULL: the fit */
+};
 
-/* The directions at point q. */
-static enum status directions_at(const struct model *model, const struct scene_material *section,
-                                 const struct scattered_fit *fit, int64_t q, double directions[6],
-                                 struct error *error)
+/* The axis of the fibres at point q, by the fit. */
+static enum status interpolate(const struct model *model, const struct source *source, int64_t q,
+                               double axis[3], struct error *error)
 {
+    const struct scene_material *section = source->section;
     int dim = model->assembly.cells.dim;
-    const double *x = model->assembly.x + q * dim, *plane = section->fibre_plane;
-    double values[MOST_ENTRIES], distance, spacing, axis[3] = {0.0};
+    const double *x = model->assembly.x + q * dim;
+    double values[AXIS_MOST_ENTRIES], distance, spacing;
     double size = pow(model->assembly.weight[q], 1.0 / dim);
     char place[96];
     point_text(dim, x, place);
-    RETURN_IF_ERROR(fail_in(error, scattered_fit_evaluate(fit, 0, x, values, &distance, &spacing, error),
+    RETURN_IF_ERROR(fail_in(error,
+                            scattered_fit_evaluate(&source->fit, 0, x, values, &distance, &spacing, error),
                             "%s: fibres: %s: at %s", section->label.where, section->fibres, place));
     if (!(distance <= SCATTERED_FIT_REACH * fmax(spacing, size))) {
         return fail(
@@ -83,12 +56,70 @@ static enum status directions_at(const struct model *model, const struct scene_m
             "wrong unit or wrong place, else give rows there",
             section->label.where, section->fibres, distance, place, spacing);
     }
-    principal_axis(dim, values, axis);
+    axis_principal(dim, values, axis);
+    return STATUS_OK;
+}
+
+/* The directions at point q. */
+static enum status directions_at(const struct model *model, const struct source *source, int64_t q,
+                                 double directions[6], struct error *error)
+{
+    const struct scene_material *section = source->section;
+    int dim = model->assembly.cells.dim;
+    const double *plane = section->fibre_plane;
+    double axis[3] = {0.0}, frame[6];
+    char place[96];
+    point_text(dim, model->assembly.x + q * dim, place);
+    if (source->axes == NULL) {
+        RETURN_IF_ERROR(interpolate(model, source, q, axis, error));
+    } else {
+        memcpy(axis, source->axes + q * dim, (size_t)dim * sizeof *axis);
+        if (!fibre_frame(dim, axis, NULL, frame)) {
+            return fail(error, STATUS_INPUT,
+                        "%s: points.fibre: row %lld, at %s m, has no length: the stream has no fibres there",
+                        section->label.where, (long long)q, place);
+        }
+    }
     bool two = vector_dot(3, plane, plane) > 0.0;
     return fibre_frame(dim, axis, two ? plane : NULL, directions)
                ? STATUS_OK
                : fail(error, STATUS_INPUT, "%s: fibre_plane: the fibres have this direction at %s",
                       section->label.where, place);
+}
+
+/* Fit a (x) a to the section's table; rows[] stays the caller's. */
+static enum status fit_table(const struct model *model, struct source *source, double **rows,
+                             struct error *error)
+{
+    int dim = model->assembly.cells.dim, count = dim * (dim + 1) / 2;
+    FREED_BY(table_free) struct table table = {0};
+    RETURN_IF_ERROR(table_read(source->section->fibres, 2 * dim, 2 * dim, &table, error));
+    RETURN_IF_ERROR(NEW_ARRAY(rows, table.rows * (dim + count), error));
+    RETURN_IF_ERROR(square_directions(source->section, &table, dim, *rows, error));
+    source->fit = (struct scattered_fit){.dim = dim,
+                                         .value_count = count,
+                                         .count = table.rows,
+                                         .row_size = dim + count,
+                                         .row = *rows,
+                                         .unit = source->section->table_unit};
+    return fail_in(error, scattered_fit_build(&source->fit, error), "%s", source->section->label.where);
+}
+
+/* The section points.fibre of the stream. */
+static enum status stream_axes(const struct model *model, struct source *source, struct error *error)
+{
+    const struct section *section;
+    if (stream_find(model->stream, "points.fibre") == NULL) {
+        return fail(
+            error, STATUS_INPUT,
+            "%s: fibre: missing, and the stream has no section points.fibre: give the direction of the "
+            "fibres at rest, as 1, 0, 0, a table by fibres, or run fibres or sample --vector",
+            source->section->label.where);
+    }
+    RETURN_IF_ERROR(stream_view(model->stream, "points.fibre", &section, error));
+    RETURN_IF_ERROR(section_check_numbers(section, FINITE, error));
+    source->axes = section->data;
+    return STATUS_OK;
 }
 
 /* The material of point q with these directions: its own copy, unless a table of moduli has made one already.
@@ -103,26 +134,12 @@ static void set_directions(struct material_list *list, int64_t m, int64_t q, con
     list->items[list->of_point[q]].fibre = directions;
 }
 
-enum status model_fibres(struct model *model, int64_t m, struct error *error)
+static enum status set_points(struct model *model, int64_t m, const struct source *source,
+                              struct error *error)
 {
     struct material_list *list = &model->assembly.materials;
-    const struct scene_material *section = &model->scene->materials[m];
-    int dim = model->assembly.cells.dim, count = dim * (dim + 1) / 2;
     int64_t points = 0;
     double *directions;
-    FREED_BY(table_free) struct table table = {0};
-    FREED_BY(scattered_fit_free) struct scattered_fit fit = {0};
-    SCRATCH double *rows = NULL;
-    RETURN_IF_ERROR(table_read(section->fibres, 2 * dim, 2 * dim, &table, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&rows, table.rows * (dim + count), error));
-    RETURN_IF_ERROR(square_directions(section, &table, dim, rows, error));
-    fit = (struct scattered_fit){.dim = dim,
-                                 .value_count = count,
-                                 .count = table.rows,
-                                 .row_size = dim + count,
-                                 .row = rows,
-                                 .unit = section->table_unit};
-    RETURN_IF_ERROR(fail_in(error, scattered_fit_build(&fit, error), "%s", section->label.where));
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
         points += list->section[list->of_point[q]] == m;
     }
@@ -130,10 +147,23 @@ enum status model_fibres(struct model *model, int64_t m, struct error *error)
     RETURN_IF_ERROR(MODEL_ARRAY(model, &directions, 6 * points, error));
     for (int64_t q = 0; q < model->assembly.point_count; q++) {
         if (list->section[list->of_point[q]] == m) {
-            RETURN_IF_ERROR(directions_at(model, section, &fit, q, directions, error));
+            RETURN_IF_ERROR(directions_at(model, source, q, directions, error));
             set_directions(list, m, q, directions);
             directions += 6;
         }
     }
     return STATUS_OK;
+}
+
+enum status model_fibres(struct model *model, int64_t m, struct error *error)
+{
+    struct source source = {.section = &model->scene->materials[m]};
+    SCRATCH double *rows = NULL;
+    enum status status = source.section->fibres != NULL ? fit_table(model, &source, &rows, error)
+                                                        : stream_axes(model, &source, error);
+    if (status == STATUS_OK) {
+        status = set_points(model, m, &source, error);
+    }
+    scattered_fit_free(&source.fit);
+    return status;
 }

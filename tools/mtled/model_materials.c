@@ -138,7 +138,7 @@ enum status model_materials(struct model *model, struct error *error)
         if (scene->materials[m].table != NULL) {
             RETURN_IF_ERROR(add_point_table(model, m, error));
         }
-        if (scene->materials[m].fibres != NULL) {
+        if (scene->materials[m].fibres != NULL || scene->materials[m].fibres_of_stream) {
             RETURN_IF_ERROR(model_fibres(model, m, error));
         }
     }

@@ -96,6 +96,10 @@ static enum status check_sizes(const struct nifti *header, const struct nifti_ty
                         "header: size %.0f along dimension %d: from 1 to 2^31 - 1 is possible", size[i], i);
         }
     }
+    if (size[4] == 3 && size[5] <= 1) { /* a vector at each voxel, as other programs write it */
+        size[5] = size[4];
+        size[4] = 1;
+    }
     if (size[4] > 1) {
         return fail(error, STATUS_INPUT,
                     "holds %.0f volumes (4-D): choose one and save it as an image of its own", size[4]);

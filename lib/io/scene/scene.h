@@ -48,10 +48,11 @@ struct scene_material {
     struct material material; /* without its pointers, and with a table without moduli. A density that is not
                                  given is 1000, which has no effect at rest without gravity */
     double fibre[3], fibre_plane[3]; /* as given; zeros: not given */
-    double directions[6];            /* of the fibres, as in struct material; zeros: none, or by the table */
+    double directions[6];            /* of the fibres, as in struct material; zeros: none, or by point */
     struct scene_curve curve;        /* of material.active */
     struct scene_prony prony;
     const char *fibres; /* NULL, or rows (dim coordinates, direction of the fibres) */
+    bool fibres_of_stream; /* they are those of the stream's points */
     const char *table;  /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
     double table_unit;  /* m per unit of the table's coordinates */
 };

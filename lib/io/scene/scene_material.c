@@ -164,7 +164,7 @@ static enum status forbid_fibres(const struct place *place)
     return place_forbid_all(place, keys, "the law has no fibres, and no active stress is given");
 }
 
-/* The directions of the fibres, where the law has some: for the region, or in a table. */
+/* The directions of the fibres, where the law has some: for the region, in a table, or of the stream. */
 static enum status set_fibres(const struct place *place, const struct law *law, int dim,
                               struct scene_material *section)
 {
@@ -172,13 +172,11 @@ static enum status set_fibres(const struct place *place, const struct law *law, 
     const double *fibre = section->fibre, *plane = section->fibre_plane;
     if (place_has(place, "fibres")) {
         RETURN_IF_ERROR(place_forbid(place, "fibre", "the table fibres gives the directions"));
-    } else {
-        RETURN_IF_ERROR(place_require(
-            place, "fibre", "give the direction of the fibres at rest, as 1, 0, 0, or a table by fibres"));
-        if (!fibre_frame(dim, fibre, NULL, section->directions)) {
-            return place_fail(place, "fibre", "has no length: give a direction, as 1, 0, 0");
-        }
+    } else if (place_has(place, "fibre") && !fibre_frame(dim, fibre, NULL, section->directions)) {
+        return place_fail(place, "fibre", "has no length: give a direction, as 1, 0, 0");
     }
+    bool by_point = !place_has(place, "fibre");
+    section->fibres_of_stream = by_point && section->fibres == NULL;
     if (dim == 2 || law->plane == NULL) {
         return place_forbid(place, "fibre_plane",
                             dim == 2 ? "in 2D it is the plane of the body"
@@ -188,8 +186,8 @@ static enum status set_fibres(const struct place *place, const struct law *law, 
         return place_require(place, "fibre_plane",
                              "give a direction that spans the plane of both families with fibre");
     }
-    bool good = !given || fibre_frame(dim, section->fibres != NULL ? plane : fibre,
-                                      section->fibres != NULL ? NULL : plane, section->directions);
+    bool good =
+        !given || fibre_frame(dim, by_point ? plane : fibre, by_point ? NULL : plane, section->directions);
     return good ? STATUS_OK : place_fail(place, "fibre_plane", "has no direction other than fibre");
 }
 

@@ -55,6 +55,7 @@ const struct section_kind section_kinds[SECTION_KINDS] = {
     {"pressure", TYPE_F8, COLS_ANY, "points.x", ANY, NULL, MADE_WITH_RESULTS},
     {"volume_ratio", TYPE_F8, COLS_ANY, "points.x", ANY, NULL, MADE_WITH_RESULTS},
     {"fibre", TYPE_F8, COLS_DIM, "points.x", ANY, NULL, MADE_WITH_RESULTS},
+    {"points.fibre", TYPE_F8, COLS_DIM, "points.x", FINITE, NULL, MADE_WITH_POINTS},
     {"reactions", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"moments", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
     {"gaps", TYPE_F8, COLS_ANY, NULL, ANY, NULL, MADE_WITH_RESULTS},
