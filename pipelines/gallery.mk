@@ -1,16 +1,17 @@
 # make gallery: examples that others can judge, each with a picture: a liver (make liver), with and without its capsule (make capsule), a bar of silicone whose bending was
 # measured (make phantom), a probe pressed into tissue beside Hertz (make indentation), a needle with friction (make needle),
-# and brain tissue compressed at three rates (make compression).
+# brain tissue compressed at three rates (make compression), and a
+# ventricle with fibres that contracts (make ventricle).
 
 GALLERY := $(OUT)/gallery
 LIVER := examples/liver
 PHANTOM := examples/phantom
 PHANTOM_SIZES := 3.5 2.5 1.8
-GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels tag ipoints support shapefn mtled mts)
+GALLERY_PROGRAMS := $(addprefix $(BUILD)/bin/,nodes voxels fibres interp tag ipoints support shapefn mtled mts)
 GALLERY_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 
-.PHONY: gallery liver phantom indentation needle compression capsule
-gallery: liver phantom indentation needle compression capsule
+.PHONY: gallery liver phantom indentation needle compression capsule ventricle
+gallery: liver phantom indentation needle compression capsule ventricle
 
 $(GALLERY)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -137,3 +138,34 @@ $(GALLERY)/compression.tsv: $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.rows)
 
 $(GALLERY)/compression.png: pipelines/gallery/compression.gp $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.rows) $(COMPRESSION_RATES:%=$(GALLERY)/compression-%.closed)
 	gnuplot -e "data='$(@:.png=)'; rates='$(COMPRESSION_RATES)'; out='$@'" $<
+
+# ---- ventricle -------------------------------------------------------------------------------------------------------
+
+VENTRICLE := examples/ventricle
+VENTRICLE_FRAMES := 0 1 2 3 4 5 6 7 8 9 10
+
+ventricle: $(GALLERY)/ventricle.tsv $(GALLERY)/ventricle.png
+	@cat $<
+	$(PICTURES)
+
+$(GALLERY)/ventricle.dat: examples/hard/ventricle.geo $(addprefix $(VENTRICLE)/,ventricle.scene active.tsv pressure.tsv) $(GALLERY_PROGRAMS)
+	@mkdir -p $(@D)
+	gmsh -3 -nt 1 -v 2 $< -setnumber h 1.5 -o $(@:.dat=.msh)
+	(nodes -u mm $(@:.dat=.msh) | fibres --from inside,90 --to 'all without inside without base,-90' --axis 0,0,1 | shapefn | \
+	    mtled -v $(VENTRICLE)/ventricle.scene) > $@ $(GALLERY_LOG)
+
+$(VENTRICLE_FRAMES:%=$(GALLERY)/ventricle.rows.%): $(GALLERY)/ventricle.rows.%: $(GALLERY)/ventricle.dat pipelines/gallery/ventricle.awk
+	awk -f pipelines/gallery/ventricle.awk > $@.points
+	interp -f u.frame.$* -u mm -p $@.points -o $@.dat $<
+	paste <(mts print nodes.x $@.dat) <(mts print u.frame.$* $@.dat) > $@
+	awk -v rows=deformed -f pipelines/gallery/ventricle.awk $@ > $(GALLERY)/ventricle.wall.$*
+
+# The curves have a row for each frame.
+$(GALLERY)/ventricle.tsv: $(VENTRICLE_FRAMES:%=$(GALLERY)/ventricle.rows.%) pipelines/gallery.mk
+	(printf 'time\tpressure_kPa\tactive_kPa\tvolume_ml\tapex_inside_mm\tapex_outside_mm\n'; paste <(grep -v '#' $(VENTRICLE)/pressure.tsv) \
+	    <(grep -v '#' $(VENTRICLE)/active.tsv) <(for frame in $(VENTRICLE_FRAMES); do \
+	        awk -v rows=chamber -f pipelines/gallery/ventricle.awk $(@D)/ventricle.rows.$$frame; done) | \
+	    awk '{ printf "%g\t%.3g\t%.3g\t%s\t%s\t%s\n", $$1, 15 * $$2, 60 * $$4, $$5, $$6, $$7 }') > $@
+
+$(GALLERY)/ventricle.png: $(GALLERY)/ventricle.tsv pipelines/gallery/ventricle.gp
+	gnuplot -e "data='$(@:.png=)'; out='$@'" pipelines/gallery/ventricle.gp

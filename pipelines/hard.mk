@@ -6,7 +6,7 @@
 
 HARD := $(OUT)/hard
 HARD_CASES := $(sort $(notdir $(basename $(wildcard pipelines/hard/[0-9]*.sh))))
-HARD_TOOLS := $(addprefix $(BUILD)/bin/,cloud nodes ipoints support shapefn mtled interp fieldcmp mts)
+HARD_TOOLS := $(addprefix $(BUILD)/bin/,cloud nodes fibres ipoints support shapefn mtled interp fieldcmp mts)
 
 .PHONY: hard
 hard: $(HARD)/hard.tsv $(HARD)/summary.tsv $(HARD)/misses.tsv
@@ -15,7 +15,7 @@ hard: $(HARD)/hard.tsv $(HARD)/summary.tsv $(HARD)/misses.tsv
 
 $(HARD)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
-$(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh pipelines/hard/tolerances.tsv $(HARD_TOOLS) $(wildcard examples/hard/*)
+$(HARD_CASES:%=$(HARD)/%.rows): $(HARD)/%.rows: pipelines/hard/%.sh pipelines/hard/common.sh pipelines/hard/tolerances.tsv $(HARD_TOOLS) $(wildcard examples/hard/* examples/ventricle/*)
 	@mkdir -p $(@D)
 	bash $< > $@
 
