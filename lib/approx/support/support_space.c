@@ -172,8 +172,8 @@ static enum status locate_sides(const struct support_space *space, int64_t count
     return STATUS_OK;
 }
 
-/* The places of points on their sides: nodes or cells, by their numbers there. *ptr and *item hold them, to
- * be freed. */
+/* The places of points on their sides: nodes or cells, by their numbers there; side_count is the whole body.
+ * *ptr and *item hold them, to be freed. */
 static enum status places_on_sides(const struct support_space *space, const struct visibility_places *places,
                                    int64_t count, const int32_t *side, int64_t **ptr, int32_t **item,
                                    struct visibility_places *within, struct error *error)
@@ -197,8 +197,9 @@ static enum status places_on_sides(const struct support_space *space, const stru
     for (int64_t p = 0; p < count; p++) {
         const int32_t *cell = visibility_places_cells(places, p, &cells);
         for (int64_t k = 0; k < cells; k++) {
-            if (cell[k] >= 0 && space->cell_side[cell[k]] == side[p]) {
-                (*item)[items++] = space->place[cell[k]];
+            bool whole = side[p] == space->side_count;
+            if (cell[k] >= 0 && (whole || space->cell_side[cell[k]] == side[p])) {
+                (*item)[items++] = whole ? cell[k] : space->place[cell[k]];
             }
         }
         (*ptr)[p + 1] = items;
