@@ -54,12 +54,11 @@ static void judge(struct run *run, const struct statics_report *report)
     if (report->outcome == STATICS_INVERTED) {
         const double *x = run->model->assembly.x + report->inverted_point * scene->dim;
         point_text(scene->dim, x, place);
-        run_fail(
-            run, STATUS_VERDICT,
-            "%s: step %lld%s: integration point %lld at %s is inverted (J = %.3g), however slowly the load "
-            "grows: %s",
-            scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
-            report->least_jacobian, beyond_limit);
+        run_fail(run, STATUS_VERDICT,
+                 "%s: step %lld%s: integration point %lld at %s inverts (J = %.3g), however slowly the load "
+                 "grows: %s",
+                 scene->path, (long long)report->steps, load, (long long)report->inverted_point, place,
+                 report->least_jacobian, beyond_limit);
     }
     if (report->outcome == STATICS_AWAY) {
         run_fail(run, STATUS_VERDICT,

@@ -14,8 +14,8 @@ static const double most_of_size = 0.1;
 /* Between facets of the body, a step by the width of a point, of which half is searched (contact_between.c).
  */
 static const double step_by_width = 0.25;
-/* The estimated error at which the load grows on. */
-static const double error_between = 0.2;
+/* The estimated error at which the load grows on; and after an increment whose model had no minimum. */
+static const double error_between = 0.2, error_waiting = 0.01;
 static const int64_t usual_most_steps = 100000;
 
 /* How far a node may move in a step: between facets of the body so far that what is opposite a point is still
@@ -62,7 +62,7 @@ static bool goes_on(struct newton *n, struct error *error)
 static bool loads(const struct newton *n)
 {
     return n->load < newton_load_to_hold(n) && n->uphill == 0 &&
-           (n->slides ? n->rests : n->report->error < error_between);
+           (n->slides ? n->rests : n->report->error < (n->waits ? error_waiting : error_between));
 }
 
 /* The next step: an increment of the load, or a correction. The preconditioner is made anew once the products
@@ -77,6 +77,7 @@ static bool step(struct newton *n, struct error *error)
     if (loads(n)) {
         double from = n->load, change = fmin(n->load_change, newton_load_to_hold(n) - from);
         if (newton_begin_increment(n, from, change)) {
+            n->waits = false;
             return newton_take_increment(n, from, change);
         }
         newton_set_load(n, from, from);
@@ -87,7 +88,8 @@ static bool step(struct newton *n, struct error *error)
         }
         n->load_change = 0.5 * change;
         n->corrections++;
-        return newton_leave(n);
+        n->waits = true;
+        return n->report->error < error_waiting ? newton_leave(n) : newton_correct(n);
     }
     n->corrections++;
     return newton_correct(n);
@@ -99,8 +101,9 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
     int64_t most = n->options->most_steps > 0 ? n->options->most_steps : usual_most_steps;
     while (n->report->steps < most) {
         if (!step(n, error)) {
-            bool slides = n->slides && n->report->least_jacobian > 0.0;
-            return n->failure != STATUS_OK ? STATICS_STOPPED : slides ? STATICS_STALLED : STATICS_INVERTED;
+            return n->failure != STATUS_OK ? STATICS_STOPPED
+                   : n->collapses          ? STATICS_INVERTED
+                                           : STATICS_STALLED;
         }
         newton_augment(n);
         newton_estimate(n);

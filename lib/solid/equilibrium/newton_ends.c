@@ -54,7 +54,7 @@ void newton_estimate(struct newton *n)
     double square = newton_square(n, &n->at_u), move = newton_longest(n, n->u, NULL);
     n->largest_move = fmax(n->largest_move, move);
     report->move = fmax(move, n->options->tolerance * n->largest_move);
-    double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmax(n->lowest, NEWTON_LEAST_TOLD);
+    double lowest = isinf(n->lowest) ? NEWTON_LEAST_TOLD : fmin(1.0, fmax(n->lowest, NEWTON_LEAST_TOLD));
     double error = newton_longest(n, n->scaled, &report->worst_node) / lowest;
     bool at_rest = report->move <= DBL_EPSILON * n->body_size || !(square > 0.0);
     report->error = at_rest ? 0.0 : error / report->move;

@@ -35,6 +35,7 @@ struct deformation newton_evaluate(struct newton *n, const double *u, struct new
     struct deformation deformation = system_smooth_residual(n->system, u, forces->smooth);
     n->report->force_evaluations++;
     newton_touch(n, u, forces);
+    forces->least_jacobian = deformation.least_jacobian;
     return deformation;
 }
 
@@ -56,6 +57,14 @@ static void multiply(struct newton *n, const double *move, double *product)
     for (int64_t i = 0; i < n->size; i++) {
         product[i] = (n->at_u.smooth[i] - product[i]) / epsilon;
     }
+}
+
+double newton_curvature(struct newton *n)
+{
+    multiply(n, n->search, n->product);
+    double curvature = vector_product(n->size, n->search, n->product);
+    (void)newton_evaluate(n, n->u, &n->at_u);
+    return curvature;
 }
 
 /* The forces of contacts at u + step + share search. */
@@ -202,5 +211,6 @@ bool newton_solve_model(struct newton *n, double share, double radius)
         before = now;
         length = newton_longest(n, n->step, NULL);
     }
+    note_products(n, MOST_ITERATIONS, before / n->square, &lanczos);
     return true;
 }

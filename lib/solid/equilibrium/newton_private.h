@@ -8,6 +8,7 @@
 struct newton_forces {
     double *smooth, *contact;
     double contact_energy; /* J (2D: J/m) */
+    double least_jacobian; /* of a cell */
 };
 
 struct newton {
@@ -29,6 +30,8 @@ struct newton {
     double spacing, body_size;                  /* mean spacing of the nodes; diagonal of their box, m */
     double load, load_change;                   /* share of the load at u; the next increment, */
     double most_change;                         /* and its most */
+    bool waits;                                 /* the load, until u is almost in equilibrium */
+    bool collapses;                             /* a cell did in the step that was tried last */
     double longest_step;                        /* of a node, m */
     double radius;                              /* bound of a step at each node, m */
     double *kept; /* where the energy was lowest, the start of steps in a row that have not lowered it, */
@@ -90,6 +93,9 @@ void newton_touch(struct newton *n, const double *u, struct newton_forces *force
  * first. False where the step reaches the radius at a node before. n->square: the first norm squared. */
 bool newton_solve_model(struct newton *n, double share, double radius);
 
+/* search . K search at u, with the stiffness of all but the contacts. */
+double newton_curvature(struct newton *n);
+
 /* r . M^-1 r of a residual r, without reactions; M^-1 r is left in n->scaled. */
 double newton_square(struct newton *n, const struct newton_forces *forces);
 
@@ -111,8 +117,8 @@ bool newton_take_increment(struct newton *n, double from, double change);
 /* A Newton step at this load. False where even a short one inverts cells. */
 bool newton_correct(struct newton *n);
 
-/* Leave a state near an equilibrium that is not stable, along the last search direction, of negative
- * stiffness, twice as far each time while the energy falls. False where cells invert at once. */
+/* Leave an equilibrium along the last search direction if the stiffness along it is negative, twice as far
+ * each time while the energy falls. False where cells invert at once. */
 bool newton_leave(struct newton *n);
 
 /* Whether friction alone may hold a body, which slides if it does not. */

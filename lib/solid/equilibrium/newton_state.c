@@ -40,6 +40,7 @@ enum status newton_visit(void *run, const struct state *state, struct error *err
         {"radius", STATE_NUMBERS, &n->radius, 1},
         {"square", STATE_NUMBERS, &n->square, 1},
         {"lowest", STATE_NUMBERS, &n->lowest, 1},
+        {"waits", STATE_FLAGS, &n->waits, 1},
         {"judged", STATE_FLAGS, &n->judged, 1},
         {"rests", STATE_FLAGS, &n->rests, 1},
         {"length", STATE_NUMBERS, &n->length, 1},

@@ -22,13 +22,15 @@ static const double leaving = 0.05;
 /* By the largest displacement: a shorter step leaves the verdict on stability as it is. */
 static const double same_state = 0.01;
 static const double least_radius = 1e-3; /* by the spacing: shorter steps are none */
+/* A step leaves this share of the least volume ratio of a cell, at least: beyond, its model says nothing. */
+static const double least_left = 0.7;
 
 bool newton_held_by_friction(const struct newton *n)
 {
     return n->slides && n->preconditioner.has_rigid_mode;
 }
 
-/* Evaluate u + step; whether no cell is inverted there, and the residual has not grown by too much. */
+/* Evaluate u + step; whether no cell collapses on the way, and the residual does not grow by too much. */
 static bool try_step(struct newton *n)
 {
     for (int64_t i = 0; i < n->size; i++) {
@@ -36,11 +38,9 @@ static bool try_step(struct newton *n)
     }
     struct deformation deformation = newton_evaluate(n, n->trial, &n->at_trial);
     n->report->least_jacobian = deformation.least_jacobian;
-    if (!(deformation.least_jacobian > 0.0)) {
-        n->report->inverted_point = deformation.point;
-        return false;
-    }
-    return newton_square(n, &n->at_trial) <= most_growth * most_growth * n->square;
+    n->report->inverted_point = deformation.point;
+    n->collapses = !(deformation.least_jacobian > least_left * n->at_u.least_jacobian);
+    return !n->collapses && newton_square(n, &n->at_trial) <= most_growth * most_growth * n->square;
 }
 
 static void shorten(struct newton *n, double part)
@@ -242,6 +242,9 @@ bool newton_correct(struct newton *n)
 bool newton_leave(struct newton *n)
 {
     double lowest = 0.0, now;
+    if (!(newton_curvature(n) < 0.0)) {
+        return true;
+    }
     memcpy(n->step, n->search, (size_t)n->size * sizeof *n->step);
     n->length = newton_longest(n, n->step, NULL);
     shorten(n, leaving * n->spacing / n->length);
