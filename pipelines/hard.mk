@@ -6,7 +6,7 @@
 
 HARD := $(OUT)/hard
 HARD_CASES := $(sort $(notdir $(basename $(wildcard pipelines/hard/[0-9]*.sh))))
-HARD_TOOLS := $(addprefix $(BUILD)/bin/,cloud nodes fibres ipoints support shapefn mtled interp fieldcmp mts)
+HARD_TOOLS := $(addprefix $(BUILD)/bin/,cloud nodes tag fibres ipoints support shapefn mtled interp fieldcmp mts)
 
 .PHONY: hard
 hard: $(HARD)/hard.tsv $(HARD)/summary.tsv $(HARD)/misses.tsv

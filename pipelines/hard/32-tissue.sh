@@ -41,6 +41,11 @@ for at in '1.1 784.45' '1.2 1904.77'; do
     uniaxial 'Guccione, across the fibres' ${at% *} "${at#* }" "$guccione 0, 1, 0"
 done
 
+# Active stress T: free, incompressible, (mu + T) l^3 = mu.
+{ cube 'mu = 1000\nkappa = 1e8\nactive = 1500\ncurve = linear\nfibre = 1, 0, 0'; printf '[solver]\ntolerance = 1e-8\n'; } > "$work/active.scene"
+relax "$work/active.scene" "$work/cube.mts" "$work/u.dat"
+row 32 'active stress: stretch of a free block, T = 1.5 mu' "$(mean_at "$work/u.dat" '$1 > 0.5' '1 + $4')" "$(calc '0.4 ^ (1 / 3)')" incompressible
+
 # fi02: held at xmin, ymax and zmin; free are y at ymin and z at zmax.
 {
     law 'model = trans-iso' 'c1 = 1' 'c3 = 5' 'c4 = 1' 'kappa = 1000' 'fibre = 0.866, 0.5, 0'

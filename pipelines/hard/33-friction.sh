@@ -1,5 +1,5 @@
 #!/bin/bash
-# Row 33: a block that is dragged on a flat with mu = .4; and a rigid ball pressed into a block and dragged along it (Cattaneo and
+# Row 33: a block on a slope, which sticks up to tan a = mu; a block that is dragged on a flat with mu = .4; and a rigid ball pressed into a block and dragged along it (Cattaneo and
 # Mindlin): the stiffness of the block far from the ball, which is linear, is that of a run in which all points stick.
 . "$(dirname "$0")/common.sh"
 
@@ -28,6 +28,21 @@ END
 relax "$work/drag.scene" "$work/block.mts" "$work/drag.dat"
 row 33 'friction: a block dragged on a flat, tangential force / normal force' \
     "$(calc "-($(reaction "$work/drag.dat" flat 1)) / ($(reaction "$work/drag.dat" flat 2))")" 0.4 slides
+
+# holds SLOPE: 1 if the block, of mu = .4 and weight 1, is at rest on a slope of this tangent, by its weight's components.
+holds() {
+    head="gravity = $1, -1" dim=2 youngs=30000 nu=0.3 scene "$work/slope.scene" <<END
+[contact flat]
+facets = ymin
+rigid = flat.tsv
+unit = m
+side = left
+friction = 0.4
+END
+    mtled -q "$work/slope.scene" "$work/block.mts" > /dev/null 2> "$work/said" && echo 1 || { grep -q slides "$work/said" && echo 0 || echo nan; }
+}
+row 33 'friction: a block on a slope of .999 mu is at rest' "$(holds 0.3996)" 1 none
+row 33 'friction: a block on a slope of 1.001 mu is at rest' "$(holds 0.4004)" 0 none
 
 gmsh -3 -nt 1 -v 0 "$(dirname "$0")/../../examples/hard/mindlin.geo" -o "$work/body.msh" > /dev/null
 nodes -u mm "$work/body.msh" | shapefn -o "$work/body.mts" 2> /dev/null

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Row 35: what surrounds an organ. A block on an elastic support sinks by p / k more; a bar that is dragged along a tangential support follows
-# u'' = k p / (E A) u. A coated bar has the axial stiffness E A + E_m t p; a coated ring (plane strain) under inner pressure is Lame's with
-# the membrane's hoop stress outside.
+# u'' = k p / (E A) u. A coated bar has the axial stiffness E A + E_m t p; a coated ring (plane strain) and a
+# coated ball under inner pressure are Lame's with the membrane's hoop stress outside.
 . "$(dirname "$0")/common.sh"
 
 cloud -d 3 -k jittered --jitter 0.1 -n 6 --box 0,0.1,0,0.1,0,0.1 | shapefn > "$work/block.mts" 2> /dev/null
@@ -93,3 +93,24 @@ relax "$work/ring.scene" "$work/ring.mts" "$work/u.dat"
 row 35 "membrane: a coated ring under inner pressure, radius outside, displacement / Lame's" "$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") |
     awk 'BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b^2 * 1.3 / 3000; c = 1 + k * 0.4 * b; B = c * 0.03 / (c / a^2 - 1 / b^2 + k / b); A = B / a^2 - 0.03 }
         { r = sqrt($1^2 + $2^2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)); n++ } END { printf "%.12g\n", sum / n }')" 1 around
+
+gmsh -3 -nt 1 -v 0 -setnumber h 0.01 "$(dirname "$0")/../../examples/hard/octant.geo" -o "$work/ball.msh" > /dev/null
+nodes -u m "$work/ball.msh" 2> /dev/null | tag -f 'outer=all without planes without inner' 2> /dev/null | shapefn > "$work/ball.mts" 2> /dev/null
+youngs=3000 nu=0.3 scene "$work/ball.scene" << 'END'
+[membrane skin]
+facets = outer
+thickness = 1e-4
+E = 1e6
+nu = 0.4
+[displacement planes]
+facets = planes
+normal = 0
+[pressure in]
+facets = inner
+value = 0.3
+END
+relax "$work/ball.scene" "$work/ball.mts" "$work/u.dat"
+row 35 "membrane: a coated ball under inner pressure, radius outside, displacement / Lame's" "$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") |
+    awk 'BEGIN { a = 0.05; b = 0.1; K3 = 3000 / 0.4; G4 = 4 * 3000 / 2.6; k = 2 * 1e2 / 0.6 / b^2 # A and B of u = A r + B / r^2
+            c = G4 / b^3 - k / b^2; d = K3 + k * b; B = -0.3 / (K3 * c / d - G4 / a^3); A = c * B / d }
+        { r = sqrt($1^2 + $2^2 + $3^2) } r > 0.0999 { sum += ($4 * $1 + $5 * $2 + $6 * $3) / r / (A * r + B / r^2); n++ } END { printf "%.12g\n", sum / n }')" 1 coated-ball
