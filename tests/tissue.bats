@@ -171,7 +171,7 @@ brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .3
     paste <(mts print points.fibre table.mts) <(mts print fibre u.dat) | awk '{ bad += ($1 - $4)^2 + ($2 - $5)^2 + ($3 - $6)^2 > 1e-12 } END { exit bad || NR < 100 }'
     mts drop points.fibre table.mts | refused 2 'slab.scene:4: [material all]: fibre: missing, and the stream has no section points.fibre' mtled slab.scene
     for bad in '--to xmin,0 --axis 0,0,1' '--from xmin --to xmax,0 --axis 0,0,1' '--from xmin,200 --to xmax,0 --axis 0,0,1' '--from xmin,0 --to roof,0 --axis 0,0,1' \
-        '--from xmin,0 --to xmax,0 --axis 0,0' '--from xmin,0 --to xmax,0 --axis 0,0,0' '--from xmin,0 --to xmax,0' '--from xmin,nan --to xmax,0 --axis 0,0,1'; do
+        '--from xmin,0 --to xmin,0 --axis 0,0,1' '--from xmin,0 --to xmax,0 --axis 0,0' '--from xmin,0 --to xmax,0 --axis 0,0,0' '--from xmin,0 --to xmax,0' '--from xmin,nan --to xmax,0 --axis 0,0,1'; do
         refused 2 '' fibres $bad fibres.mts
     done
     cloud -d 2 -k regular -n 4 --box 0,1,0,1 | refused 2 'no cells in 3D' fibres --from xmin,0 --to xmax,0 --axis 0,0,1

@@ -36,7 +36,7 @@ static void turn_across(const double across[3], struct rigid_foot *foot)
     }
 }
 
-/* The depth at x, and n; false on both surfaces. */
+/* The depth at x, and n; false where the nearest place is the same on both surfaces. */
 static bool find_across(const struct wall *wall, const double *x, double *depth, double n[3])
 {
     struct rigid_foot from, to;
@@ -45,7 +45,7 @@ static bool find_across(const struct wall *wall, const double *x, double *depth,
     double d1 = vector_distance(3, from.point, x), d2 = vector_distance(3, to.point, x);
     double across[3];
     vector_subtract(3, to.point, from.point, across);
-    if (!(d1 + d2 > 0.0)) {
+    if (!(d1 + d2 > 0.0 && vector_length(3, across) > 0.0)) {
         return false;
     }
     turn_across(across, &from);
@@ -86,7 +86,11 @@ enum status wall_fibres(const struct wall *wall, int64_t count, const double *x,
     for (int64_t p = 0; p < count; p++) {
         double depth, n[3], c[3], l[3];
         if (!find_across(wall, x + 3 * p, &depth, n)) {
-            return fail(error, STATUS_INPUT, "point %lld lies on both surfaces", (long long)p);
+            return fail(
+                error, STATUS_INPUT,
+                "point %lld at (%.6g, %.6g, %.6g) m: the nearest place is the same on both surfaces: do "
+                "they share facets?",
+                (long long)p, x[3 * p], x[3 * p + 1], x[3 * p + 2]);
         }
         double a = degree * ((1.0 - depth) * wall->angles[0] + depth * wall->angles[1]);
         find_around(axis, n, c);
