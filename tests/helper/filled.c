@@ -137,7 +137,7 @@ int main(int argc, char *argv[])
         table_free(&surface);
     }
     if (status == STATUS_OK) {
-        status = image_write(&image, STDOUT_FILENO, IMAGE_NIFTI_GZIP, &error);
+        status = image_write(&image, STDOUT_FILENO, IMAGE_NIFTI_GZIP, NULL, &error);
     }
     if (status != STATUS_OK) {
         fprintf(stderr, "filled: %s\n", error.text);

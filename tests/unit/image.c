@@ -282,7 +282,7 @@ static unsigned char written_bytes[1 << 12];
 static size_t write_and_read(const struct image *written, enum image_format format)
 {
     int descriptor = memfd_create("image", 0);
-    GOOD(image_write(written, descriptor, format, &error));
+    GOOD(image_write(written, descriptor, format, NULL, &error));
     size_t size = (size_t)lseek(descriptor, 0, SEEK_CUR);
     assert_int_equal(pread(descriptor, written_bytes, sizeof written_bytes, 0), size);
     close(descriptor);

@@ -1,7 +1,7 @@
 /* Reading images: the header is checked before it is used, and memory grows with the data. libnifti is
  * not used: version 3.0.1 accepts a compressed file without checksum and a header with fewer voxels than
  * there are, and it cannot read a pipe. */
-#include "io/image/image_private.h"
+#include "io/image/text_header.h"
 
 #include "base/memory.h"
 #include "io/files/descriptor.h"
@@ -81,9 +81,10 @@ static enum status read_header(struct image_source *source, unsigned char bytes[
 }
 
 /* Check sizes and components: their product fits into memory sizes. */
-static enum status check_sizes(const struct nifti *header, const struct nifti_type *type, struct image *image,
-                               struct error *error)
+static enum status check_sizes(const struct nifti *header, const struct image_layout *layout,
+                               struct image *image, struct error *error)
 {
+    const struct nifti_type *type = layout->type;
     double size[8] = {0, 1, 1, 1, 1, 1, 1, 1};
     if (!(header->dim[0] >= 2 && header->dim[0] <= 7)) {
         return fail(error, STATUS_INPUT, "header: %.0f dimensions: an image has 2 or 3", header->dim[0]);
@@ -111,16 +112,7 @@ static enum status check_sizes(const struct nifti *header, const struct nifti_ty
     if (size[5] > 1 && type->components > 1) {
         return fail(error, STATUS_INPUT, "header: vectors of colours");
     }
-    image->components = (size_t)size[5] * (size_t)type->components;
-    size_t count = image->components;
-    for (int i = 0; i < 3; i++) {
-        image->size[i] = (size_t)size[1 + i];
-        if (__builtin_mul_overflow(count, image->size[i], &count) || count > SIZE_MAX / 32) {
-            return fail(error, STATUS_INPUT, "header: %.0f x %.0f x %.0f voxels: more than any memory",
-                        size[1], size[2], size[3]);
-        }
-    }
-    return STATUS_OK;
+    return header_sizes(size + 1, size[5] * type->components, false, layout, image, error);
 }
 
 /* Check a header; set the image and the layout of the values, which are `taken` bytes further on. */
@@ -149,7 +141,6 @@ static enum status check_header(const struct nifti *header, int64_t taken, struc
         return fail(error, STATUS_INPUT,
                     "header: scaling of the values is not finite (scl_slope, scl_inter)");
     }
-    image->datatype = header->datatype;
     image->slope = 1;
     if (header->slope != 0 && !isnan(header->slope) && type->components == 1) {
         image->slope = header->slope;
@@ -159,7 +150,7 @@ static enum status check_header(const struct nifti *header, int64_t taken, struc
     layout->swapped = header->swapped;
     layout->together = type->components > 1;
     layout->skip_bytes = (int64_t)fmax(header->offset, least) - (header->pair ? 0 : taken);
-    return check_sizes(header, type, image, error);
+    return check_sizes(header, layout, image, error);
 }
 
 /* The file of data of the header NAME.hdr is NAME.img, that of NAME.hdr.gz is NAME.img.gz. */

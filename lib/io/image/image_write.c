@@ -127,16 +127,8 @@ enum status image_write_data(const struct image *image, int descriptor, struct e
     return write_values(&plain, false, descriptor, error);
 }
 
-enum status image_write_header(const struct image *image, int descriptor, enum image_format format,
-                               const char *data_file, struct error *error)
-{
-    struct image plain;
-    RETURN_IF_ERROR(unscaled(image, &plain, error));
-    return write_header(&plain, descriptor, format, data_file, error);
-}
-
 enum status image_write(const struct image *image, int descriptor, enum image_format format,
-                        struct error *error)
+                        const char *data_file, struct error *error)
 {
     const struct nifti_type *type = nifti_type(image->datatype);
     unsigned char header[NIFTI2_HEADER + 4];
@@ -144,8 +136,8 @@ enum status image_write(const struct image *image, int descriptor, enum image_fo
     SCRATCH unsigned char *bytes = NULL;
     RETURN_IF_ERROR(unscaled(image, &plain, error));
     if (format == IMAGE_NRRD || format == IMAGE_METAIMAGE) {
-        RETURN_IF_ERROR(write_header(&plain, descriptor, format, NULL, error));
-        return write_values(&plain, format == IMAGE_NRRD, descriptor, error);
+        RETURN_IF_ERROR(write_header(&plain, descriptor, format, data_file, error));
+        return data_file != NULL ? STATUS_OK : write_values(&plain, format == IMAGE_NRRD, descriptor, error);
     }
     size_t offset = nifti_encode(image, header);
     size_t size = offset + image_voxels(image) * image->components * (size_t)type->bytes;

@@ -90,11 +90,10 @@ static enum status write_image(const struct tool *tool, const struct image *imag
         RETURN_IF_ERROR(output_end(&output, image_write_data(image, output.descriptor, error), error));
     }
     RETURN_IF_ERROR(output_open(&output, tool->output, false, error));
-    int to = output.descriptor;
-    enum status status =
-        data != NULL ? image_write_header(image, to, (enum image_format)format, within_folder(data), error)
-                     : image_write(image, to, (enum image_format)format, error);
-    return output_end(&output, status, error);
+    return output_end(&output,
+                      image_write(image, output.descriptor, (enum image_format)format,
+                                  data != NULL ? within_folder(data) : NULL, error),
+                      error);
 }
 
 void tool_write_image(const struct tool *tool, const struct image *image)
