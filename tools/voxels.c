@@ -125,42 +125,8 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     }
 }
 
-/* Report missing connections of the image's bodies. Labels are smoothed: connections that are too thin for
- * this are lost at any spacing. */
-static void report_apart(const struct tool *tool, const struct label_image *image,
-                         const struct label_cells *result, const int32_t *part, int32_t count)
-{
-    const struct labels *labels = &image->labels;
-    struct label_cells_apart apart;
-    double place[3], x[3];
-    TOOL_TRY(tool, label_cells_find_apart(labels, image->keep, result, part, count, &apart, &error));
-    if (apart.count == 0) {
-        return;
-    }
-    for (int a = 0; a < 3; a++) {
-        place[a] = image->to_world[a][3];
-        for (int64_t d = 0, stride = 1; d < 3; stride *= labels->size[d++]) {
-            double index = 0.5 * (double)(apart.voxel[0] / stride % labels->size[d] +
-                                          apart.voxel[1] / stride % labels->size[d]);
-            place[a] += image->to_world[a][d] * index;
-        }
-    }
-    for (int a = 0; a < labels->dim; a++) {
-        x[a] = place[labels->dim == 3 ? a : labels->axis[a]];
-    }
-    bool is_seen = image->keep[labels_at(labels, x)];
-    tool_note(tool,
-              "parts that the image connects at (%.4g, %.4g, %.4g) mm are not connected in the cloud (such "
-              "places: %lld): %s",
-              1e3 * place[0], 1e3 * place[1], 1e3 * place[2], (long long)apart.count,
-              is_seen
-                  ? "it is thinner than the spacing there: a smaller -h, or --fine, keeps it"
-                  : "it is as thin as a voxel there, which no spacing keeps: make it thicker in the image");
-}
-
 /* Report the number of connected bodies if there are several. */
-static void report_bodies(const struct tool *tool, const struct label_image *image,
-                          const struct label_cells *result, const struct cells *cells, bool verbose)
+static void report_bodies(const struct tool *tool, const struct cells *cells, bool verbose)
 {
     int32_t count = 0;
     double total = 0, first = 0;
@@ -172,9 +138,11 @@ static void report_bodies(const struct tool *tool, const struct label_image *ima
         first += part[c] == 0 ? volume : 0;
     }
     if (count > 1) {
-        tool_note(tool, "%d connected bodies, %.3g %% of the %s in the largest: --largest keeps that one",
-                  count, 100 * first / total, cells->dim == 3 ? "volume" : "area");
-        report_apart(tool, image, result, part, count);
+        tool_note(
+            tool,
+            "%d connected bodies, %.3g %% of the %s in the largest: --largest keeps that one; a smaller "
+            "-h, or --fine, keeps thin connections",
+            count, 100 * first / total, cells->dim == 3 ? "volume" : "area");
     } else if (verbose) {
         tool_note(tool, "one connected body");
     }
@@ -227,7 +195,7 @@ static void report(const struct tool *tool, const struct label_image *image, con
             (long long)result->hinges);
     }
     report_labels(tool, image, result, &cells, verbose);
-    report_bodies(tool, image, result, &cells, verbose);
+    report_bodies(tool, &cells, verbose);
     report_cells(tool, &cells, spacing, verbose);
     if (!surface) {
         tool_note_thin(tool, &cells);
@@ -267,7 +235,8 @@ static void check_options(const struct tool *tool)
     }
     if (tool_given(tool, "part")) {
         tool_fail(tool, STATUS_INPUT,
-                  "--part is gone: tag -f NAME=ball:X,Y,Z,RADIUS names facets; for masks see the end of voxels --help");
+                  "--part is gone: tag -f NAME=ball:X,Y,Z,RADIUS names facets; for masks see the end of "
+                  "voxels --help");
     }
     tool_requires(tool, "gap", "surface");
 }

@@ -75,18 +75,6 @@ static inline struct cells label_cells_view(const struct label_cells *mesh)
 MUST_CHECK enum status label_cells_lost(const struct labels *labels, const bool *keep,
                                         const struct label_cells *mesh, int64_t *lost, struct error *error);
 
-/* Bodies that should be connected, as voxels of labels to keep connect them by faces. */
-struct label_cells_apart {
-    int64_t count;    /* missing connections: the number of bodies minus that of connected sets of voxels */
-    int64_t voxel[2]; /* of the first: two voxels that touch, halfway between the bodies */
-};
-
-/* part[mesh->cell_count] and part_count are those of cells_parts. */
-MUST_CHECK enum status label_cells_find_apart(const struct labels *labels, const bool *keep,
-                                              const struct label_cells *mesh, const int32_t *part,
-                                              int32_t part_count, struct label_cells_apart *apart,
-                                              struct error *error);
-
 /* Least and largest dihedral angle (2D: angle) of a simplex with corners x[dim + 1], degrees; 0 and 180 for
  * one without volume or inverted. */
 void simplex_angles(int dim, const double *const x[], double angles[2]);

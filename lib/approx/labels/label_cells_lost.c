@@ -2,7 +2,6 @@
 #include "approx/cells/raster.h"
 #include "approx/labels/label_cells.h"
 #include "base/memory.h"
-#include "base/sets.h"
 #include "base/vector.h"
 
 /* The grid of the labels; for a slice without the axis across it. */
@@ -102,67 +101,4 @@ enum status label_cells_lost(const struct labels *labels, const bool *keep, cons
         }
     }
     return STATUS_OK;
-}
-
-/* Neighbour k, 0 to 5, of a voxel by faces; -1 beyond the grid. */
-static int64_t beside(const struct grid *grid, int64_t voxel, int k)
-{
-    const int64_t *n = grid->size;
-    const int64_t at[3] = {voxel % n[0], voxel / n[0] % n[1], voxel / n[0] / n[1]};
-    const int64_t stride[3] = {1, n[0], n[0] * n[1]};
-    int64_t place = at[k / 2] + (k % 2 == 0 ? -1 : 1);
-    return place < 0 || place >= n[k / 2] ? -1 : voxel + (place - at[k / 2]) * stride[k / 2];
-}
-
-/* Voxels of kept labels without a cell (body[] = -1) take the body of their neighbours, ring by ring. Bodies
- * that meet are joined in set[]. */
-static enum status flood(const struct labels *labels, const bool *keep, const struct grid *grid,
-                         int32_t *body, int32_t *set, struct label_cells_apart *apart, struct error *error)
-{
-    int64_t voxels = grid->size[0] * grid->size[1] * grid->size[2], count = 0;
-    NEW_SCRATCH(int64_t, queue, voxels, error);
-    for (int64_t v = 0; v < voxels; v++) {
-        body[v] = keep[labels->label[v]] ? body[v] : -1;
-        if (body[v] >= 0) {
-            queue[count++] = v;
-        }
-    }
-    for (int64_t i = 0; i < count; i++) {
-        int64_t v = queue[i];
-        for (int k = 0; k < 6; k++) {
-            int64_t w = beside(grid, v, k);
-            if (w < 0 || !keep[labels->label[w]]) {
-                continue;
-            }
-            if (body[w] < 0) {
-                body[w] = body[v];
-                queue[count++] = w;
-            } else if (set_first(set, body[v]) != set_first(set, body[w])) {
-                set_join(set, body[v], body[w]);
-                apart->voxel[0] = apart->count == 0 ? v : apart->voxel[0];
-                apart->voxel[1] = apart->count == 0 ? w : apart->voxel[1];
-                apart->count++;
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
-enum status label_cells_find_apart(const struct labels *labels, const bool *keep,
-                                   const struct label_cells *mesh, const int32_t *part, int32_t part_count,
-                                   struct label_cells_apart *apart, struct error *error)
-{
-    struct grid grid = grid_of(labels);
-    int64_t voxels = grid.size[0] * grid.size[1] * grid.size[2];
-    *apart = (struct label_cells_apart){0};
-    NEW_SCRATCH(int32_t, body, voxels, error);
-    NEW_SCRATCH(int32_t, set, part_count, error);
-    RETURN_IF_ERROR(own_voxels(labels, mesh, &grid, body, error));
-    for (int64_t v = 0; v < voxels; v++) {
-        body[v] = body[v] >= 0 ? part[body[v]] : -1;
-    }
-    for (int32_t p = 0; p < part_count; p++) {
-        set[p] = p;
-    }
-    return flood(labels, keep, &grid, body, set, apart, error);
 }
