@@ -179,29 +179,6 @@ squeezed_cube() {
     for file in run-000?.vtu; do vtu arrays $file | grep -qx 'u points 3 .*'; done
 }
 
-@test "a pvd has the load curve: reactions and energies of each frame are field data, for VTK and meshio" {
-    { two_triangles | sed '/^# end/d'
-      printf '# reactions.frames f8 2 3 enc=text unit=1,N,N cols=time,left.x,left.y\n0.5 10 -2\n1 30 -6\n\n\n'
-      printf '# energy.frames f8 2 2 enc=text unit=1,J cols=time,internal\n0.5 0.25\n1 1.5\n\n\n# end 10\n'; } > stream
-    for text in "" -t; do
-        tovtk $text -o run.pvd stream
-        /usr/bin/python3 - << 'END'
-import meshio, vtk
-for name, expected in ("run-0001.vtu", [10, -2, 0.25]), ("run-0002.vtu", [30, -6, 1.5]):
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(name)
-    reader.Update()
-    data = reader.GetOutput().GetFieldData()
-    names = ["reactions.left.x", "reactions.left.y", "energy.internal"]
-    assert [data.GetArray(n).GetValue(0) for n in names] == expected
-    assert [meshio.read(name).field_data[n][0] for n in names] == expected
-END
-    done
-    tovtk -t stream 2> note > final.vtu
-    grep -qx 'tovtk: only the final state is written: name a .pvd file for all 2 frames' note
-    run -1 grep -q reactions final.vtu
-}
-
 @test "wrong use: one line and status 2" {
     two_triangles > stream
     refused 2 "" tovtk -f vtu

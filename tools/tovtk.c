@@ -27,9 +27,8 @@ static const char usage[] =
     "mtled with frames writes u.frame.0, u.frame.1, ... beside the final u, and other\n"
     "sections X.frame.K. Name a .pvd file to write them all: NAME.pvd lists\n"
     "NAME-0000.vtu, NAME-0001.vtu, ... with their times, each with the fields of its\n"
-    "frame and those that nodes, support and ipoints made. Reactions, moments and\n"
-    "energies of the frames are field data, as reactions.GROUP.x: ParaView's filter Plot\n"
-    "Data Over Time draws the load curve. Other files hold the final state only.\n"
+    "frame and those that nodes, support and ipoints made. Other files hold the final\n"
+    "state only. mts print reactions.frames is the table of a load curve.\n"
     "\n"
     "The name's ending says what is written: .vtu, VTK XML unstructured grid, or .pvd. A\n"
     "name without ending, and standard output, are vtu. Other endings are refused.\n"
@@ -53,11 +52,10 @@ static enum status write_vtu(const struct tool *tool, struct plot *plot, int64_t
                              struct error *error)
 {
     struct output output;
-    RETURN_IF_ERROR(plot_choose(plot, frame, error));
+    plot_choose(plot, frame);
     RETURN_IF_ERROR(output_open(&output, name, false, error));
     return output_end(&output,
-                      vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, plot->number_count,
-                                plot->numbers, tool->text, error),
+                      vtu_write(output.file, &plot->mesh, plot->field_count, plot->fields, tool->text, error),
                       error);
 }
 

@@ -50,8 +50,8 @@ static bool is_structure(const char *name)
 /* Whether a section of this name has a row for each integration point or cell. */
 static bool is_of_points(const char *name)
 {
-    static const char *const first[] = {"cells",    "points",       "stress", "strain",
-                                        "pressure", "volume_ratio", "fibre",  "J",      NULL};
+    static const char *const first[] = {"cells",        "points", "stress", "strain", "pressure",
+                                        "volume_ratio", "fibre",  "J",      NULL};
     return is_one_of(name, first);
 }
 
@@ -81,7 +81,7 @@ static void choose_field(struct plot *plot, const struct section *section, int64
     }
 }
 
-static void choose_fields(struct plot *plot, int64_t frame)
+void plot_choose(struct plot *plot, int64_t frame)
 {
     plot->field_count = 0;
     for (int64_t s = 0; s < plot->stream.section_count; s++) {
@@ -123,61 +123,6 @@ enum status plot_time(const struct plot *plot, int64_t frame, double *time, stru
     return STATUS_OK;
 }
 
-enum { COLUMNS_SIZE = 16384 };
-
-/* Whether a section is a table X.frames, with a row for each frame and the time in the first column.
- * columns[COLUMNS_SIZE]: the names of the columns. */
-static bool is_of_frames(const struct section *section, char columns[])
-{
-    return text_ends(section->name, ".frames") && section->type == TYPE_F8 &&
-           section_attribute(section, "cols", columns, COLUMNS_SIZE) && begins_with(columns, "time,");
-}
-
-/* Add the row at this time of a table X.frames: each column after the time as the number X.COLUMN. */
-static void add_numbers(struct plot *plot, const struct section *section, const char *columns, double time)
-{
-    const double *row = section->data, *end = row + section->rows * section->cols;
-    int length = (int)(strlen(section->name) - strlen(".frames"));
-    while (row < end && *row != time) {
-        row += section->cols;
-    }
-    for (int64_t c = 1; row < end && c < section->cols; c++) {
-        struct vtk_number *number = &plot->numbers[plot->number_count++];
-        columns += strcspn(columns, ",");
-        columns += *columns == ',';
-        snprintf(number->name, sizeof number->name, "%.*s.%.*s", length, section->name,
-                 (int)strcspn(columns, ","), columns);
-        number->value = row[c];
-    }
-}
-
-static enum status find_numbers(struct plot *plot, struct error *error)
-{
-    char columns[COLUMNS_SIZE];
-    int64_t most = 0;
-    for (int64_t s = 0; s < plot->stream.section_count; s++) {
-        const struct section *section = &plot->stream.sections[s];
-        most += is_of_frames(section, columns) ? section->cols : 0;
-    }
-    return NEW_ARRAY(&plot->numbers, most, error);
-}
-
-enum status plot_choose(struct plot *plot, int64_t frame, struct error *error)
-{
-    char columns[COLUMNS_SIZE];
-    double time;
-    choose_fields(plot, frame);
-    RETURN_IF_ERROR(plot_time(plot, frame, &time, error));
-    plot->number_count = 0;
-    for (int64_t s = 0; s < plot->stream.section_count && frame != FRAME_NONE; s++) {
-        const struct section *section = &plot->stream.sections[s];
-        if (is_of_frames(section, columns)) {
-            add_numbers(plot, section, columns, time);
-        }
-    }
-    return STATUS_OK;
-}
-
 static enum status find_mesh(struct plot *plot, struct error *error)
 {
     struct cells *cells = &plot->cells;
@@ -191,7 +136,6 @@ static enum status find_mesh(struct plot *plot, struct error *error)
                                    .region_names = ""};
     if (cells->count > 0 && stream_find(&plot->stream, "cells.region") != NULL) {
         RETURN_IF_ERROR(stream_regions(&plot->stream, regions, error));
-        plot->mesh.region = regions->of_cell;
         plot->mesh.region_names = regions->names.list;
     }
     return STATUS_OK;
@@ -221,7 +165,6 @@ enum status plot_find(struct plot *plot, struct error *error)
 {
     RETURN_IF_ERROR(find_mesh(plot, error));
     RETURN_IF_ERROR(find_frames(plot, error));
-    RETURN_IF_ERROR(find_numbers(plot, error));
     return find_fields(plot, error);
 }
 
@@ -230,5 +173,5 @@ void plot_free(struct plot *plot)
     stream_free(&plot->stream);
     derived_free(&plot->derived);
     names_free(&plot->regions.names);
-    FREE_ALL(plot->fields, plot->labels, plot->frames, plot->numbers);
+    FREE_ALL(plot->fields, plot->labels, plot->frames);
 }

@@ -14,8 +14,6 @@ struct plot {
     struct vtk_field *fields; /* of the frame chosen last; room for every section */
     char (*labels)[128];      /* names of the fields of frames */
     int64_t field_count;
-    struct vtk_number *numbers; /* of the frame chosen last: its rows of reactions.frames and the like */
-    int64_t number_count;
     int64_t *frames; /* the numbers of the frames, ascending */
     int64_t frame_count;
 };
@@ -33,8 +31,8 @@ int64_t plot_state_count(const struct plot *plot);
 /* The number of frame i; FRAME_NONE, the final state, if there are none. */
 int64_t plot_frame(const struct plot *plot, int64_t i);
 
-/* Choose the fields and numbers of a frame, or of the final state for FRAME_NONE, which has no numbers. */
-MUST_CHECK enum status plot_choose(struct plot *plot, int64_t frame, struct error *error);
+/* Choose the fields of a frame, or of the final state for FRAME_NONE. */
+void plot_choose(struct plot *plot, int64_t frame);
 
 /* Attribute time= of the first section of the frame that has one, else its number; 0 for the final state. */
 MUST_CHECK enum status plot_time(const struct plot *plot, int64_t frame, double *time, struct error *error);

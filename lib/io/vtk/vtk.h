@@ -15,7 +15,6 @@ struct vtk_mesh {
     const double *x; /* node_count x dim */
     int64_t cell_count;
     const int32_t *node;      /* cell_count x (dim + 1); NULL: one vertex cell for each node */
-    const int32_t *region;    /* cell_count indices into region_names, or NULL */
     const char *region_names; /* comma list, "" when there is none */
 };
 
@@ -26,12 +25,6 @@ struct vtk_field {
     const struct section *section; /* one row for each node or cell; attribute cols= names the components */
 };
 
-/* A number of the whole body, such as a reaction. */
-struct vtk_number {
-    char name[128];
-    double value;
-};
-
 /* Whether the columns of a section are those of a symmetric tensor, by their names: xx, yy, zz, xy and, in
  * 3D, xz and yz, in any order. from[6] receives the column of xx, yy, zz, xy, yz, xz, VTK's order; -1 for yz
  * and xz in 2D, which are zero. */
@@ -39,11 +32,10 @@ bool vtk_tensor(const struct section *section, int64_t from[6]);
 
 /* Write a VTK XML unstructured grid: data inline, base64 of little-endian values, or as text. Vectors of 2D
  * meshes (two floating columns) are padded to three; symmetric tensors have six components in VTK's order.
- * Each region is an array "region.NAME" of the field data with its index; numbers are such arrays, too.
+ * Each region is an array "region.NAME" of the field data with its index.
  * STATUS_SYSTEM on failure, also if `file` has a pending error. */
 MUST_CHECK enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
-                                 const struct vtk_field *fields, int64_t number_count,
-                                 const struct vtk_number *numbers, bool text, struct error *error);
+                                 const struct vtk_field *fields, bool text, struct error *error);
 
 /* Write a ParaView collection: `count` files (relative to it) with their times. */
 MUST_CHECK enum status pvd_write(FILE *file, int64_t count, char *const names[], const double *times,

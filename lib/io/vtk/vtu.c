@@ -250,12 +250,11 @@ static void put_field(struct writer *writer, const struct vtk_mesh *mesh, const 
 }
 
 /* Write the regions as arrays by name with their index in cells.region, as readers other than VTK do not
- * support arrays of strings; and the numbers. */
-static void put_field_data(struct writer *writer, const char *regions, int64_t count,
-                           const struct vtk_number *numbers)
+ * support arrays of strings. */
+static void put_regions(struct writer *writer, const char *regions)
 {
     char name[256], label[300];
-    bool is_empty = count == 0 && !list_item(regions, 0, name, sizeof name);
+    bool is_empty = !list_item(regions, 0, name, sizeof name);
     fputs(is_empty ? "" : "<FieldData>\n", writer->file);
     for (int64_t i = 0; list_item(regions, i, name, sizeof name); i++) {
         snprintf(label, sizeof label, "region.%s", name);
@@ -263,12 +262,6 @@ static void put_field_data(struct writer *writer, const char *regions, int64_t c
         begin_data(writer, 1, 8);
         put_integer(writer, i, 8);
         end_array(writer);
-    }
-    for (int64_t i = 0; i < count; i++) {
-        double value = numbers[i].value;
-        struct section section = {.type = TYPE_F8, .rows = 1, .cols = 1, .data = &value};
-        begin_array(writer, "Float64", numbers[i].name, "NumberOfTuples", 1);
-        put_rows(writer, &section, &(struct layout){.count = 1});
     }
     fputs(is_empty ? "" : "</FieldData>\n", writer->file);
 }
@@ -314,8 +307,7 @@ static void put_fields(struct writer *writer, const struct vtk_mesh *mesh, const
 }
 
 enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_count,
-                      const struct vtk_field *fields, int64_t number_count, const struct vtk_number *numbers,
-                      bool text, struct error *error)
+                      const struct vtk_field *fields, bool text, struct error *error)
 {
     struct writer writer = {.file = file, .text = text};
     union {
@@ -328,7 +320,7 @@ enum status vtu_write(FILE *file, const struct vtk_mesh *mesh, int64_t field_cou
           "byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\">\n<UnstructuredGrid>\n",
           file);
-    put_field_data(&writer, mesh->region_names, number_count, numbers);
+    put_regions(&writer, mesh->region_names);
     fprintf(file, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n<Points>\n",
             mesh->node_count, cell_count);
     begin_array(&writer, "Float64", "Points", "NumberOfComponents", 3);
