@@ -47,9 +47,8 @@ void sparse_free(struct sparse *matrix)
 }
 
 /* y += A x. The width is known when compiling where it is 2 or 3. */
-static inline __attribute__((always_inline)) void apply_rows(const struct sparse *matrix, int64_t begin,
-                                                             int64_t end, int64_t width,
-                                                             const double *x, double *y)
+static inline __attribute__((always_inline)) void
+apply_rows(const struct sparse *matrix, int64_t begin, int64_t end, int64_t width, const double *x, double *y)
 {
     for (int64_t r = begin; r < end; r++) {
         double sum[3] = {0.0, 0.0, 0.0}, *to = width <= 3 ? sum : y + r * width;

@@ -79,7 +79,8 @@ static enum status read_rows(struct point_section *p, int dim, struct error *err
                     "%s: points %s: landmarks are places: give those that they move to, as moved",
                     p->section->label.where, p->section->condition.table);
     }
-    RETURN_IF_ERROR(table_read_open(p->section->condition.table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
+    RETURN_IF_ERROR(
+        table_read_open(p->section->condition.table, 2 * dim, 2 * dim + 1, dim, 2 * dim, p->table, error));
     for (int64_t i = 0; i < p->table->rows * p->table->cols; i++) {
         p->table->values[i] *= p->section->condition.unit;
     }
@@ -155,7 +156,8 @@ static enum status find_field(struct point_section *p, struct error *error)
         return fail(error, STATUS_INPUT, "no section support.radius: run support");
     }
     RETURN_IF_ERROR(field_table_build(&recorded.support, &recorded.shapes, cells, recorded.radius,
-                                      measured->count, measured->x, p->section->condition.table, &field, error));
+                                      measured->count, measured->x, p->section->condition.table, &field,
+                                      error));
     return keep_field(p, &field, error);
 }
 

@@ -34,7 +34,8 @@ void run_frames_check(const struct run *run)
 {
     const struct scene_output *output = &run->scene->output;
     bool quasi_static = run->scene->analysis == SCENE_QUASI_STATIC;
-    int64_t fields = output->stress + output->strain + output->pressure + output->volume_ratio + output->fibre + output->gaps,
+    int64_t fields = output->stress + output->strain + output->pressure + output->volume_ratio +
+                     output->fibre + output->gaps,
             tables = output->reactions + output->moments + output->energy;
     int64_t of_frame = 2 + (quasi_static ? fields : 0); /* u and its parameters */
     int64_t others = 2 + 2 + 1 + fields + 2 * tables;   /* u; the supports of parameters; iteration */

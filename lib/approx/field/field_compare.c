@@ -220,7 +220,7 @@ enum status field_compare(const struct nodal_field *a, const struct nodal_field 
         reference[i] = NAN;
     }
     RETURN_IF_ERROR(match_nodes(a->cells.dim, count, a->cells.x, b->cells.node_count, b->cells.x, match,
-                                      &comparison->coincide, error));
+                                &comparison->coincide, error));
     if (comparison->coincide) {
         for (int64_t i = 0; i < comparison->count; i++) {
             int64_t node = comparison->node[i];

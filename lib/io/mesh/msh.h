@@ -45,7 +45,7 @@ struct msh {
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */
-    struct names notes;  /* what the file says that is not read */
+    struct names notes;       /* what the file says that is not read */
 };
 
 /* A type of element. */
