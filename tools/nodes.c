@@ -61,22 +61,12 @@ static const char usage[] =
 
 #include <math.h>
 
-static void list_groups(const struct tool *tool, const struct msh *msh)
+static void list_groups(const struct msh *msh)
 {
-    int dim = 0;
-    bool named = false;
-    for (int64_t e = 0; e < msh->element_count; e++) {
-        int of_element = msh_type(msh->elements[e].type).dim;
-        dim = of_element > dim ? of_element : dim;
-    }
     puts("name\tdim\ttag\telements");
     for (int32_t i = 0; i < msh->group_count; i++) {
         const struct msh_group *group = &msh->groups[i];
         printf("%s\t%d\t%d\t%lld\n", group->name, group->dim, group->tag, (long long)group->element_count);
-        named = named || (group->dim == dim - 1 && group->element_count > 0);
-    }
-    if (!named) {
-        tool_note(tool, "no part of the boundary has a name: the program tag makes names (tag -h)");
     }
 }
 
@@ -151,7 +141,7 @@ int main(int argc, char *argv[])
     FREED_BY(descriptor_close) int descriptor = tool_open(&tool, tool.operands[0], &name);
     TOOL_TRY(&tool, msh_read(&msh, descriptor, name, tool_value(&tool, "regions-of"), &error));
     if (tool_given(&tool, "list")) {
-        list_groups(&tool, &msh);
+        list_groups(&msh);
         msh_free(&msh);
         return tool_end(&tool);
     }
