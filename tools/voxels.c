@@ -92,17 +92,17 @@ static void report_labels(const struct tool *tool, const struct label_image *ima
     for (int64_t c = 0; c < cells->count; c++) {
         volume[result->label[c]] += cell_volume(cells, c);
     }
-    for (int32_t l = 0; l <= image->table.name_count; l++) {
+    for (int32_t l = 0; l < image->labels.count; l++) {
         if (!image->keep[l] && lost[l] > 0) {
             tool_note(tool,
                       "%s: %.3g %s of gaps and cavities narrower than the spacing are filled: see --fine",
-                      label_image_name(image, l), shown(dim, (double)lost[l] * image->voxel_volume), unit);
+                      image->table.names.name[l], shown(dim, (double)lost[l] * image->voxel_volume), unit);
         }
     }
-    for (int32_t l = 1; l <= image->table.name_count; l++) {
+    for (int32_t l = 1; l < image->labels.count; l++) {
         double before = shown(dim, image->volume[l]), after = shown(dim, volume[l]);
         double missing = shown(dim, (double)lost[l] * image->voxel_volume);
-        const char *name = label_image_name(image, l);
+        const char *name = image->table.names.name[l];
         if (!image->keep[l]) {
             if (verbose) {
                 tool_note(tool, "%s: %.4g %s of voxels, left out", name, before, unit);

@@ -21,16 +21,16 @@ static void try_labels(const char *path)
     }
     REQUIRE(table.range_count > 0 || table.others);
     for (int32_t r = 0; r < table.range_count; r++) {
-        int32_t name = -2;
+        int32_t name = -1;
         REQUIRE(table.range[r].first <= table.range[r].last);
-        REQUIRE(table.range[r].name >= -1 && table.range[r].name < table.name_count);
+        REQUIRE(table.range[r].name >= 0 && table.range[r].name < table.names.count);
         REQUIRE(label_table_find(&table, table.range[r].first, &name) && name == table.range[r].name);
         REQUIRE(label_table_find(&table, table.range[r].last, &name) && name == table.range[r].name);
     }
-    for (int32_t n = 0; n < table.name_count; n++) {
-        REQUIRE(table.name[n].text[0] != '\0' && strpbrk(table.name[n].text, ",\"=:|\n\t ") == NULL);
+    for (int32_t n = 0; n < table.names.count; n++) {
+        REQUIRE(table.names.name[n][0] != '\0' && strpbrk(table.names.name[n], ",\"=:|\n\t ") == NULL);
         for (int32_t k = 0; k < n; k++) {
-            REQUIRE(strcmp(table.name[n].text, table.name[k].text) != 0);
+            REQUIRE(strcmp(table.names.name[n], table.names.name[k]) != 0);
         }
     }
 }

@@ -13,21 +13,6 @@
 /* Most labels of an image without a table. */
 enum { MOST_UNNAMED = 256, MOST_VALUES = 32767 };
 
-int32_t label_image_find(const struct label_image *image, const char *name)
-{
-    for (int32_t l = 1; l <= image->table.name_count; l++) {
-        if (strcmp(label_image_name(image, l), name) == 0) {
-            return l;
-        }
-    }
-    return -1;
-}
-
-const char *label_image_name(const struct label_image *image, int32_t label)
-{
-    return label == 0 ? "outside" : image->table.name[label - 1].text;
-}
-
 /* ---- values ---- */
 
 /* The different values of an image, ascending. */
@@ -112,21 +97,20 @@ static void label_values(const struct tool *tool, struct values *values, struct 
 {
     bool kept = false;
     for (int32_t v = 0; v < values->count; v++) {
-        int32_t name = -1;
+        int32_t name = 0;
         if (!label_table_find(&image->table, values->value[v], &name)) {
             tool_fail(tool, STATUS_INPUT,
                       "%s: no row for label %lld, of %lld voxels: name it, or write '%lld -'", table,
                       (long long)values->value[v], (long long)values->voxels[v], (long long)values->value[v]);
         }
-        values->label[v] = (uint16_t)(name + 1);
-        image->volume[name + 1] += (double)values->voxels[v] * image->voxel_volume;
+        values->label[v] = (uint16_t)name;
+        image->volume[name] += (double)values->voxels[v] * image->voxel_volume;
     }
     for (int32_t l = 1; l < image->labels.count; l++) {
-        image->keep[l] = image->table.name[l - 1].kept;
         kept = kept || image->keep[l];
         if (image->volume[l] == 0 && image->keep[l]) {
             tool_fail(tool, STATUS_INPUT, "'%s' is empty: no voxel has a label of that name",
-                      label_image_name(image, l));
+                      image->table.names.name[l]);
         }
     }
     if (!kept) {
@@ -144,8 +128,8 @@ static void set_labels(const struct tool *tool, const struct image *source, stru
     if (table == NULL) {
         name_values(tool, source, values, &image->table);
     }
-    image->labels.count = image->table.name_count + 1;
-    TOOL_TRY(tool, NEW_ARRAY(&image->keep, image->labels.count, &error));
+    image->labels.count = (int32_t)image->table.names.count;
+    image->keep = image->table.kept;
     TOOL_TRY(tool, NEW_ARRAY(&image->volume, image->labels.count, &error));
     TOOL_TRY(tool, NEW_ARRAY(&image->voxel, count, &error));
     label_values(tool, values, image, table);
@@ -293,7 +277,7 @@ static void note_border(const struct tool *tool, const struct label_image *image
     }
     if (label != 0) {
         tool_note(tool, "%s reaches the border of the image: the body ends there",
-                  label_image_name(image, label));
+                  image->table.names.name[label]);
     }
 }
 
@@ -382,7 +366,7 @@ void label_image_read(const struct tool *tool, char *const *files, const struct 
 
 void label_image_free(struct label_image *image)
 {
-    FREE_ALL(image->voxel, image->keep, image->volume);
+    FREE_ALL(image->voxel, image->volume);
     label_table_free(&image->table);
     *image = (struct label_image){0};
 }

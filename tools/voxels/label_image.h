@@ -20,8 +20,8 @@ struct label_image {
     struct labels labels;
     uint16_t *voxel;          /* the array of labels.label */
     double to_world[3][4];    /* voxel index to world, m */
-    struct label_table table; /* label l, at least 1, is table.name[l - 1] */
-    bool *keep;               /* labels.count */
+    struct label_table table; /* label l is table.names.name[l] */
+    bool *keep;               /* labels.count: table.kept */
     double *volume;           /* labels.count: of its voxels, m3 (2D: m2) */
     double voxel_volume;
 };
@@ -34,12 +34,6 @@ struct label_image {
 void label_image_read(const struct tool *tool, char *const *files, const struct label_image_options *options,
                       struct label_image *image);
 void label_image_free(struct label_image *image);
-
-/* The name of a label; "outside" for 0. */
-const char *label_image_name(const struct label_image *image, int32_t label);
-
-/* The label with this name; -1: none. */
-int32_t label_image_find(const struct label_image *image, const char *name);
 
 /* The value of --fine, "3mm" or "3mm:ventricles,tumour", which must be less than `spacing`, m: *finest, m.
  * Returns an array of labels, to be freed; NULL: of all. Exits on failure. */

@@ -37,10 +37,10 @@ static enum status make_regions(const struct label_image *image, const struct la
     for (int64_t c = 0; c < result->cell_count; c++) {
         region[result->label[c]] = 1;
     }
-    for (int32_t l = 1; l <= image->table.name_count; l++) {
+    for (int32_t l = 1; l < image->labels.count; l++) {
         if (region[l] != 0) {
             region[l] = (int32_t)mesh->regions.count;
-            RETURN_IF_ERROR(names_add(&mesh->regions, label_image_name(image, l), error));
+            RETURN_IF_ERROR(names_add(&mesh->regions, image->table.names.name[l], error));
         }
     }
     for (int64_t c = 0; c < result->cell_count; c++) {
@@ -62,8 +62,8 @@ static enum status make_facets(const struct label_image *image, const struct lab
     qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
     for (int64_t f = 0; f < result->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
-            RETURN_IF_ERROR(add_name(&mesh->facet_sets, label_image_name(image, member[f].inner),
-                                     label_image_name(image, member[f].outer), error));
+            RETURN_IF_ERROR(add_name(&mesh->facet_sets, image->table.names.name[member[f].inner],
+                                     image->table.names.name[member[f].outer], error));
         }
         mesh->facet_set[f] = (int32_t)mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
@@ -116,8 +116,8 @@ static enum status make_sets(const struct label_image *image, const struct label
         }
         if (i == 0 || !same_group(&member[i], &member[i - 1])) {
             mesh->set_ptr[mesh->node_sets.count] = kept;
-            RETURN_IF_ERROR(add_name(&mesh->node_sets, label_image_name(image, member[i].inner),
-                                     label_image_name(image, member[i].outer), error));
+            RETURN_IF_ERROR(add_name(&mesh->node_sets, image->table.names.name[member[i].inner],
+                                     image->table.names.name[member[i].outer], error));
         }
         mesh->set_idx[kept++] = member[i].item;
     }

@@ -21,8 +21,8 @@ bool *label_fine_parse(const struct tool *tool, const struct label_image *image,
     }
     while (names != NULL) {
         const char *name = strsep(&names, ",");
-        int32_t label = label_image_find(image, name);
-        if (label < 0) {
+        int64_t label = names_find(&image->table.names, name);
+        if (label <= 0) {
             tool_fail(tool, STATUS_INPUT, "--fine: no label '%.60s'", name);
         }
         fine[label] = true;

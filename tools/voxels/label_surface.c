@@ -17,10 +17,11 @@ void label_surface_parse(const struct tool *tool, const struct label_image *imag
     SCRATCH char *copy = tool_memory(tool, strdup(text));
     char *outer = copy;
     const char *inner = strsep(&outer, "|");
-    options->inner = label_image_find(image, inner);
-    options->outer = outer == NULL ? -1 : strcmp(outer, "outside") == 0 ? 0 : label_image_find(image, outer);
-    if (options->inner < 0 || (outer != NULL && options->outer < 0)) {
-        tool_fail(tool, STATUS_INPUT, "--surface: no label '%.60s'", options->inner < 0 ? inner : outer);
+    const struct names *names = &image->table.names;
+    options->inner = (int32_t)names_find(names, inner);
+    options->outer = outer == NULL ? -1 : (int32_t)names_find(names, outer);
+    if (options->inner <= 0 || (outer != NULL && options->outer < 0)) {
+        tool_fail(tool, STATUS_INPUT, "--surface: no label '%.60s'", options->inner <= 0 ? inner : outer);
     }
 }
 

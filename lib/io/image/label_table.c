@@ -15,26 +15,19 @@ enum { NAMES_LIMIT = 1000, RANGES_LIMIT = 30000 };
 enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
                              struct error *error)
 {
-    for (int32_t n = 0; n < table->name_count; n++) {
-        if (strcmp(table->name[n].text, text) == 0) {
-            *name = n;
-            return table->name[n].kept == kept
-                       ? STATUS_OK
-                       : fail(error, STATUS_INPUT, "'%.60s' is kept in one row and left out in another",
-                              text);
-        }
+    *name = (int32_t)names_find(&table->names, text);
+    if (*name >= 0) {
+        return table->kept[*name] == kept
+                   ? STATUS_OK
+                   : fail(error, STATUS_INPUT, "'%.60s' is kept in one row and left out in another", text);
     }
-    if (table->name_count == NAMES_LIMIT) {
+    *name = (int32_t)table->names.count;
+    if (*name > NAMES_LIMIT) {
         return fail(error, STATUS_INPUT, "more than %d names", NAMES_LIMIT);
     }
-    RETURN_IF_ERROR(RESIZE_ARRAY(&table->name, table->name_count + 1, error));
-    char *copy = strdup(text);
-    if (copy == NULL) {
-        return fail_memory(error, "names of labels");
-    }
-    *name = table->name_count++;
-    table->name[*name] = (struct label_name){copy, kept};
-    return STATUS_OK;
+    RETURN_IF_ERROR(RESIZE_ARRAY(&table->kept, *name + 1, error));
+    table->kept[*name] = kept;
+    return names_add(&table->names, text, error);
 }
 
 enum status label_table_add(struct label_table *table, const struct label_range *range, struct error *error)
@@ -62,20 +55,11 @@ bool label_table_find(const struct label_table *table, int64_t label, int32_t *n
             return true;
         }
     }
-    *name = label == 0 ? -1 : table->name_of_others;
+    *name = label == 0 ? 0 : table->name_of_others;
     return label == 0 || table->others;
 }
 
 static const char not_in_names[] = ",\"=:|";
-
-static bool is_name(const struct label_table *table, const char *text)
-{
-    bool known = strcmp(text, "outside") == 0;
-    for (int32_t n = 0; n < table->name_count; n++) {
-        known = known || strcmp(table->name[n].text, text) == 0;
-    }
-    return known;
-}
 
 /* Make a text valid as a new name. */
 static void make_name(const struct label_table *table, char *text, size_t size)
@@ -87,7 +71,7 @@ static void make_name(const struct label_table *table, char *text, size_t size)
         }
     }
     size_t length = strlen(text) < size - 8 ? strlen(text) : size - 8;
-    for (int number = 2; is_name(table, text); number++) {
+    for (int number = 2; names_find(&table->names, text) >= 0; number++) {
         snprintf(text + length, size - length, "_%d", number);
     }
 }
@@ -95,7 +79,9 @@ static void make_name(const struct label_table *table, char *text, size_t size)
 enum status label_table_segments(struct label_table *table, const struct image *image,
                                  char note[LABEL_TABLE_NOTE], struct error *error)
 {
+    int32_t outside;
     note[0] = '\0';
+    RETURN_IF_ERROR(label_table_name(table, "outside", false, &outside, error));
     for (size_t s = 0; s < image->segment_count; s++) {
         const struct image_segment *segment = &image->segment[s];
         struct label_range range = {.first = segment->label, .last = segment->label};
@@ -174,7 +160,7 @@ static enum status add_row(struct label_table *table, char *line, struct error *
     if (count == 1 || count > 3 || (count == 3 && strcmp(word[2], "-") != 0)) {
         return fail(error, STATUS_INPUT, "a row is LABELS NAME, or LABELS NAME - to leave the cells out");
     }
-    int32_t name = -1;
+    int32_t name = 0;
     RETURN_IF_ERROR(check_name(word[1], error));
     if (strcmp(word[1], "-") != 0) {
         RETURN_IF_ERROR(label_table_name(table, word[1], count == 2, &name, error));
@@ -186,7 +172,9 @@ enum status label_table_read(const char *path, struct label_table *table, struct
 {
     FREED_BY(textfile_free) struct textfile file = {0};
     int64_t number = 1;
+    int32_t outside;
     *table = (struct label_table){0};
+    RETURN_IF_ERROR(label_table_name(table, "outside", false, &outside, error));
     RETURN_IF_ERROR(textfile_read(path, size_limit, &file, error));
     for (char *rest = file.text; *rest != '\0'; number++) {
         char *line = strsep(&rest, "\n");
@@ -198,9 +186,7 @@ enum status label_table_read(const char *path, struct label_table *table, struct
 
 void label_table_free(struct label_table *table)
 {
-    for (int32_t n = 0; n < table->name_count; n++) {
-        free(table->name[n].text);
-    }
-    FREE_ALL(table->name, table->range);
+    names_free(&table->names);
+    FREE_ALL(table->kept, table->range);
     *table = (struct label_table){0};
 }

@@ -1,26 +1,21 @@
 /* Names of the labels of an image: a table in a text file. */
 #pragma once
 
+#include "base/names.h"
 #include "io/image/image.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A name, in one or more rows of the table. */
-struct label_name {
-    char *text;
-    bool kept; /* false: its cells are left out, and it names their walls */
-};
-
-/* The labels first .. last have the name number `name`; -1: outside. */
+/* The labels first .. last have the name number `name`. */
 struct label_range {
     int64_t first, last;
     int32_t name;
 };
 
 struct label_table {
-    int32_t name_count;
-    struct label_name *name;
+    struct names names; /* the first one is "outside" */
+    bool *kept;         /* names.count; false: its cells are left out, and it names their walls */
     int32_t range_count;
     struct label_range *range; /* disjoint */
     bool others;               /* a row '*' names all other labels: */
@@ -39,8 +34,8 @@ void label_table_free(struct label_table *table);
 MUST_CHECK enum status label_table_name(struct label_table *table, const char *text, bool kept, int32_t *name,
                                         struct error *error);
 
-/* Name the labels of an image's segments that have voxels, in their order. What a name cannot hold becomes
- * '_', and a number tells it from others; `note` tells so of the first one, else it is "". */
+/* Begin a table by the labels of an image's segments that have voxels, in their order. What a name cannot
+ * hold becomes '_', and a number tells it from others; `note` tells so of the first one, else it is "". */
 enum { LABEL_TABLE_NOTE = 400 };
 MUST_CHECK enum status label_table_segments(struct label_table *table, const struct image *image,
                                             char note[LABEL_TABLE_NOTE], struct error *error);
@@ -49,5 +44,5 @@ MUST_CHECK enum status label_table_segments(struct label_table *table, const str
 MUST_CHECK enum status label_table_add(struct label_table *table, const struct label_range *range,
                                        struct error *error);
 
-/* Look up a label: false if no row names it. Without a row, 0 is outside, -1. */
+/* Look up a label: false if no row names it. Without a row, 0 is outside. */
 bool label_table_find(const struct label_table *table, int64_t label, int32_t *name);
