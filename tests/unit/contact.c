@@ -34,39 +34,6 @@ TEST(force_is_gradient)
     assert_true(contacts > 100);
 }
 
-/* The sum of the forces on the parameters is sum p A n, and their moment that of the contact nodes' forces
- * where the contact nodes are. */
-TEST(balance)
-{
-    struct random random = {2};
-    struct contact_nodes contact_nodes;
-    for (int round = 0; round < 40; round++) {
-        int dim = 2 + round % 2;
-        make_contact_nodes(&contact_nodes, dim, 10.0, &random);
-        FREED_BY(contact_free)
-        struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.7, false), 1e4);
-        double u[NODES * 3], force[NODES * 3] = {0.0}, total[3], sum[3] = {0.0}, moment = 0.0, expected = 0.0;
-        push_out(u, &random);
-        contact_force(&contact, u, force);
-        contact_total(&contact, total);
-        for (int n = 0; n < NODES; n++) {
-            const double *f = force + n * dim, *X = contact_nodes.X + n * dim;
-            for (int a = 0; a < dim; a++) {
-                sum[a] += f[a];
-            }
-            moment += (X[0] + u[n * dim]) * f[1] - (X[1] + u[n * dim + 1]) * f[0];
-        }
-        for (int a = 0; a < CONTACT_NODES; a++) {
-            const double *normal = contact.normal + a * dim;
-            double strength = contact.pressure[a] * contact_nodes.area[a];
-            expected += strength * (position(&contact_nodes, u, a, 0) * normal[1] -
-                                    position(&contact_nodes, u, a, 1) * normal[0]);
-        }
-        ALL_NEAR(dim, sum, total, 1e-9);
-        NEAR_TO(moment, expected, 1e-9);
-    }
-}
-
 /* Along walks in and out of closed and open shells the forces are the same bits as when every contact node is
  * always looked at. */
 TEST(skipping)
@@ -161,73 +128,6 @@ TEST(evaluations_change_no_state)
     assert_true(changes > 500 && touches > 500);
 }
 
-/* Particles on springs, pulled through a wall: the penalty leaves them in it, multipliers bring them back. */
-TEST(augmentation)
-{
-    for (int dim = 2; dim <= 3; dim++) {
-        struct contact_nodes contact_nodes;
-        make_particles(&contact_nodes, dim, 0.5);
-        for (int a = 0; a < CONTACT_NODES; a++) {
-            contact_nodes.X[a * dim] = 0.1 * a / CONTACT_NODES;
-        }
-        FREED_BY(contact_free)
-        struct contact contact = built(&contact_nodes, make_shell(dim, 24, 0.5, false), 100.0);
-        double u[NODES * 3] = {0.0}, spring = 20.0, pull = 13.0, deepest = INFINITY;
-        for (int round = 0; round < 40; round++) {
-            double before = deepest;
-            for (int step = 0; step < 2000; step++) { /* gradient descent to equilibrium */
-                double force[NODES * 3] = {0.0};
-                contact_force(&contact, u, force);
-                for (int i = 0; i < CONTACT_NODES * dim; i++) {
-                    double toward = i % dim == 1 ? pull : 0.0;
-                    u[i] += 0.01 * (force[i] + toward - spring * u[i]);
-                }
-            }
-            deepest = contact_miss(&contact);
-            contact_augment(&contact, false);
-            assert_true(round == 0 ? deepest > 0.01 : deepest < 0.9 * before || deepest < 1e-9);
-        }
-        AT_MOST(deepest, 1e-9);
-        for (int a = 0; a < CONTACT_NODES; a++) {
-            /* At the wall, held by what the spring does not take. */
-            NEAR_TO(contact.gap[a], 0.0, 1e-9);
-            if (dim == 3) {
-                NEAR_TO(u[a * dim + 1], 0.5, 1e-9);
-                NEAR_TO(contact.pressure[a] * contact_nodes.area[a], pull - spring * 0.5, 1e-6);
-            }
-        }
-    }
-}
-
-/* No force from a wall slides anything along it. */
-TEST(frictionless)
-{
-    struct contact_nodes contact_nodes;
-    make_particles(&contact_nodes, 3, 0.5);
-    FREED_BY(contact_free)
-    struct contact contact = built(&contact_nodes, make_shell(3, 6, 0.5, false), 100.0);
-    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0};
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        u[3 * a] = 0.03 * a;
-        u[3 * a + 1] = 0.6;
-        u[3 * a + 2] = -0.01 * a;
-    }
-    contact_force(&contact, u, force);
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        NEAR_TO(force[3 * a], 0.0, 0.0);
-        NEAR_TO(force[3 * a + 1], -100.0 * 0.1 * 0.5, 1e-12);
-        NEAR_TO(force[3 * a + 2], 0.0, 0.0);
-    }
-    /* p = 10; with a multiplier of 10, p = 20. */
-    NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 100.0 / 200.0, 1e-12);
-    NEAR_TO(contact_missing_work(&contact), contact_energy(&contact), 1e-12);
-    NEAR_TO(contact_miss(&contact), 0.1, 1e-15);
-    contact_augment(&contact, false);
-    contact_force(&contact, u, force);
-    NEAR_TO(contact_energy(&contact), CONTACT_NODES * 0.5 * 300.0 / 200.0, 1e-12);
-    NEAR_TO(contact_missing_work(&contact), contact_energy(&contact), 1e-12);
-}
-
 /* What the penalty leaves falls as a geometric sequence, of which the third augmentation finds the limit;
  * where the particles are held in the wall it does not fall, and augmentations become shorter. */
 TEST(augmentation_by_the_last_one)
@@ -288,32 +188,6 @@ TEST(round_the_rim)
             assert_int_equal(contact.pressure[0] > 0.0, held[leg]);
         }
     }
-}
-
-/* The nodes of a body with a curved boundary touch a wall of the same curvature: so do its contact nodes,
- * though the mean of the chords lies beneath. */
-TEST(curved_boundary)
-{
-    struct contact_nodes contact_nodes;
-    struct random random = {4};
-    make_contact_nodes(&contact_nodes, 2, 0.1, &random);
-    double u[NODES * 3] = {0.0}, force[NODES * 3] = {0.0}, step = 2.0 * M_PI / CONTACT_NODES;
-    for (int a = 0; a < CONTACT_NODES; a++) {
-        double weight[3] = {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}; /* linear fields on two equal chords */
-        contact_nodes.X[2 * a] = cos(step * a);
-        contact_nodes.X[2 * a + 1] = sin(step * a);
-        contact_nodes.normal[2 * a] = contact_nodes.X[2 * a];
-        contact_nodes.normal[2 * a + 1] = contact_nodes.X[2 * a + 1];
-        contact_nodes.ptr[a + 1] = 3 * (a + 1);
-        for (int k = 0; k < 3; k++) {
-            contact_nodes.idx[3 * a + k] = (a + CONTACT_NODES - 1 + k) % CONTACT_NODES;
-            contact_nodes.phi[3 * a + k] = weight[k];
-        }
-    }
-    FREED_BY(contact_free)
-    struct contact contact = built(&contact_nodes, make_shell(2, CONTACT_NODES, 1.0, false), 1.0);
-    contact_force(&contact, u, force);
-    ALL_NEAR(CONTACT_NODES, contact.gap, NULL, 1e-14);
 }
 
 RUN_TESTS(NULL, NULL)

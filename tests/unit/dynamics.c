@@ -97,96 +97,6 @@ TEST(one_oscillator)
     }
 }
 
-/* Linear momentum, and the angular one about the origin (2D: its third component). */
-static void momenta(const struct lattice *l, const double *u, const double *v, double p[3], double L[3])
-{
-    int dim = l->options.dim;
-    for (int a = 0; a < 3; a++) {
-        p[a] = L[a] = 0;
-    }
-    for (int64_t n = 0; n < l->system.node_count; n++) {
-        double x[3] = {0}, w[3] = {0}, mass = l->system.lumped_mass[n];
-        for (int a = 0; a < dim; a++) {
-            x[a] = l->system.X[n * dim + a] + u[n * dim + a];
-            w[a] = v[n * dim + a];
-            p[a] += mass * w[a];
-        }
-        for (int a = 0; a < 3; a++) {
-            L[a] += mass * (x[(a + 1) % 3] * w[(a + 2) % 3] - x[(a + 2) % 3] * w[(a + 1) % 3]);
-        }
-    }
-}
-
-/* A free body, thrown and spinning, keeps its momenta to round-off however it swings. */
-TEST_IN_EACH_DIM(free_spin)
-{
-    struct lattice_options options = lattice_defaults(dim, dim == 2 ? 7 : 4);
-    FREED_BY(lattice_free) struct lattice l = {0};
-    options.jitter = 0.1;
-    lattice_build(&l, &options);
-    double *u = lattice_vector(&l), *v = lattice_vector(&l), p[2][3], L[2][3];
-    static const double spin[3] = {0, 0, 12}, tumble[3] = {5, 3, 12};
-    const double *w = dim == 2 ? spin : tumble;
-    for (int64_t n = 0; n < l.system.node_count; n++) {
-        double X[3] = {0};
-        memcpy(X, l.system.X + n * dim, (size_t)dim * sizeof *X);
-        for (int a = 0; a < dim; a++) {
-            v[n * dim + a] = w[(a + 1) % 3] * X[(a + 2) % 3] - w[(a + 2) % 3] * X[(a + 1) % 3] + 0.1 * a;
-        }
-    }
-    momenta(&l, u, v, p[0], L[0]);
-    struct dynamics_options dynamics = over(0.5); /* about one turn */
-    struct dynamics_report report = run(&l, &dynamics, u, v, NULL);
-    assert_int_equal(report.outcome, DYNAMICS_DONE);
-    momenta(&l, u, v, p[1], L[1]);
-    double scale = fabs(L[0][2]);
-    for (int a = 0; a < 3; a++) {
-        NEAR_TO(p[1][a], p[0][a], 1e-10 * scale / 0.1);
-        /* L at a time between two half steps differs from the conserved one by dt^2/4 sum m v x a = 0 */
-        NEAR_TO(L[1][a], L[0][a], 1e-10 * scale);
-    }
-    AT_MOST(report.largest_drift, 1e-3);
-}
-
-/* A side pushed in and held: the work of the condition is what the energies hold, with and without damping,
- * and a damped body comes to the rest of the closed form for confined compression. */
-TEST(pushed)
-{
-    static const double dampings[] = {0, 100};
-    for (int k = 0; k < 2; k++) {
-        struct lattice_options options = lattice_defaults(2, 7);
-        FREED_BY(lattice_free) struct lattice l = {0};
-        FREED_BY(energy_log_free) struct energy_log log = {0};
-        struct dynamics_report report;
-        lattice_build(&l, &options);
-        static const double points[] = {0, 0, 0.05, 1, 0.3, 1};
-        struct load_curve curve;
-        GOOD(curve_tabulate(&curve, 3, points, 0.3, &error));
-        int32_t index = lattice_curve(&l, curve);
-        lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, index);
-        lattice_push(&l, 3, -0.005, index);
-        double *u = lattice_vector(&l), *row_force;
-        row_force = zeros(l.system.rows.count, sizeof *row_force);
-        struct dynamics_options dynamics = over(0.3);
-        dynamics.damping = dampings[k];
-        GOOD(dynamics_run(&l.system, &dynamics, u, NULL, row_force, &log, &report, &error));
-        assert_int_equal(report.outcome, DYNAMICS_DONE);
-        AT_MOST(report.largest_drift, 2e-3);
-        const struct energy *end = &log.rows[log.count - 1];
-        assert_true(end->work > 0);
-        if (k == 0) {
-            NEAR_TO(end->dissipated, 0, 0);
-        } else {
-            assert_true(end->dissipated > 0 && end->kinetic < 1e-6 * end->internal);
-            double P = lattice_reaction(&l, row_force, 1u << 3) / 0.1;
-            double mu = 1006.711409, kappa = 50000, J = 0.95, I1 = 2 + J * J;
-            double expected = mu * pow(J, -2.0 / 3) * (J - I1 / (3 * J)) + kappa * (J - 1);
-            NEAR_TO(P / expected, 1.0, 1e-4);
-            NEAR_TO(end->work, end->internal + end->dissipated, 2e-3 * end->work);
-        }
-    }
-}
-
 /* The end at the speed of a linear curve, without a jerk: balance and reaction stay right to the last row.
  * The begin at that speed is a blow, whose work counts. */
 TEST(moved_at_constant_speed)
@@ -210,42 +120,6 @@ TEST(moved_at_constant_speed)
             NEAR_TO(lattice_field(&l, u, n, 0), 0.01, 0.0005);
         }
     }
-}
-
-/* Weight put on a confined column at once: it sinks to twice the depth of rest, and returns. */
-TEST(sudden_weight)
-{
-    struct lattice_options options = lattice_defaults(2, 3);
-    FREED_BY(lattice_free) struct lattice l = {0};
-    FREED_BY(energy_log_free) struct energy_log log = {0};
-    options.count[1] = 11;
-    options.size[0] = 0.02;
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_STEP));
-    lattice_slide(&l, 1u << 0 | 1u << 1 | 1u << 2, curve);
-    struct dead_load *load = calloc(1, sizeof *load);
-    assert_non_null(load);
-    *load =
-        (struct dead_load){.force = array_or_fail(l.system.node_count * 2, sizeof(double)), .curve = curve};
-    for (int64_t c = 0; c < l.assembly.cells.count; c++) {
-        for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
-            load->force[2 * l.smoothed.idx[i] + 1] -= 1e-2 * 1000 * l.assembly.weight[c] * l.smoothed.phi[i];
-        }
-    }
-    l.system.loads = load;
-    l.system.load_count = 1;
-    double *u = lattice_vector(&l);
-    struct dynamics_options dynamics = over(0.5 / 17.91338);
-    struct dynamics_report report = run(&l, &dynamics, u, NULL, &log);
-    assert_int_equal(report.outcome, DYNAMICS_DONE);
-    AT_MOST(report.largest_drift, 1e-3);
-    double rest = 1000 * 1e-2 * 0.1 * 0.1 / (2 * 51342.28);
-    double top = 0;
-    for (int i = 0; i < 3; i++) { /* its mean */
-        top += (i == 1 ? 0.5 : 0.25) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
-    }
-    NEAR_TO(top / (-2 * rest), 1.0, 0.01);
-    assert_true(log.rows[log.count - 1].work > 0);
 }
 
 RUN_TESTS(one_thread, NULL)

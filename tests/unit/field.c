@@ -1,45 +1,7 @@
-/* Fields at points: exact for linear fields on any cloud and in each cell; what is outside of a body. */
+/* Fields at points: linear in each cell; what is outside of a body. */
 #include "approx_fixture.h"
 
 #include "approx/field/field_compare.h"
-
-static double linear(int dim, const double *x)
-{
-    return 1.0 + 2.0 * x[0] - 3.0 * x[1] + (dim == 3 ? 0.5 * x[2] : 0.0);
-}
-
-/* values[count * 2]: a linear field and a constant. */
-static double *linear_field(int dim, int64_t count, const double *x)
-{
-    double *values = zeros(count * 2, sizeof *values);
-    for (int64_t n = 0; n < count; n++) {
-        values[2 * n] = linear(dim, x + n * dim);
-        values[2 * n + 1] = -7.0;
-    }
-    return values;
-}
-
-TEST_IN_EACH_DIM(linear_fields_are_exact)
-{
-    for (int p = 0; p < PLACE_COUNT; p++) {
-        FREED_BY(scattered_free)
-        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 80, &places[p], 0.3, 3);
-        struct support_options options = support_defaults(dim);
-        struct cells cells = {.dim = dim, .node_count = cloud.count, .x = cloud.x};
-        FREED_BY(field_table_free) struct field_table table = {0};
-        double *spacing = zeros(cloud.count, sizeof *spacing);
-        double *values = linear_field(dim, cloud.count, cloud.x);
-        double *expected = linear_field(dim, 80, cloud.points), got[160];
-        GOOD(field_spacing(&cells, spacing, &error));
-        GOOD(support_radii(&options, cells.node_count, spacing, spacing, &error));
-        GOOD(
-            field_table_build(&options, NULL, &cells, spacing, 80, cloud.points, "points.x", &table, &error));
-        field_evaluate(80, table.lists.ptr, table.lists.idx, table.phi, 2, values, got);
-        for (int i = 0; i < 160; i++) {
-            AT_MOST(fabs(got[i] - expected[i]), 1e-11 * (places[p].size + 10.0));
-        }
-    }
-}
 
 /* Nodes of cells have the cells' spacing, others that of the nearest nodes. */
 TEST(spacing_with_and_without_cells)

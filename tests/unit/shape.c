@@ -137,33 +137,6 @@ TEST_IN_EACH_DIM(cells_and_faces)
     }
 }
 
-TEST(wrong_cells)
-{
-    static const double square[] = {0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0.5};
-    static const struct {
-        int32_t node[9];
-        int64_t count;
-        const char *says;
-    } wrong[] = {{{0, 1, 2, 0, 2, 3}, 2, NULL},
-                 {{0, 1, 2, 0, 2, 5}, 2, "cells: row 1: no node 5"},
-                 {{0, 1, 2, -1, 2, 3}, 2, "cells: row 1: no node -1"},
-                 {{0, 1, 2, 0, 3, 2}, 2, "cells: row 1: inverted"},
-                 {{0, 1, 2, 0, 2, 4}, 2, "cells: row 1: inverted or of no volume"}};
-    struct error said;
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        struct cells cells = {2, 5, square, wrong[i].count, wrong[i].node};
-        assert_int_equal(cells_check(&cells, &said), wrong[i].says == NULL ? STATUS_OK : STATUS_INPUT);
-        if (wrong[i].says != NULL) {
-            assert_non_null(strstr(said.text, wrong[i].says));
-        }
-    }
-    /* Three triangles on one edge. */
-    static const int32_t fan[] = {0, 1, 2, 0, 1, 3, 0, 1, 4};
-    struct cells cells = {2, 5, square, 3, fan};
-    FREED_BY(faces_free) struct faces faces = {0};
-    FAILS(faces_build(&cells, false, &faces, &error), STATUS_INPUT, "more than two cells");
-}
-
 /* Averages over the faces and the table smoothed over the cells that they make. */
 struct smoothed {
     struct cloud cloud;

@@ -101,38 +101,6 @@ TEST(linear_patch_at_gauss_points)
     assert_true(worst2 > 1e-9);
 }
 
-/* A block between sliding supports, pushed along its last axis to `stretch`; confined: sliding on all sides.
- */
-static void squeeze(int dim, double stretch, bool confined, double expected, double lateral)
-{
-    FREED_BY(lattice_free) struct lattice l = {0};
-    int top = 2 * dim - 1;
-    int32_t curve = lattice_begin(&l, dim, dim == 2 ? 6 : 4, 0.1, CURVE_SMOOTH);
-    unsigned low = dim == 2 ? 5u : 21u, all = (1u << 2 * dim) - 1;
-    lattice_slide(&l, confined ? all & ~(1u << top) : low, curve);
-    lattice_push(&l, top, (stretch - 1) * 0.1, curve);
-    double *row_force = zeros(l.system.rows.count, sizeof *row_force);
-    double *u = solved(&l, 1e-9, row_force);
-    double area = dim == 2 ? 0.1 : 0.01;
-    NEAR_TO(lattice_reaction(&l, row_force, 1u << top) / area / expected, 1, 1e-6);
-    for (int64_t n = 0; n < l.system.node_count; n++) {
-        NEAR_TO(lattice_field(&l, u, n, 0), (lateral - 1) * l.system.X[n * dim], 1e-7 * 0.1);
-    }
-}
-
-TEST(unconfined_compression)
-{
-    squeeze(3, 0.8, false, -763.26922, 1.11574668);
-}
-
-TEST(confined_compression)
-{
-    double mu = 1006.711409, kappa = 50000, J = 0.95, I1 = 2 + J * J;
-    double expected = mu * pow(J, -2.0 / 3) * (J - I1 / (3 * J)) + kappa * (J - 1);
-    squeeze(2, J, true, expected, 1);
-    squeeze(3, J, true, expected, 1);
-}
-
 /* A clamped block in 2D, its top moved down and, by `aside`, sideways. */
 static void clamp(struct lattice *l, int64_t n, double down, double aside, bool nodal_volume)
 {
@@ -296,34 +264,6 @@ TEST(pressures_are_augmented)
         }
         AT_MOST(largest_difference(force, expected, size), 0.01 * most);
     }
-}
-
-/* A weight on a confined column of height .1: the top sinks as the closed form says. */
-TEST(column_under_gravity)
-{
-    struct lattice_options options = lattice_defaults(2, 4);
-    FREED_BY(lattice_free) struct lattice l = {0};
-    options.count[1] = 25;
-    options.size[0] = 0.1 * 3 / 24;
-    lattice_build(&l, &options);
-    int32_t curve = lattice_curve(&l, curve_of_kind(CURVE_SMOOTH));
-    lattice_slide(&l, 7, curve);
-    struct dead_load *load = calloc(1, sizeof *load);
-    assert_non_null(load);
-    *load =
-        (struct dead_load){.force = array_or_fail(l.system.node_count * 2, sizeof(double)), .curve = curve};
-    for (int64_t c = 0; c < l.assembly.cells.count; c++) {
-        for (int64_t i = l.smoothed.ptr[c]; i < l.smoothed.ptr[c + 1]; i++) {
-            load->force[2 * l.smoothed.idx[i] + 1] -= 9.81 * 1000 * l.assembly.weight[c] * l.smoothed.phi[i];
-        }
-    }
-    l.system.loads = load;
-    l.system.load_count = 1;
-    double *u = solved(&l, 1e-8, NULL), top = 0;
-    for (int i = 0; i < 4; i++) {
-        top += (i % 3 == 0 ? 1.0 / 6 : 1.0 / 3) * lattice_field(&l, u, l.system.node_count - 1 - i, 1);
-    }
-    NEAR_TO(top / -0.954976e-3, 1, 5e-3);
 }
 
 RUN_TESTS(one_thread, NULL)

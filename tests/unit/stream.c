@@ -48,45 +48,6 @@ TEST(large_payload)
     stream_free(&stream);
 }
 
-static void assert_refused(const char *bytes, size_t size, bool from_pipe)
-{
-    struct stream stream;
-    struct error error = {""};
-    enum status status = read_bytes(bytes, size, from_pipe, &stream, &error);
-    if (status == STATUS_OK) {
-        fail_msg("accepted:\n%.*s", (int)size, bytes);
-    }
-    assert_int_equal(status, STATUS_INPUT);
-    assert_int_equal(strncmp(error.text, "input: ", 7), 0);
-    assert_null(stream.sections);
-    assert_null(stream.mapping);
-}
-
-TEST(truncation_at_every_byte)
-{
-    FREED_BY(stream_free) struct stream sample = sample_stream();
-    for (int text = 0; text < 2; text++) {
-        size_t size;
-        SCRATCH char *bytes = written_bytes(&sample, text == 1, &size);
-        for (size_t length = 0; length < size; length++) {
-            assert_refused(bytes, length, false);
-            assert_refused(bytes, length, true);
-        }
-    }
-}
-
-TEST(every_flipped_bit_of_a_binary_stream)
-{
-    FREED_BY(stream_free) struct stream sample = sample_stream();
-    size_t size;
-    SCRATCH char *bytes = written_bytes(&sample, false, &size);
-    for (size_t bit = 0; bit < 8 * size; bit++) {
-        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
-        assert_refused(bytes, size, bit % 2 == 0);
-        bytes[bit / 8] = (char)(bytes[bit / 8] ^ 1 << bit % 8);
-    }
-}
-
 #define HEAD "# mts 1\n# x f8 2 2 enc=text unit=m\n"
 #define TAIL "\n\n# end 1\n"
 

@@ -174,18 +174,6 @@ TEST(landmarks)
     }
 }
 
-TEST(curves)
-{
-    static const char good[] = "0 0\n1 0\n\n5 5\n6 6\n7 6\n";
-    FREED_BY(table_free) struct table table = {0};
-    write_to(path, good, strlen(good));
-    GOOD(surface_read(path, 2, &table, &error));
-    assert_int_equal(table.block_count, 2);
-    fails_in(path, 2, "0 0\n1 0\n\n2 2\n", 13, 4, "curve of one point");
-    fails_in(path, 2, "0 0\n1 0\n1 0\n", 12, 3, "repeats the point before");
-    fails_in(path, 2, "0 0 0\n1 0 0\n", 12, 1, "has 3 columns, not 2");
-}
-
 #define FACET                                                                                                \
     "facet normal 0 0 1\n outer loop\n  vertex 0 0 .5\n  vertex 1 0 .5\n  vertex 0 1e0 .5\n "                \
     "endloop\nendfacet\n"
