@@ -45,7 +45,7 @@ uniform() {
     stack
     stack_scene > stack.scene
     mtled stack.scene stack.mts > u.dat
-    uniform 2 0.02 0.005
+    uniform 2 0.022 0.005
     # The force on what facets names is downward; the plates take the same.
     rows reactions u.dat | awk '{ f[NR] = $2 } END { s = f[2] / f[1] + 1; c = f[4] / f[2] - 1; print s, c
         exit !(f[4] < -20 && s * s < 1e-12 && c * c < 1e-12) }'

@@ -273,6 +273,40 @@ void contact_between_react(struct contact *contact, double *force)
     }
 }
 
+/* The longest motion in a step of a corner of the facets, m. */
+static double longest_corner(const struct opposite *opposite, int dim, const double *step)
+{
+    double most = 0.0, moved[3];
+    for (int64_t v = 0; v < opposite->rows.count; v++) {
+        struct average average = average_of_boundary(&opposite->rows, v);
+        average_take(&average, dim, step, moved);
+        most = fmax(most, vector_length(dim, moved));
+    }
+    return most;
+}
+
+double contact_passes(const struct contact *contact, const double *step)
+{
+    const struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    double most = 0.0, longest = between != NULL ? longest_corner(&between->opposite, dim, step) : 0.0;
+    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
+        const struct between_view *here = &between->view[p];
+        struct average average = average_of_boundary(contact->points, p);
+        double past[3], corner[3];
+        average_take(&average, dim, step, past);
+        for (int k = 0; k < dim && here->facet >= 0; k++) {
+            average = average_of_boundary(&between->opposite.rows,
+                                          between->opposite.surface.facet[here->facet * dim + k]);
+            average_take(&average, dim, step, corner);
+            add_scaled(dim, -here->weight[k], corner, past);
+        }
+        double way = vector_length(dim, past) + (here->facet < 0 ? longest : 0.0);
+        most = fmax(most, way / contact_width(contact, p));
+    }
+    return most;
+}
+
 /* 1-norm of the longest row. */
 static double longest_row(const struct boundary_averages *rows)
 {

@@ -11,27 +11,9 @@
 static const double prescribed_spacings = 0.7;
 /* By the body's size: a step moves no node by more than this. */
 static const double most_of_size = 0.1;
-/* Between facets of the body, a step by the width of a point, of which half is searched (contact_between.c).
- */
-static const double step_by_width = 0.25;
 /* The estimated error at which the load grows on; and after an increment whose model had no minimum. */
 static const double error_between = 0.2, error_waiting = 0.01;
 static const int64_t usual_most_steps = 100000;
-
-/* How far a node may move in a step: between facets of the body so far that what is opposite a point is still
- * found. */
-static double longest_step(const struct newton *n)
-{
-    const struct solid_system *system = n->system;
-    double most = most_of_size * n->body_size;
-    for (int64_t c = 0; c < system->contact_count; c++) {
-        const struct contact *contact = &system->contacts[c];
-        for (int64_t p = 0; contact->between != NULL && p < contact->count; p++) {
-            most = fmin(most, step_by_width * contact_width(contact, p));
-        }
-    }
-    return most;
-}
 
 /* Set the preconditioner's mass and measure the coarse fields at u, which was evaluated last. */
 static enum status measure(struct newton *n, struct error *error)
@@ -165,7 +147,7 @@ enum status newton_run(struct solid_system *system, const struct statics_options
     n.spacing = system_node_spacing(system);
     n.body_size = box_diagonal(&box);
     n.most_change = 1.0 / fmax(1.0, ceil(system_longest_change(system) / (prescribed_spacings * n.spacing)));
-    n.longest_step = longest_step(&n);
+    n.longest_step = most_of_size * n.body_size;
     RETURN_IF_ERROR(options->restored != NULL ? resume(&n, error) : begin(&n, error));
     report->outcome = iterate(&n, error);
     RETURN_IF_ERROR(n.failure);

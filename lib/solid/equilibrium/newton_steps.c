@@ -24,6 +24,8 @@ static const double same_state = 0.01;
 static const double least_radius = 1e-3; /* by the spacing: shorter steps are none */
 /* A step leaves this share of the least volume ratio of a cell, at least: beyond, its model says nothing. */
 static const double least_left = 0.7;
+/* Of a contact point past what is opposite, by its width: what is opposite after the step is still found. */
+static const double step_by_width = 0.5;
 
 bool newton_held_by_friction(const struct newton *n)
 {
@@ -49,6 +51,16 @@ static void shorten(struct newton *n, double part)
         n->step[i] *= part;
     }
     n->length *= part;
+}
+
+/* The share of the step that is taken at most. */
+static double most_share(const struct newton *n)
+{
+    double share = fmin(1.0, n->longest_step / n->length);
+    for (int64_t c = 0; c < n->system->contact_count; c++) {
+        share = fmin(share, step_by_width / contact_passes(&n->system->contacts[c], n->step));
+    }
+    return share;
 }
 
 /* Go to what was tried. */
@@ -115,7 +127,7 @@ bool newton_begin_increment(struct newton *n, double from, double change)
 
 bool newton_take_increment(struct newton *n, double from, double change)
 {
-    double share = fmin(1.0, n->longest_step / n->length), part = 1.0;
+    double share = most_share(n), part = 1.0;
     for (;; share = 0.5) {
         if (share < 1.0) {
             part *= share;
@@ -212,7 +224,13 @@ bool newton_correct(struct newton *n)
         return true;
     }
     take_multipliers(n);
-    double least = fmin(least_radius * n->spacing, n->options->tolerance * n->report->move);
+    double share = most_share(n),
+           least = fmin(least_radius * n->spacing, n->options->tolerance * n->report->move);
+    if (share < 1.0) {
+        shorten(n, share);
+        whole = false;
+        n->radius = n->length;
+    }
     while (!try_step(n)) {
         if (!(n->length > least)) {
             return false;
@@ -253,7 +271,7 @@ bool newton_leave(struct newton *n)
     if (!good) {
         return false;
     }
-    for (now = rise(n); good && now < lowest && n->length < n->longest_step; now = good ? rise(n) : 0.0) {
+    for (now = rise(n); good && now < lowest && most_share(n) == 1.0; now = good ? rise(n) : 0.0) {
         lowest = now;
         shorten(n, 2.0);
         good = try_step(n);
