@@ -254,7 +254,7 @@ TEST(crease)
                 }
             }
             struct fold fold = found(&shape, y);
-            assert_int_equal(fold.kind, angle < 2.0 * M_PI ? FOLD_NONE : FOLD_CREASE);
+            assert_int_equal(fold.kind, angle < 2.0 * M_PI + 0.05 ? FOLD_NONE : FOLD_CREASE);
             if (fold.kind == FOLD_CREASE) {
                 assert_int_equal(fold.count, 1);
                 assert_true(fold.facet[0] >= 0 && fold.facet[1] == -1);

@@ -11,6 +11,7 @@ static const double full_turn = 6.28318530717958648;
 enum { ITEMS_FOR_THREAD = 2000 }; /* see chunks_of */
 
 static const double turned_share = 0.1; /* see is_turned_over; twice as much: folds_list_flat */
+static const double uncertain_share = 0.25; /* see most_angle */
 
 void fold_name_facets(const struct fold_input *input, int64_t facet, int64_t other, struct fold *fold)
 {
@@ -123,16 +124,19 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     return fold;
 }
 
-/* Angle of a cell at the ring given by its first nodes; negative where the cell is inverted. */
-static double angle_around(const struct folds *folds, const int32_t *node)
+/* Angle of a cell, at positions y, at the ring given by its first nodes; negative where the cell is inverted.
+ */
+static double angle_around(int dim, const double *y, const int32_t *node)
 {
-    int dim = folds->input.dim;
     double a[3], b[3], axis[3], cosine, sine2;
-    const double *origin = fold_position(folds, node[0]);
-    vector_subtract(dim, fold_position(folds, node[dim - 1]), origin, a);
-    vector_subtract(dim, fold_position(folds, node[dim]), origin, b);
+    const double *corner[4] = {NULL, NULL, NULL, NULL};
+    for (int k = 0; k <= dim; k++) {
+        corner[k] = y + (int64_t)node[k] * dim;
+    }
+    vector_subtract(dim, corner[dim - 1], corner[0], a);
+    vector_subtract(dim, corner[dim], corner[0], b);
     if (dim == 3) { /* across the edge */
-        vector_subtract(dim, fold_position(folds, node[1]), origin, axis);
+        vector_subtract(dim, corner[1], corner[0], axis);
         double length2 = vector_dot(3, axis, axis), on_a = vector_dot(3, a, axis),
                on_b = vector_dot(3, b, axis);
         for (int i = 0; i < 3; i++) {
@@ -143,17 +147,26 @@ static double angle_around(const struct folds *folds, const int32_t *node)
     cosine = vector_dot(dim, a, b);
     sine2 = vector_dot(dim, a, a) * vector_dot(dim, b, b) - cosine * cosine;
     double angle = atan2(sqrt(fmax(0.0, sine2)), cosine);
-    return cell_size(folds, node) > 0.0 ? angle : -angle;
+    return simplex_determinant(dim, corner[0], corner[1], corner[2], corner[dim]) > 0.0 ? angle : -angle;
 }
 
-/* The sum of angles at a ring above which its facets have passed through each other. Where the body is in
- * contact with itself, a twentieth more is admitted, since contact acts on averages. */
-static double most_angle(const struct folds *folds, const struct fold_ring *ring)
+/* The sum of angles at ring r above which its facets have passed through each other: a full turn, and a share
+ * of what the angles there have changed, but at most a twentieth, within which the field at the nodes is
+ * uncertain. Where the body is in contact with itself, a twentieth, since contact acts on averages. */
+static double most_angle(const struct folds *folds, int64_t r)
 {
+    int dim = folds->input.dim;
+    const struct fold_ring *ring = &folds->rings[r];
     const bool *in_contact = folds->in_contact;
+    double changed = 0.0;
+    for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
+        const int32_t *node = folds->ring_cell + i * (dim + 1);
+        changed += fabs(angle_around(dim, folds->y, node) - angle_around(dim, folds->input.x, node));
+    }
     bool closed =
         in_contact != NULL && in_contact[ring->node[0]] && (ring->node[1] < 0 || in_contact[ring->node[1]]);
-    return full_turn * (1.0 + 1e-6) + (closed ? FOLD_BEYOND_FACET : 0.0);
+    return full_turn * (1.0 + 1e-6) +
+           (closed ? FOLD_BEYOND_FACET : fmin(FOLD_BEYOND_FACET, uncertain_share * changed));
 }
 
 static struct fold search_rings(const struct folds *folds, int64_t begin, int64_t end)
@@ -163,9 +176,9 @@ static struct fold search_rings(const struct folds *folds, int64_t begin, int64_
     for (int64_t r = begin; r < end; r++) {
         double sum = 0.0;
         for (int64_t i = folds->ring_ptr[r]; i < folds->ring_ptr[r + 1]; i++) {
-            sum += angle_around(folds, folds->ring_cell + i * corners);
+            sum += angle_around(folds->input.dim, folds->y, folds->ring_cell + i * corners);
         }
-        if (sum > most_angle(folds, &folds->rings[r]) && fold.count++ == 0) {
+        if (sum > full_turn && sum > most_angle(folds, r) && fold.count++ == 0) {
             fold_name_facets(&folds->input, folds->rings[r].facet, -1, &fold);
         }
     }
