@@ -1,6 +1,6 @@
-# make incision: cuts with known answers: a slit and a penny-shaped crack that open, a body cut through beside its parts, a cut that contact closes; and a cut that goes on through a liver in five advances
+# make incision: cuts with known answers: a slit and a penny-shaped crack that open, a body cut through beside its parts, a cut that contact closes; 75 random cuts, pairs that cross among them; and a cut that goes on through a liver in five advances
 #
-# incision.tsv has a row for each, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh).
+# incision.tsv has a row for each, blades/blades.tsv one for each random cut, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh).
 
 INCISION := $(OUT)/incision
 INCISION_SCRIPTS := pipelines/incision
@@ -57,7 +57,11 @@ $(INCISION)/parts.row: $(INCISION_SCRIPTS)/parts.sh $(INCISION_PROGRAMS)
 	@mkdir -p $(@D)/parts
 	bash $< $(@D)/parts > $@
 
-$(INCISION)/incision.tsv: $(INCISION_OPENINGS:%=$(INCISION)/%.row) $(INCISION)/parts.row pipelines/incision.mk
+$(INCISION)/blades.row: $(INCISION_SCRIPTS)/blades.sh $(INCISION_SCRIPTS)/blade.awk $(INCISION_PROGRAMS) $(BUILD)/bin/voxels
+	@mkdir -p $(@D)/blades
+	bash $< $(@D)/blades $(<D) examples/liver > $@
+
+$(INCISION)/incision.tsv: $(INCISION_OPENINGS:%=$(INCISION)/%.row) $(INCISION)/parts.row $(INCISION)/blades.row pipelines/incision.mk
 	(printf 'case\tnodes_a_radius\tnodes\tquantity\tvalue\treference\terror\torder\n'; cat $(filter %.row,$^) | awk -F '\t' -v OFS='\t' '{ \
 	    print $$0, $$2 != "-" && $$1 == before ? sprintf("%.2f", log(error / $$7) / log(2)) : "-"; before = $$1; error = $$7 }') > $@
 
