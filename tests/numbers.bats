@@ -83,7 +83,7 @@ thin() {
 
 @test "inversion, quasi-static: the point, its place, J; the state before it" {
     turn_over
-    stops "is inverted (J = -"
+    stops "inverts (J = "
     [[ $stderr == *'however slowly the load grows: it may have passed a limit load'* ]]
     [ "$(frames)" -ge 3 ]
     time=$(sed -n 's/^u\.frame\..*time=//p' list | tail -n 1)

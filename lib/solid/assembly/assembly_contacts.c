@@ -11,9 +11,9 @@
 /* Penalty modulus by the shear modulus: the P-wave modulus at Poisson's ratio .49. */
 static const double penalty_factor = 50.0;
 
-/* Factor of this modulus at quadrature points, whose multipliers take what is left: without friction, and
- * with it, where points that stick should move the less. */
-static const double points_share = 0.5, friction_share = 4.0;
+/* Factor of this modulus at quadrature points, whose multipliers take what is left; and between facets of the
+ * body without friction, where the pressures on both sides follow each other slowly if it is large. */
+static const double points_share = 4.0, between_share = 0.5;
 
 /* A curve jumps if it changes by more than half of its largest factor in this share of the scene's time. */
 static const double jump_time = 1e-3;
@@ -125,7 +125,7 @@ static enum status add_contact(const struct assembly *input, int32_t number, str
                                 "%s", condition->where));
     }
     if (condition->stiffness == 0.0) {
-        double share = condition->friction > 0.0 ? friction_share : points_share;
+        double share = between && condition->friction == 0.0 ? between_share : points_share;
         contact_set_stiffness(contact, (averages->count > 0 ? share : 1.0) *
                                            assembly_penalty_modulus(system, penalty_factor));
     }
