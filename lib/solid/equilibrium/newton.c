@@ -82,14 +82,16 @@ static enum statics_outcome iterate(struct newton *n, struct error *error)
     enum statics_outcome outcome;
     int64_t most = n->options->most_steps > 0 ? n->options->most_steps : usual_most_steps;
     while (n->report->steps < most) {
-        if (!step(n, error)) {
-            return n->failure != STATUS_OK ? STATICS_STOPPED
-                   : n->collapses          ? STATICS_INVERTED
-                                           : STATICS_STALLED;
+        bool stuck = !step(n, error);
+        if (n->failure != STATUS_OK || (stuck && n->collapses)) {
+            return n->failure != STATUS_OK ? STATICS_STOPPED : STATICS_INVERTED;
+        }
+        if (stuck) { /* the steps tried were evaluated last */
+            (void)newton_evaluate(n, n->u, &n->at_u);
         }
         newton_augment(n);
         newton_estimate(n);
-        if (newton_ends(n, &outcome) && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
+        if (newton_ends(n, stuck, &outcome) && (outcome != STATICS_CONVERGED || !goes_on(n, error))) {
             return outcome;
         }
         if (!newton_tell(n)) {

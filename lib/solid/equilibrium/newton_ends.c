@@ -101,13 +101,13 @@ static bool is_found(struct newton *n, bool vain)
     return report->error <= most && pressures && contacts;
 }
 
-bool newton_ends(struct newton *n, enum statics_outcome *outcome)
+bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome)
 {
     int64_t vain = note_progress(n);
     bool holds = n->slides || n->load == newton_load_to_hold(n);
-    bool found = n->corrections > 0 && holds && is_found(n, vain > most_vain);
+    bool found = n->corrections > 0 && holds && is_found(n, stuck || vain > most_vain);
     *outcome = found                                                 ? STATICS_CONVERGED
                : statics_is_away(n->system, n->report, n->body_size) ? STATICS_AWAY
                                                                      : STATICS_STALLED;
-    return found || statics_is_away(n->system, n->report, n->body_size) || vain > 4 * most_vain;
+    return found || stuck || statics_is_away(n->system, n->report, n->body_size) || vain > 4 * most_vain;
 }

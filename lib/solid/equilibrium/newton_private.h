@@ -133,8 +133,8 @@ void newton_augment(struct newton *n);
 /* Estimate the error of u, with the residual of the multipliers that were advanced. */
 void newton_estimate(struct newton *n);
 
-/* Whether the run at this load ends, and its outcome. */
-bool newton_ends(struct newton *n, enum statics_outcome *outcome);
+/* Whether the run at this load ends, and its outcome. stuck: no step from u is admitted. */
+bool newton_ends(struct newton *n, bool stuck, enum statics_outcome *outcome);
 
 /* ---- newton_stability.c ---- */
 
