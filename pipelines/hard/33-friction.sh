@@ -7,6 +7,13 @@ cloud -d 2 -k regular -n 11 --box 0,0.1,0,0.1 | shapefn -o "$work/block.mts" 2> 
 printf -- '-1 0\n1 0\n' > "$work/flat.tsv"
 printf '0 0\n0.5 1\n1 1\n' > "$work/press.tsv"
 printf '0 0\n0.5 0\n1 1\n' > "$work/drag.tsv"
+# The flat that the block is dragged on, and rests on.
+flat='[contact flat]
+facets = ymin
+rigid = flat.tsv
+unit = m
+side = left
+friction = 0.4'
 dim=2 youngs=30000 nu=0.3 scene "$work/drag.scene" <<END
 [displacement top]
 facets = ymax
@@ -16,12 +23,7 @@ curve = press.tsv
 facets = ymax
 components = 0.02, free
 curve = drag.tsv
-[contact flat]
-facets = ymin
-rigid = flat.tsv
-unit = m
-side = left
-friction = 0.4
+$flat
 [output]
 reactions = yes
 END
@@ -32,12 +34,7 @@ row 33 'friction: a block dragged on a flat, tangential force / normal force' \
 # holds SLOPE: 1 if the block, of mu = .4 and weight 1, is at rest on a slope of this tangent, by its weight's components.
 holds() {
     head="gravity = $1, -1" dim=2 youngs=30000 nu=0.3 scene "$work/slope.scene" <<END
-[contact flat]
-facets = ymin
-rigid = flat.tsv
-unit = m
-side = left
-friction = 0.4
+$flat
 END
     mtled -q "$work/slope.scene" "$work/block.mts" > /dev/null 2> "$work/said" && echo 1 || { grep -q slides "$work/said" && echo 0 || echo nan; }
 }

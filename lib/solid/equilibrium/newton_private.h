@@ -114,7 +114,7 @@ bool newton_begin_increment(struct newton *n, double from, double change);
  * where no increment is small enough. */
 bool newton_take_increment(struct newton *n, double from, double change);
 
-/* A Newton step at this load. False where even a short one inverts cells. */
+/* A Newton step at this load. False where not even a short one is admitted. */
 bool newton_correct(struct newton *n);
 
 /* Leave an equilibrium along the last search direction if the stiffness along it is negative, twice as far
