@@ -49,11 +49,12 @@ struct run_frames {
 
 struct run_folds {
     struct folds folds;
-    bool *held;                 /* whether the displacement is prescribed at each face of the boundary */
-    double *field;              /* scratch: node_count * dim */
-    int64_t *node_first;        /* the nodes at which each process evaluates it */
-    bool *stopped, *in_contact; /* scratch: node_count */
-    int32_t *flat;              /* scratch: cell_count */
+    bool *held;          /* whether the displacement is prescribed at each face of the boundary */
+    double *field;       /* scratch: node_count * dim */
+    int64_t *node_first; /* the nodes at which each process evaluates it */
+    bool *stopped;       /* scratch: node_count */
+    bool *in_contact;    /* node_count: see folds.h */
+    int32_t *flat;       /* scratch: cell_count */
     bool has_space;
     struct support_space space; /* for the field within cells, made when it is needed */
     bool reported;              /* in the message that ends the run */

@@ -6,12 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What lets the energy drift. Contact between facets begins or ends with a jump where they turn by the limit
- * of what faces each other, whatever the time step. */
+/* What lets the energy drift. Contact between facets of one body begins or ends with a jump where they turn
+ * by the limit of what faces each other, whatever the time step. */
 static const char drift_remedy[] =
-    "lower time_step_margin, or apply the load more slowly; where facets come into contact, or part, at "
-    "about "
-    "120 degrees to each other, as at a sharp corner, the contact energy jumps: round or refine the corner";
+    "lower time_step_margin, or apply the load more slowly; where facets of one body touch at about 120 "
+    "degrees to each other, the contact energy jumps: round or refine the corner";
 
 /* End the run with a verdict if it is not done, with the place of the failure and the remedy. */
 static void judge(struct run *run, const struct dynamics_report *report)

@@ -5,10 +5,18 @@
 #include "approx/cells/cells.h"
 #include "approx/field/field.h"
 #include "approx/field/field_turning.h"
-#include "solid/contact/contact_between.h"
+#include "solid/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
+
+/* Mark the nodes of facets that a contact keeps from going through each other. */
+static void mark_facets(int dim, const struct facet_set *set, bool *marked)
+{
+    for (int64_t i = 0; i < set->count * dim; i++) {
+        marked[set->facet[i]] = true;
+    }
+}
 
 static enum status build(const struct assembly *input, struct run_folds *folds, struct error *error)
 {
@@ -29,6 +37,12 @@ static enum status build(const struct assembly *input, struct run_folds *folds, 
     RETURN_IF_ERROR(NEW_ARRAY(&folds->flat, cells->count, error));
     RETURN_IF_ERROR(ranks_share(body.ranks, cells->node_count, NULL, &folds->node_first, error));
     RETURN_IF_ERROR(folds_build(&body, &folds->folds, error));
+    for (int32_t c = 0; c < input->contact_count; c++) {
+        if (input->contacts[c].opposite.count > 0) {
+            mark_facets(cells->dim, &input->contacts[c].facets, folds->in_contact);
+            mark_facets(cells->dim, &input->contacts[c].opposite, folds->in_contact);
+        }
+    }
     folds->folds.in_contact = folds->in_contact;
     return STATUS_OK;
 }
@@ -54,21 +68,18 @@ void run_folds_free(struct run *run)
 /* A surface counts as in contact if it is no further away than this share of a facet's size. */
 static const double near_share = 0.25;
 
-/* Mark nodes in contact with a rigid surface, and nodes in contact with another part of the body. */
-static void mark_stopped(const struct run *run, bool *stopped, bool *touched)
+/* Mark nodes in contact with a rigid surface. */
+static void mark_stopped(const struct run *run, bool *stopped)
 {
     const struct solid_system *system = &run->model->system;
     memset(stopped, 0, (size_t)system->node_count * sizeof *stopped);
-    memset(touched, 0, (size_t)system->node_count * sizeof *touched);
     for (int64_t c = 0; c < system->contact_count; c++) {
         const struct contact *contact = &system->contacts[c];
         const struct boundary_averages *nodes = contact_nodes(contact);
-        bool *marked = contact->between == NULL ? stopped : touched;
-        for (int64_t a = 0; a < nodes->count; a++) {
+        for (int64_t a = 0; contact->between == NULL && a < nodes->count; a++) {
             double area = nodes->area[a], length = contact->dim == 2 ? area : sqrt(area);
-            marked[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
+            stopped[nodes->node[a]] |= contact_node(contact, a).gap < near_share * length;
         }
-        contact_between_mark(contact, near_share, touched);
     }
 }
 
@@ -126,7 +137,7 @@ void run_folds_check(struct run *run, const double *u, double time, bool is_fram
 {
     struct run_folds *folds = &run->folds;
     evaluate_field(&run->model->assembly, u, folds);
-    mark_stopped(run, folds->stopped, folds->in_contact);
+    mark_stopped(run, folds->stopped);
     struct fold fold = find(run, u);
     if (is_frame && fold.kind == FOLD_NONE) {
         TOOL_TRY(run->tool, folds_find_overlaps(&folds->folds, folds->field, &fold, &error));

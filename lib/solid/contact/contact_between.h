@@ -82,10 +82,6 @@ bool contact_between_part(const struct contact *contact, int64_t a, int64_t i, i
 int64_t contact_between_corners(const struct contact *contact);
 struct average contact_between_corner(const struct contact *contact, int64_t corner);
 
-/* marked[node]: of a facet that was opposite a point at the last evaluation, nearer than this share of its
- * width. */
-void contact_between_mark(const struct contact *contact, double share, bool *marked);
-
 /* The averages to which the penalties of a contact may add stiffness, whatever touches, and that stiffness,
  * N/m (2D: N/m2): the points, then the corners of opposite facets. */
 int64_t contact_bond_count(const struct contact *contact);

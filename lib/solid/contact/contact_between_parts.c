@@ -1,5 +1,5 @@
-/* Contact between facets of the body, for preconditioner, time step and the search for folds: dependence of
- * gaps on the field, bounds of the stiffness, nodes that are near. */
+/* Contact between facets of the body, for preconditioner, and time step: dependence of gaps on the field,
+ * bounds of the stiffness. */
 #include "solid/contact/contact_between.h"
 
 #include "base/vector.h"
@@ -46,19 +46,6 @@ int64_t contact_between_corners(const struct contact *contact)
 struct average contact_between_corner(const struct contact *contact, int64_t corner)
 {
     return average_of_boundary(&contact->between->opposite.rows, corner);
-}
-
-void contact_between_mark(const struct contact *contact, double share, bool *marked)
-{
-    const struct contact_between *between = contact->between;
-    for (int64_t p = 0; p < contact->count && between != NULL; p++) {
-        const struct opposite *opposite = &between->opposite;
-        int64_t facet = between->view[p].facet;
-        for (int k = 0; k < contact->dim && facet >= 0 && contact->gap[p] < share * contact_width(contact, p);
-             k++) {
-            marked[opposite->rows.node[opposite->surface.facet[facet * contact->dim + k]]] = true;
-        }
-    }
 }
 
 int64_t contact_bond_count(const struct contact *contact)

@@ -224,20 +224,22 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
            point_behind * point_behind > least2;
 }
 
-/* Admit facets that face the point. For the others, bound the motion before they can: to change the cosine of
- * its angle by c, a facet must turn by more than c, which moves one of its corners by more than a third of
- * its width times c. */
+/* Admit facets that face the point. Those of another body do so from a right angle on: a face that goes round
+ * the corner of one body is in front of the other, and what turns to the limit does not press. For the
+ * others, bound the motion before they can: to change the cosine of its angle by c, a facet must turn by more
+ * than c, which moves one of its corners by more than a third of its width times c. */
 static bool considers(void *context, int64_t f)
 {
     struct search *search = context;
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
     double cosine = vector_dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
-    if (cosine < -SAME_DIRECTION) {
+    double limit = opposite->part[f] == search->seeker->part ? -SAME_DIRECTION : 0.0;
+    if (cosine < limit) {
         return !through_body(opposite, search->seeker, f);
     }
     double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double bound = width / 3.0 * (cosine + SAME_DIRECTION);
+    double bound = width / 3.0 * (cosine - limit);
     if (bound < search->free_way && !through_body(opposite, search->seeker, f)) {
         search->free_way = bound;
     }
