@@ -160,12 +160,17 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     cmp one.dat out.dat
 }
 
-@test "where nothing touches, a contact of the whole boundary changes nothing but steps: a convex body, and a thin bent one" {
+@test "where nothing touches, a contact of the whole boundary changes nothing but steps: a convex body, a thin bent one, one with furrows" {
     cloud -d 3 -k jittered -n 5 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 | shapefn > a.mts 2> note
     pressed_block | sed 's/dim = 2/dim = 3/; s/0, -0.005/0, -0.01, 0/; s/components = 0, 0$/components = 0, 0, 0/; s/^nu = .*/nu = 0.4999/' > a.scene
     cloud -d 2 -k regular -n 31,3 --box 0,0.1,0,0.004 | shapefn > b.mts 2> note
     { block quasi-static | sed 's/^nu = .*/nu = 0.4999/' && printf '[displacement left]\nfacets = xmin\ncomponents = 0, 0\n[displacement right]\nfacets = xmax\ncomponents = -0.01, 0.03\n'; } > b.scene
-    for name in a b; do
+    # Beside the root of a furrow facets face each other whose ridges are nearer to others.
+    "$BUILD/tests/helper/phantom" blobs 2 > blobs.nii.gz
+    voxels --largest -h 5mm blobs.nii.gz 2> note | tag -f held=low:long,12% -f pushed=high:long,12% 2> note | shapefn > c.mts 2> note
+    { block quasi-static | sed 's/dim = 2/dim = 3/; s/= body/= label_1, label_2, label_3/; s/0.45/0.49/'
+        printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.005\n'; } > c.scene
+    for name in a b c; do
         mtled $name.scene $name.mts > without.dat
         { cat $name.scene && printf '[contact all]\nfacets = *\nagainst = *\n'; } > with.scene
         mtled with.scene $name.mts > with.dat

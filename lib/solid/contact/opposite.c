@@ -28,7 +28,7 @@ enum status opposite_parts(const struct cells *cells, int32_t *part, struct erro
     return STATUS_OK;
 }
 
-/* The rims, and in 3D the facet beyond each edge. Ridges of more than two facets, where bodies meet, are no
+/* The rims, and the facet beyond each ridge. Ridges of more than two facets, where bodies meet, are no
  * rims. */
 static enum status join_facets(struct opposite *opposite, struct error *error)
 {
@@ -36,20 +36,20 @@ static enum status join_facets(struct opposite *opposite, struct error *error)
     int dim = surface->dim;
     int64_t count = surface->facet_count * dim, edges = dim == 3 ? count : 0;
     SCRATCH struct ridge *ridges = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&opposite->across, edges, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&opposite->across, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_normal, edges * 3, error));
     RETURN_IF_ERROR(NEW_ARRAY(&surface->edge_is_rim, edges, error));
-    for (int64_t slot = 0; slot < edges; slot++) {
+    for (int64_t slot = 0; slot < count; slot++) {
         opposite->across[slot] = slot;
     }
     RETURN_IF_ERROR(rigid_list_ridges(surface, &ridges, error));
     for (int64_t first = 0, end; first < count; first = end) {
         end = ridges_end(count, ridges, first);
-        int64_t one = rigid_edge_slot(&ridges[first]), other = rigid_edge_slot(&ridges[end - 1]);
+        int64_t one = rigid_ridge_slot(dim, &ridges[first]), other = rigid_ridge_slot(dim, &ridges[end - 1]);
         if (end - first == 1) {
             rigid_mark_rim(surface, &ridges[first]);
         }
-        if (dim == 3 && end - first <= 2) {
+        if (end - first <= 2) {
             opposite->across[one] = end - first == 1 ? -1 : other;
             opposite->across[other] = end - first == 1 ? -1 : one;
         }
@@ -291,6 +291,22 @@ static bool admits(void *context, int64_t f, const double *away)
             !was_behind(search->opposite, seeker, f));
 }
 
+/* Whether the closest place is on a ridge beyond which a facet does not face the point. */
+static bool ends_there(struct search *search, const struct rigid_contact *closest)
+{
+    const struct opposite *opposite = search->opposite;
+    int dim = opposite->surface.dim;
+    double free_way = search->free_way;
+    bool ends = false;
+    for (int k = 0; k < dim; k++) {
+        int64_t beyond = opposite->across[closest->facet * dim + k];
+        ends = ends || (closest->weight[(k + dim - 1) % dim] == 0.0 && beyond >= 0 &&
+                        !considers(search, beyond / dim));
+    }
+    search->free_way = free_way;
+    return ends;
+}
+
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
                                       double reach, double *free_way)
 {
@@ -298,6 +314,12 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
     struct rigid_filter filter = {considers, admits, &search};
     struct rigid_contact closest = rigid_closest_among(&opposite->surface, seeker->x, reach, &filter);
     closest.found = closest.found && closest.gap > -seeker->depth;
+    if (closest.found && closest.gap < 0.0 && closest.on_edge && ends_there(&search, &closest)) {
+        closest.gap = closest.distance;
+        for (int c = 0; c < opposite->surface.dim; c++) {
+            closest.normal[c] = -closest.normal[c];
+        }
+    }
     *free_way = search.free_way;
     return closest;
 }

@@ -7,7 +7,10 @@
  * (of facets of one body by more than 120 degrees), and the point is behind them by no more than it may be.
  * Facets that face it through the body are excluded by the reference state: facets of the same body that were
  * near there, each behind the other. A facet that shares a corner with the point's own facet is always near,
- * whether the point has penetrated it or not. It counts only if the point came from its front. */
+ * whether the point has penetrated it or not. It counts only if the point came from its front.
+ *
+ * Where the closest place of these is on a ridge and the facet beyond it does not face the point, that facet
+ * is nearer to the point. Then the ridge's pseudo-normal says nothing, and the point is not behind it. */
 #pragma once
 
 #include "approx/shape/boundary.h"
@@ -24,7 +27,7 @@ struct opposite {
     double *middle;                /* facets * dim: at rest, m */
     double *width;                 /* facets: at rest, m */
     int32_t *part;                 /* facets: the connected body of each; -1: not known */
-    int64_t *across;               /* 3D: facets * 3: half-edge facet * 3 + k beyond that edge; -1: a rim */
+    int64_t *across;               /* facets * dim: the slot (rigid_ridge_slot) beyond a ridge; -1: a rim */
     double *load;                  /* vertices * dim: scratch */
 };
 

@@ -19,10 +19,11 @@ MUST_CHECK enum status rigid_list_ridges(const struct rigid_surface *surface, st
 /* Mark the nodes (3D: and the edge) of a ridge of one facet as rim. */
 void rigid_mark_rim(struct rigid_surface *surface, const struct ridge *ridge);
 
-/* 3D: facet * 3 + k of the edge from corner k to k + 1 that lies on the ridge. */
-static inline int64_t rigid_edge_slot(const struct ridge *ridge)
+/* facet * dim + k of the ridge: in 3D the edge from corner k to k + 1, in 2D corner k. It is opposite to
+ * corner (k + dim - 1) % dim. */
+static inline int64_t rigid_ridge_slot(int dim, const struct ridge *ridge)
 {
-    return (int64_t)ridge->facet * 3 + (ridge->corner + 1) % 3;
+    return (int64_t)ridge->facet * dim + (ridge->corner + 1) % dim;
 }
 
 /* Set vertex_normal from the normals of the facets. */

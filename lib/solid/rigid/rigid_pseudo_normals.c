@@ -17,7 +17,7 @@ void rigid_mark_rim(struct rigid_surface *surface, const struct ridge *ridge)
         surface->is_rim[ridge->node[k]] = true;
     }
     if (surface->dim == 3) {
-        surface->edge_is_rim[rigid_edge_slot(ridge)] = true;
+        surface->edge_is_rim[rigid_ridge_slot(3, ridge)] = true;
     }
 }
 
@@ -63,7 +63,7 @@ static enum status join_ridges(struct rigid_surface *surface, struct error *erro
         }
         vector_normalise(dim, normal);
         for (int64_t i = first; i < end && dim == 3; i++) {
-            memcpy(surface->edge_normal + rigid_edge_slot(&ridges[i]) * 3, normal, sizeof normal);
+            memcpy(surface->edge_normal + rigid_ridge_slot(3, &ridges[i]) * 3, normal, sizeof normal);
         }
     }
     return STATUS_OK;
