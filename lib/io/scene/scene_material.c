@@ -191,9 +191,7 @@ static enum status set_fibres(const struct place *place, const struct law *law, 
     return good ? STATUS_OK : place_fail(place, "fibre_plane", "has no direction other than fibre");
 }
 
-/* Without motion and weight the density has no effect. */
-static const double no_matter = 1000.0; /* kg/m3, where it is not given */
-
+/* Without motion and weight the density has no effect, and need not be given. */
 static bool is_density_felt(const struct scene *scene)
 {
     return scene->analysis == SCENE_DYNAMIC || fabs(scene->gravity[0]) > 0.0 ||
@@ -210,7 +208,7 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
         RETURN_IF_ERROR(place_require(place, "rho", "give the density in kg/m3"));
     }
     if (!place_has(place, "rho")) {
-        section->material.density = no_matter;
+        section->material.density = 1.0;
     }
     const struct law *law = material_laws[section->material.model];
     if (place_has(place, "active") && scene->analysis == SCENE_DYNAMIC) {
