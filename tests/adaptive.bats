@@ -7,8 +7,6 @@ setup() {
     cloud -d 2 -k jittered -n 9 --box 0,0.1,0,0.1 --jitter 0.3 > square.mts
 }
 
-points() { mts print points.x | wc -l; }
-
 @test "wrong command lines are refused with status 2, before the input is read" {
     for arguments in "-a" "-a 0" "-a -1" "-a nan" "-a 0.1 -c" "-a 0.1 --lattice 3,3" "-a 0.1 --levels 11" "-a 0.1 --levels -1" \
         "--levels 3" "-k 2" "-R 8mm" "-b mls1" "--mu 1" "-g 3 -w regularised" "-a 0.1 -k 2 -R 8mm" "-a 0.1 -b mls3" "-a 0.1 -k 0"; do
@@ -17,24 +15,6 @@ points() { mts print points.x | wc -l; }
         [[ "$stderr" != *"standard input"* ]]
     done
     refused 2 "no rule of 5 points" ipoints -a 0.1 -g 5 square.mts
-}
-
-@test "the points fill the body, more of them the smaller the tolerance" {
-    before=0
-    for tolerance in 3 0.3 0.1; do
-        ipoints -a $tolerance -k 2.4 square.mts > points.mts
-        mts check points.mts
-        mts print points.weight points.mts | awk '{ s += $1 } END { exit !(s > 0.00999999999 && s < 0.01000000001) }'
-        mts list points.mts | grep 'points.x.*rule=adaptive'
-        count=$(points < points.mts)
-        [ "$count" -gt "$before" ]
-        before=$count
-    done
-    cells=$(mts print cells square.mts | wc -l)
-    [ "$(ipoints -a 3 square.mts | points)" -eq $((3 * cells)) ]
-    [ "$(ipoints -a 3 -g 1 square.mts | points)" -ge "$cells" ]
-    [ "$(ipoints -a 1e-9 --levels 0 -g 6 square.mts 2> note | points)" -eq $((6 * cells)) ]
-    grep "^ipoints: $cells cells change by more than the tolerance even at level 0$" note
 }
 
 @test "the shape functions are those recorded in the stream, or those asked for" {

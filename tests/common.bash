@@ -192,10 +192,3 @@ worked() {
         sleep 0.02
     done
 }
-
-# rod [NODES]: a rod between clamped ends, which buckles and then turns about the line between them: rod.scene, rod.mts.
-rod() {
-    cloud -d 3 -k jittered -n "${1:-61,4,4}" --jitter 0.1 --box 0,0.2,0,0.01,0,0.01 2> note | shapefn > rod.mts 2>> note
-    { block quasi-static | sed 's/dim = 2/dim = 3/; s/^nu = .*/nu = 0.49/'
-        printf '[displacement low]\nfacets = xmin\ncomponents = 0, 0, 0\n[displacement high]\nfacets = xmax\ncomponents = -0.015, 0, 0\n'; } > rod.scene
-}

@@ -158,31 +158,6 @@ x < 1e-9/x > 0.6 && x < 0.8 && (y > 0.399 || y < 1e-9 || z > 0.399 || z < 1e-9)/
 END
 }
 
-# The single facet of the case above, with cells of 12.5 mm that grow from its edges: 892 nodes, 1.737; mixed elements on these
-# tetrahedra, 6002 nodes, 1.700. With finer cells both fall to 1.62 or 1.63.
-@test "a single facet that cells resolve: within 3 % of mixed elements on the same tetrahedra" {
-    cat > facet.geo << 'END'
-SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.4, 0.4}; Point(101) = {0.5, 0.1, 0.4};
-Point(102) = {0.6, 0.1, 0.4}; Point(103) = {0.6, 0.2, 0.4}; Line(101) = {101, 102}; Line(102) = {102, 103};
-Line(103) = {103, 101}; Curve Loop(101) = {101, 102, 103}; Plane Surface(101) = {101};
-BooleanFragments{ Volume{1}; Delete; }{ Surface{101}; Delete; }
-facet() = Surface In BoundingBox{0.49, 0.09, 0.39, 0.61, 0.21, 0.41};
-edges() = Curve In BoundingBox{0.49, 0.09, 0.39, 0.61, 0.21, 0.41};
-end() = Surface In BoundingBox{-0.01, -0.01, -0.01, 0.01, 0.41, 0.41}; Physical Volume("body") = {1};
-Physical Surface("moved") = {facet()}; Physical Surface("held") = {end()}; Field[1] = Distance;
-Field[1].CurvesList = {edges()}; Field[1].NumPointsPerCurve = 400; Field[2] = MathEval;
-Field[2].F = Sprintf("Min(0.1, %g + 0.25 * F1)", size); Background Field = 2; Mesh.MeshSizeExtendFromBoundary = 0;
-Mesh.MeshSizeFromPoints = 0;
-END
-    { head3; printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement moved]\nfacets = moved\ncomponents = 0.01, 0, 0\n'; } > facet.scene
-    gmsh -v 1 -3 -setnumber size 0.0125 facet.geo -o facet.msh
-    nodes -u m facet.msh 2> note | shapefn > facet.mts 2> note
-    mtled -v facet.scene facet.mts > u.dat 2> said
-    awk '$1 == "steps" { exit !($2 < 1000) }' said
-    reaction 2 | awk '{ e = $1 / 1.7 - 1; print; exit !(e < 0.03 && e > -0.03) }'
-    ! grep -q 'less than three facets across' said
-}
-
 # A strip of 4 m by 2 m, its bottom held, pushed at 1 m of its top by 1 mm: strip N M, nodes along and across, on a jittered lattice
 strip() {
     cloud -d 2 -k jittered -n "$1,$2" --box -2,2,0,2 --jitter 0.2 --seed 3 | tag -f patch=box:-0.51,1.99,0.51,2.01 2> note | shapefn 2> note

@@ -126,22 +126,6 @@ field() {
     refused 2 "1 columns in 3D" fielderr fine.dat cube.mts
 }
 
-# A block between plates at three sizes; the error of the finest of them is known from a finer one.
-@test "the estimate of a clamped block is about its error" {
-    pressed_block > block.scene
-    printf '[output]\nreactions = yes\nenergy = yes\n' >> block.scene
-    for n in 9 17 49; do
-        cloud -d 2 -k jittered --jitter 0.2 -n $n --box 0,0.1,0,0.1 | shapefn 2> log | mtled -q block.scene -o $n.dat
-    done
-    run -0 --separate-stderr fieldcmp 17.dat 49.dat
-    error=$(value avg)
-    run -0 --separate-stderr fielderr 17.dat 9.dat
-    echo "error $error, estimate $(value avg)"
-    awk -v a="$(value avg)" -v b="$error" 'BEGIN { exit !(a > 0.5 * b && a < 2 * b) }'
-    value force.bottom
-    value energy
-}
-
 @test "sizefield: finer at the plates' corners, a view that gmsh takes, and its limits" {
     pressed_block > block.scene
     cloud -d 2 -k regular -n 21 --box 0,0.1,0,0.1 | shapefn 2> log | mtled -q block.scene -o u.dat
@@ -273,44 +257,6 @@ END
     [ "$(wc -l < out/rounds.tsv)" -eq 4 ]
     cmp out/u.dat out/u-2.dat
     run -1 cmp out/u.dat out/u-3.dat
-}
-
-# bats test_tags=thorough
-@test "make refine: of a label image, by voxels" {
-    "$BUILD/tests/helper/phantom" sphere > ball.nii.gz
-    # Parts of the boundary as labels, so that their rims are the same on every lattice.
-    /usr/bin/python3 - << 'END'
-import nibabel as nib, numpy as np
-image = nib.load("ball.nii.gz")
-value = np.asarray(image.dataobj).copy()
-x = (image.affine @ np.vstack([np.indices(value.shape).reshape(3, -1), np.ones((1, value.size))]))[:3].reshape(3, *value.shape)
-for label, z, radius in (2, -24, 14), (3, 24, 12):
-    value[(value > 0) & (x[0] ** 2 + x[1] ** 2 + (x[2] - z) ** 2 < radius ** 2)] = label
-nib.save(nib.Nifti1Image(value, None, image.header), "sphere.nii.gz")
-END
-    {
-        printf '[scene]\ndim = 3\nanalysis = quasi-static\n[material body]\nregion = label_1\nE = 3000\nnu = 0.49\nrho = 1000\n'
-        printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0\n[displacement pushed]\nfacets = pushed\ncomponents = 0, 0, -0.002\n'
-    } > press.scene
-    parts='-r label_1=all --replace -m label_2|outside=held -m label_3|outside=pushed'
-    run -2 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.1mm out
-    [[ $output == "refine: SPACING: '' is not a positive length, such as 6mm" ]]
-    export SPACING=8mm REFINE_GROUPS=$parts
-    run -0 bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.025mm out
-    mts check out/u.dat
-    mts check out/body.mts
-    mts check out/sizes.mts
-    [ "$(wc -l < out/rounds.tsv)" -ge 3 ]
-    awk -F '\t' 'NR > 1 { if (NR > 2 && !($2 > nodes)) exit 1; nodes = $2; mean = $3 } END { exit !(mean <= 0.025) }' out/rounds.tsv
-    [ "$(mts print nodes.x out/u.dat | wc -l)" -eq "$(tail -n 1 out/rounds.tsv | cut -f 2)" ]
-    # The estimate holds against an even, finer lattice, which is off itself: by its own estimate about as much.
-    # shellcheck disable=SC2086 # several arguments
-    voxels -h 3mm sphere.nii.gz | tag $parts | shapefn 2> log | mtled -q press.scene -o fine.dat
-    fieldcmp --skip-outside --tol-avg 0.05mm fine.dat out/u.dat
-    run -1 --separate-stderr env REFINE_GROUPS= bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
-    [[ $stderr == "refine: round 1: the scene: mtled: "*"kept: none" ]]
-    run -1 --separate-stderr env VOXELS=--wrong bash "$top/pipelines/refine/refine.sh" press.scene sphere.nii.gz 0.04mm none
-    [[ $stderr == "refine: round 1: voxels: voxels: "*"kept: none" ]]
 }
 
 @test "sizefield: the same sizes as a stream" {

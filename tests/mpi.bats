@@ -119,12 +119,6 @@ SCENE
     OMP_WAIT_POLICY=active same 2 run.scene # processes that wait do so at work
 }
 
-@test "the same of a rod with slow modes" {
-    rod
-    mv rod.mts table.mts
-    same 2 rod.scene
-}
-
 @test "the same of a brain section with contact, of a stream as text, and of tables that mtled makes itself" {
     cp "$BATS_TEST_DIRNAME"/../examples/brain2d/{brain2d.geo,brain2d.scene,load.tsv,skull.tsv} .
     gmsh -2 -v 1 brain2d.geo -setnumber lc 9 -o brain.msh

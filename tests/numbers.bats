@@ -46,41 +46,6 @@ turn_over() {
         sed '/^\[displacement bottom/,/^components/d; s/^facets = ymax/facets = xmin, xmax, ymin, ymax/' > run.scene
 }
 
-# A cube pressed by a fifth; nine nodes of its lattice are so near, by the spacing, to a face of a cell: thin THICKNESS
-# prints the cells that are merged, the ratio of the frequencies, which the steps go with, and the force.
-thin() {
-    cloud -t -d 3 -k regular -n 6 --box 0,0.1,0,0.1,0,0.1 | awk -v OFMT=%.15g -v CONVFMT=%.15g -v thickness="$1" '
-        /^# nodes.x/ { on = 1; print; next }
-        on && NF == 3 {
-            i = row % 6; j = int(row / 6) % 6; k = int(row / 36); row++
-            inside = i > 0 && i < 5 && j > 0 && j < 5 && k > 0 && k < 5
-            if (inside && (i + 2 * j + 3 * k) % 7 == 0) { $1 += 0.02 * (1 - thickness); $2 += 0.04 / 3; $3 += 0.02 / 3 }
-            print; next
-        }
-        { on = 0; print }' > thin.mts
-    mts check thin.mts | grep -q '^cells: .* more of quality below 0.01$'
-    shapefn thin.mts > table.mts 2> note
-    mtled -v run.scene table.mts > u.dat 2> report
-    awk -F '\t' '$1 == "frequency ratio" || $1 == "merged cells" { print $2 }' report
-    mts print reactions u.dat | awk 'NR == 1 { print $3 }'
-}
-
-# Without merging 370 steps and 9.49 N at 1e-4, 480 and 9.54 N at 1e-5: the forces on slivers go with 1 / thickness.
-@test "slivers are merged with a neighbour: neither steps nor forces depend on how thin they are" {
-    block quasi-static | sed 's/^dim = .*/dim = 3/; s/^nu = .*/nu = 0.49/' > run.scene
-    printf '[displacement %s]\nfacets = %s\ncomponents = 0, 0, %s\n' bottom zmin 0 top zmax -0.02 >> run.scene
-    printf '[output]\nreactions = yes\n' >> run.scene
-    mapfile -t first < <(thin 1e-2)
-    [ "${first[0]}" -eq 18 ]
-    for thickness in 1e-4 1e-8; do
-        mapfile -t now < <(thin "$thickness")
-        [ "${now[0]}" -eq 18 ]
-        awk -v one="${first[1]}" -v other="${now[1]}" 'BEGIN { d = (other - one) / one; exit !(d <= 0.02 && d >= -0.02) }'
-        # At 1e-2 the face of a cell is still off the node by a hundredth of the spacing, which moves the force by 1e-4.
-        awk -v one="${first[2]}" -v other="${now[2]}" 'BEGIN { d = (other - one) / one; exit !(d <= 2e-4 && d >= -2e-4) }'
-    done
-}
-
 @test "inversion, quasi-static: the point, its place, J; the state before it" {
     turn_over
     stops "inverts (J = "

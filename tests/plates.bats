@@ -126,25 +126,6 @@ crushed() {
     refused 2 "folds: 'maybe' is none of refused, allowed" mtled bad.scene fine.mts
 }
 
-# bats test_tags=thorough
-@test "flat cells across which the field bends are no fold; those that the field turns over are" {
-    # Random points, least quality 1e-7: beneath facets of a side that bulges their nodes get outside of the chords.
-    bash "$top/pipelines/foreign/mesh.sh" delaunay-19 slivers.msh
-    nodes -u mm slivers.msh 2> note | tag -f low=low:x,12% -f high=high:x,12% 2>> note | shapefn > slivers.mts 2>> note
-    { block quasi-static | sed 's/dim = 2/dim = 3/; s/0.45/0.49/'
-        printf '[displacement low]\nfacets = low\ncomponents = 0, 0, 0\n[displacement high]\nfacets = high\ncomponents = -0.012, 0, 0\n'; } > slivers.scene
-    region=$(mts list slivers.mts | sed -nE 's/^cells.region.*names=(.*)$/\1/p')
-    sed -i "s/^region = .*/region = $region/" slivers.scene
-    run --separate-stderr mtled -o u.dat slivers.scene slivers.mts
-    [ "$status" -eq 0 ]
-    [ -z "$stderr" ]
-    # A lattice of cells that are eight times as wide as high, crushed.
-    cloud -d 2 -k regular -n 6,40 --box 0,0.1,0,0.1 | shapefn > flat.mts 2> note
-    crushed | sed 's/-0.07/-0.05/' > flat.scene
-    refused 1 'flat.scene: ' mtled flat.scene flat.mts
-    [[ $stderr == *"the body folds from 0."*" of the load on: cell "*" is turned over"* ]]
-}
-
 @test "a block that goes through the plane that its side slides on is a verdict" {
     # Pressed by half a side in plane strain wrinkles; it has rolled round the rim of the support, which is in nobody's way.
     { block quasi-static | sed 's/0.45/0.49/'

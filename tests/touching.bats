@@ -249,31 +249,6 @@ END
     rows gaps <<< "$output" | awk '$1 > 0.0299 && $1 < 0.0301 && $2 > 0.0605 && $4 > 100 { print; side = 1 } END { exit !side }'
 }
 
-# bats test_tags=thorough
-@test "the lips of a ring meet corner on corner, and slip past each other" {
-    # How soon a corner leaves another one is chance: of nine runs one or none takes more than 3 000 steps, or
-    # ends as it does not come to rest.
-    for size in 3.5 4 4.5; do
-        gmsh_body 2 ring << END
-SetFactory("OpenCASCADE"); Disk(1) = {0, 0, 0, 50}; Disk(2) = {0, 0, 0, 35}; Rectangle(3) = {20, -4, 0, 40, 8};
-BooleanDifference(4) = { Surface{1}; Delete; }{ Surface{2, 3}; Delete; }; Physical Surface("body") = {4};
-Mesh.MeshSizeMin = $size; Mesh.MeshSizeMax = $size;
-END
-        nodes -u mm ring.msh 2> note | tag -u mm -f top=ball:0,50,12 -f bottom=ball:0,-50,12 | shapefn > ring.mts 2> note
-        for way in 0.008 0.012 0.016; do
-            { block quasi-static; printf '[displacement top]\nfacets = top\ncomponents = 0, -%s\n[displacement bottom]\nfacets = bottom\ncomponents = 0, %s\n' $way $way
-                printf '[contact self]\nfacets = *\nagainst = *\n[output]\nreactions = yes\nenergy = yes\n'; } > ring.scene
-            if ! mtled -v ring.scene ring.mts > u.dat 2> log; then
-                grep 'the estimated error stays at' log | sed 's/.*step \([0-9]*\).*/steps \1/' >> steps
-                continue
-            fi
-            awk '$1 == "steps"' log >> steps
-            rows reactions u.dat | awk '{ print; f[NR] = $2 } END { s = f[1] / f[2] + 1; exit !(f[1] < -0.5 && s * s < 1e-8) }'
-        done
-    done
-    awk '$2 > 3000 { slow++ } END { exit !(NR == 9 && slow < 2) }' steps
-}
-
 @test "a body that rests on another one is held by it where that is held; two that hold only each other are not" {
     stack
     stack_scene | sed '/displacement top/,/normal/d; s/^analysis.*/&\ngravity = 0, -9.81/' > rest.scene

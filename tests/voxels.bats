@@ -77,16 +77,6 @@ END
     [ -z "$(mts check folded.mts | grep -v 'connected bodies$')" ]
 }
 
-# bats test_tags=thorough
-@test "labels that touch and hang by an edge, thin ones, crevices narrower than the spacing: the compression runs, and no fold is seen" {
-    for case in 'four 1 8' 'boxes 1 6' 'blobs 1 7' 'layer 1 3' 'blobs 6 5' 'blobs 9 5' 'blobs 16 5' 'blobs 17 5'; do
-        read -r shape seed spacing <<< "$case"
-        phantom "$shape" "$seed" > image.nii.gz
-        voxels --largest -h "$spacing"mm image.nii.gz > body.mts 2> said
-        press body.mts
-    done
-}
-
 @test "neither the number of threads matters, nor whether a file or a pipe is read" {
     phantom blobs 5 1,1,2 > image.nii.gz
     for threads in 1 2 3; do
@@ -162,14 +152,6 @@ END
     grep -q "^voxels: 2 connected bodies, .*: --largest keeps that one; a smaller -h, or --fine, keeps thin connections$" said
     voxels -h 5mm --fine 1.25mm bar.nii.gz 2> said > body.mts
     run -1 grep "connect" said
-}
-
-@test "a layer one cell thick is noted to be thin for its cells, as by nodes" {
-    phantom layer > layer.nii.gz
-    voxels -h 2mm layer.nii.gz 2> said > layer.mts
-    grep -qE "^voxels: [789][0-9] % of the boundary is on parts that are thin for their cells: " said
-    voxels -h 2mm --surface label_1 layer.nii.gz 2> said > layer.tsv
-    [ ! -s said ]
 }
 
 # sizes LEAST GRADATION X Y Z: a stream of sizes over 100 mm about the origin, LEAST at a place, growing with the distance (mm)

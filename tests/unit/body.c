@@ -28,28 +28,11 @@ TEST(rigid_motion)
     for_all(check_rigid_motion);
 }
 
-/* In random directions, f . v = d/dt W(u + t v). */
 static void check_gradient(const struct sample *sample, const struct setup *setup, struct random *random)
 {
-    int64_t count = sample->cloud.node_count * sample->dim;
     FREED_BY(body_free) struct body body = make_body(sample, setup);
-    double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
-    double *u = deformed_field(sample, &body, force, random);
-    (void)body_force(&body, u, force);
-    for (int direction = 0; direction < 5; direction++) {
-        double *v = random_field(sample, 1.0, random), work = 0.0, value[4], h = 2e-7, sum = 0.0;
-        for (int k = 0; k < 4; k++) {
-            for (int64_t i = 0; i < count; i++) {
-                at[i] = u[i] + h * (k < 2 ? k - 2 : k - 1) * v[i];
-            }
-            value[k] = body_energy(&body, at);
-        }
-        for (int64_t i = 0; i < count; i++) {
-            work += force[i] * v[i];
-            sum += fabs(force[i] * v[i]);
-        }
-        NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
-    }
+    double *force = zeros(sample->cloud.node_count * sample->dim, sizeof *force);
+    check_work(sample, &body, deformed_field(sample, &body, force, random), 5, random);
 }
 
 TEST(force_is_gradient)

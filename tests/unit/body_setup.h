@@ -150,3 +150,26 @@ static inline double *deformed_field(const struct sample *sample, struct body *b
     }
     return u;
 }
+
+/* In random directions v, f . v = d/dt W(u + t v). */
+static inline void check_work(const struct sample *sample, struct body *body, const double *u, int directions,
+                              struct random *random)
+{
+    int64_t count = sample->cloud.node_count * sample->dim;
+    double *force = zeros(count, sizeof *force), *at = zeros(count, sizeof *at);
+    (void)body_force(body, u, force);
+    for (int direction = 0; direction < directions; direction++) {
+        double *v = random_field(sample, 1.0, random), work = 0.0, value[4], h = 2e-7, sum = 0.0;
+        for (int k = 0; k < 4; k++) {
+            for (int64_t i = 0; i < count; i++) {
+                at[i] = u[i] + h * (k < 2 ? k - 2 : k - 1) * v[i];
+            }
+            value[k] = body_energy(body, at);
+        }
+        for (int64_t i = 0; i < count; i++) {
+            work += force[i] * v[i];
+            sum += fabs(force[i] * v[i]);
+        }
+        NEAR_TO(work, (value[0] - 8.0 * value[1] + 8.0 * value[2] - value[3]) / (12.0 * h), 2e-7 * sum);
+    }
+}

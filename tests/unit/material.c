@@ -169,21 +169,6 @@ TEST(rotations)
     }
 }
 
-TEST(rest)
-{
-    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    struct material all[MATERIALS];
-    make_all(all);
-    for (int m = 0; m < MATERIALS; m++) {
-        double P[9];
-        stress(&all[m], identity, P);
-        NEAR_TO(energy(&all[m], identity), 0.0, 0.0);
-        ALL_NEAR(9, P, NULL, 0.0);
-        assert_true(material_is_elliptic(&all[m], 0.0, 2, identity) &&
-                    material_is_elliptic(&all[m], 0.0, 3, identity));
-    }
-}
-
 /* A fifth of the sum of the eigenvalues of the tangent for isochoric strains is 2 mu, where fibres begin to
  * be stretched. */
 TEST(mean_shear_modulus)
@@ -349,32 +334,6 @@ TEST(fibres)
     NEAR_TO(uniaxial("guccione", guccione, 1, .973817, 1.2, .855740), 1.90477, 2e-5);
 }
 
-TEST(confined_compression)
-{
-    struct material material = make("neo-hookean");
-    double P[9];
-    stress(&material, (double[]){0.8, 0, 0, 0, 1, 0, 0, 0, 1}, P);
-    NEAR_TO(P[0], -10350.4555, 5e-5);
-}
-
-/* Cauchy stresses; with the isochoric law the normal stresses sum to zero. */
-TEST(simple_shear)
-{
-    struct material material = make("neo-hookean");
-    const double F[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
-    double P[9], sigma[9], transposed[9];
-    stress(&material, F, P);
-    for (int i = 0; i < 9; i++) {
-        transposed[i] = F[i % 3 * 3 + i / 3];
-    }
-    multiply(P, transposed, sigma);
-    NEAR_TO(sigma[1], 503.35570, 5e-6);
-    NEAR_TO(sigma[3], sigma[1], 1e-10);
-    NEAR_TO(sigma[0], 167.78523, 5e-6);
-    NEAR_TO(sigma[4], -83.89262, 5e-6);
-    NEAR_TO(sigma[8], -83.89262, 5e-6);
-}
-
 /* Ogden's law with equal, nearly equal and widely different stretches, whatever their directions. */
 TEST(principal_stretches)
 {
@@ -403,38 +362,6 @@ TEST(principal_stretches)
         multiply(QD, R, expected);
         material_isochoric_stress(&material, F, P);
         ALL_NEAR(9, P, expected, 1e-9 * (largest + mu));
-    }
-}
-
-/* Plane strain: F33 = 1. Nothing acts out of the plane but P33, and the plane's stresses have their closed
- * form. */
-TEST(plane_strain)
-{
-    struct random random = {7};
-    struct material all[MATERIALS];
-    make_all(all);
-    for (int m = 0; m < MATERIALS; m++) {
-        double F[9], P[9];
-        random_gradient(&random, F);
-        F[2] = F[5] = F[6] = F[7] = 0.0;
-        F[8] = 1.0;
-        F[0] += F[0] * F[4] - F[1] * F[3] < 0.3 ? 1.0 : 0.0;
-        stress(&all[m], F, P);
-        static const int out_of_plane[4] = {2, 5, 6, 7};
-        for (int i = 0; i < 4; i++) {
-            NEAR_TO(P[out_of_plane[i]], 0.0, 1e-9);
-        }
-        if (all[m].model == 0) {
-            double J = F[0] * F[4] - F[1] * F[3], mu = all[m].shear_modulus, kappa = all[m].bulk_modulus;
-            double I1 = F[0] * F[0] + F[1] * F[1] + F[3] * F[3] + F[4] * F[4] + 1.0;
-            double C[4] = {F[4], -F[3], -F[1], F[0]};
-            for (int i = 0; i < 4; i++) {
-                double f = F[i / 2 * 3 + i % 2];
-                double expected =
-                    mu * pow(J, -2.0 / 3.0) * (f - I1 / 3.0 * C[i] / J) + kappa * (J - 1.0) * C[i];
-                NEAR_TO(P[i / 2 * 3 + i % 2], expected, 1e-9);
-            }
-        }
     }
 }
 

@@ -2,7 +2,6 @@
  * together has the bits of one process, whatever their number. */
 #include "body_setup.h"
 
-#include "base/envelope.h"
 #include "base/ranks.h"
 
 #include <pthread.h>
@@ -303,42 +302,6 @@ TEST(agreement)
     struct member members[3] = {{.sample = NULL}};
     run_team(3, members, agree_member);
     FAILS(ranks_agree(NULL, (fail)(&error, STATUS_VERDICT, "alone"), &error), STATUS_VERDICT, "");
-}
-
-enum { SOLVED = 90, BLOCKS = 3 }; /* rows; row i is of block i % BLOCKS */
-
-/* A chain in each of some blocks that do not couple. */
-static void make_chains(struct envelope *factor)
-{
-    int64_t ptr[SOLVED + 1] = {0}, column[3 * SOLVED], at = 0;
-    double value[3 * SOLVED];
-    for (int64_t i = 0; i < SOLVED; i++) {
-        for (int64_t k = i - BLOCKS; k <= i + BLOCKS; k += BLOCKS) {
-            if (k >= 0 && k < SOLVED) {
-                column[at] = k;
-                value[at++] = k == i ? 2.5 + 0.01 * (double)i : -1.0;
-            }
-        }
-        ptr[i + 1] = at;
-    }
-    GOOD(envelope_factorise(SOLVED, ptr, column, value, 1e-10, 0.0, factor, &error));
-}
-
-/* Blocks that do not couple are solved each by itself. */
-TEST(solving)
-{
-    double right[SOLVED], alone[SOLVED];
-    FREED_BY(envelope_free) struct envelope factor = {0};
-    make_chains(&factor);
-    for (int i = 0; i < SOLVED; i++) {
-        alone[i] = right[i] = 1.0 / (1.0 + i);
-    }
-    envelope_solve(&factor, alone);
-    /* The matrix times the solution. */
-    for (int i = BLOCKS; i < SOLVED - BLOCKS; i++) {
-        double sum = (2.5 + 0.01 * i) * alone[i] - alone[i - BLOCKS] - alone[i + BLOCKS];
-        AT_MOST(fabs(sum - right[i]), 1e-14);
-    }
 }
 
 RUN_TESTS(make_samples, free_samples)

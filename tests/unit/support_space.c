@@ -5,6 +5,7 @@
 #include "approx/field/field.h"
 #include "approx/field/field_turning.h"
 #include "approx/support/support_space.h"
+#include "base/vector.h"
 
 /* A lattice over the unit square or cube, its cells on the sides x < .5 and x > .5 of an interface. */
 struct halves {
@@ -112,12 +113,7 @@ TEST_IN_EACH_DIM(lists_stop_at_the_interface)
     for (int64_t p = 0; p < COUNT; p++) {
         int64_t at = lists.ptr[p];
         for (int32_t n = 0; n < halves.cells.node_count; n++) {
-            double distance2 = 0.0;
-            for (int a = 0; a < dim; a++) {
-                double d = x[p * dim + a] - halves.cells.x[(int64_t)n * dim + a];
-                distance2 += d * d;
-            }
-            bool near = distance2 < halves.radius[n] * halves.radius[n];
+            bool near = vector_distance(dim, x + p * dim, halves.cells.x + n * dim) < halves.radius[n];
             double node = halves.cells.x[(int64_t)n * dim];
             bool same = x[p * dim] <= 0.5 ? node <= 0.5 : node >= 0.5;
             bool listed = at < lists.ptr[p + 1] && lists.idx[at] == n;

@@ -186,18 +186,6 @@ static bool of_l(const int *cube)
     return cube[0] < 4 || cube[1] < 4;
 }
 
-TEST_IN_EACH_DIM(located)
-{
-    FREED_BY(support_free) struct support_lists other = {0};
-    build(dim, (int[3]){8, 8, 4}, of_l, one_sheet);
-    find(2.0, true);
-    GOOD(support_build(&found.options, &found.grid, &found.visibility, NULL, found.count, found.x, "points",
-                       &other, &error));
-    assert_true(found.lists.around_count > 0);
-    assert_true(same_lists(&other, &found.lists, dim));
-    lose();
-}
-
 /* Two bodies: with a gap between, or face on face; those of the first have x <= 4. */
 static int64_t second_from;
 static bool but_gap(const int *cube)
