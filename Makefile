@@ -63,7 +63,7 @@ UNIT_TESTS := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(wildcard tests/unit/*
 FUZZ_TARGETS := $(patsubst tests/fuzz/%.c,$(BUILD)/fuzz/%,$(filter-out %/replay.c,$(wildcard tests/fuzz/*.c)))
 MAN_PAGES := $(TOOLS:%=$(BUILD)/man/man1/%.1) $(patsubst tools/%,$(BUILD)/man/man5/%,$(wildcard tools/*.5))
 # Programs that the command-line tests use.
-TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/filled $(BUILD)/tests/helper/deny.so
+TEST_HELPERS := $(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/deny.so
 
 .PHONY: all lib man deps check check-all tested clean always
 all: $(PROGRAMS) $(MAN_PAGES)
@@ -108,7 +108,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS) -lcmocka
 
-$(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom $(BUILD)/tests/helper/filled: $(BUILD)/tests/helper/%: $(BUILD)/tests/helper/%.o $(LIBRARY)
+$(BUILD)/tests/helper/damage $(BUILD)/tests/helper/phantom: $(BUILD)/tests/helper/%: $(BUILD)/tests/helper/%.o $(LIBRARY)
 	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/tests/helper/%.so: tests/helper/%.c

@@ -9,7 +9,7 @@ VOXELS_OUT := $(OUT)/voxels
 VOXELS_SHAPES ?= sphere torus two four thin layer boxes atlas aniso flipped colin27 $(VOXELS_SEEDS:%=blobs-%)
 VOXELS_SEEDS ?= 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20
 VOXELS_PHANTOM := $(BUILD)/tests/helper/phantom
-VOXELS_FILLED := $(BUILD)/tests/helper/filled
+VOXELS_FILLED := $(BUILD)/pipelines/voxels/filled
 VOXELS_TOOLS := $(addprefix $(BUILD)/bin/,voxels tag shapefn mtled mts)
 
 # What voxels is told, where it is not a spacing of 5 mm.
@@ -26,6 +26,9 @@ voxels: $(VOXELS_OUT)/voxels.tsv $(VOXELS_OUT)/meshes.tsv
 	    END { printf "\nof %d: valid, angles within 8 to 165 degrees: %d; volumes within 1 %%: %d; compressed: %d, of which fold: %d\n", n, good, near, ran, folds }' $<
 	@echo
 	@awk -F '\t' '{ printf "%-6s %-6s %14s %13s %8s %8s %14s %6s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $(VOXELS_OUT)/meshes.tsv
+
+$(VOXELS_FILLED): $(VOXELS_FILLED).o $(LIBRARY)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 $(VOXELS_OUT)/%: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 
@@ -59,7 +62,7 @@ $(VOXELS_BODIES:%=$(VOXELS_OUT)/meshes-%.tsv): $(VOXELS_OUT)/meshes-%.tsv: pipel
         pipelines/voxels/ball.scene pipelines/voxels/surface.awk pipelines/reference.awk $(VOXELS_BRAIN3D) $(VOXELS_PHANTOM) $(VOXELS_FILLED) \
         $(addprefix $(BUILD)/bin/,nodes voxels tag mtled fieldcmp mts)
 	@mkdir -p $(@D)
-	bash $< $* $(BUILD)/tests/helper > $@
+	bash $< $* $(VOXELS_PHANTOM) $(VOXELS_FILLED) > $@
 
 $(VOXELS_OUT)/meshes.tsv: pipelines/voxels/meshes.awk $(VOXELS_BODIES:%=$(VOXELS_OUT)/meshes-%.tsv)
 	awk -f $^ > $@

@@ -156,8 +156,10 @@ one_line() {
     { swinging_block | sed 's/^dim = 2/dim = 3/; s/^gravity.*/gravity = 0, 0, -9.81/; s/ymin/zmin/; s/components = 0, 0/&, 0/; s/^rho/prony = .4 .01, .4 1\n&/'
         printf '[support side]\nfacets = xmax\ntangential = 500\ndamping = 50\n[output]\nframes = 3\nenergy = yes\nstrain = yes\nstress = yes\n'; } > run.scene
     same '3' run.scene
-    cube 5 | ipoints -g 4 | shapefn > table.mts 2> note
-    OMP_NUM_THREADS=2 same '2' run.scene
+    # So many Gauss points that the bound of the stiffness is summed in parts, which go from process to process.
+    cloud -d 2 -k jittered -n 45 --box 0,0.1,0,0.1 --jitter 0.2 | ipoints -g 3 | shapefn > table.mts 2> note
+    { pressed_block | sed 's/-0.005/-0.0001/'; printf '[solver]\ntolerance = 0.1\n'; } > run.scene
+    OMP_NUM_THREADS=2 same 2 run.scene
 }
 
 @test "one message and the status of one process; nothing half-written" {

@@ -104,26 +104,6 @@ assert a == b and a[0].strip() == "\u00e9\U0001f600, \"a\\" and len(a[0]) == 69,
     refused 2 "landmarks are moved points: give --deformed" interp -p before.mrk.json -o moved.fcsv u.dat
 }
 
-@test "a linear field: points inside say what the sides say already, and bear nothing" {
-    for dim in 2 3; do
-        cloud_of $dim
-        formula=('.05 * x + .08 * y' '-.06 * x - .04 * y' '.03 * x - .02 * z')
-        text="${formula[0]}, ${formula[1]}"
-        sides='xmin, xmax, ymin, ymax'
-        [ $dim = 2 ] || { text="$text, ${formula[2]}"; sides="$sides, zmin, zmax"; }
-        random 40 $dim "$text" 7 > sides.tsv
-        random 40 $dim "$text" | awk '{ ok = 1; for (i = 1; i <= '$dim'; i++) ok = ok && $i > .02 && $i < .08 } ok' > exact.tsv
-        sed 's/$/ 0.0005/' exact.tsv > springs.tsv
-        for kind in exact springs; do
-            { head_of $dim; printf '[displacement sides]\nfacets = %s\ntable = sides.tsv\nunit = m\n' "$sides"
-                printf '[displacement measured]\npoints = %s.tsv\nunit = m\n' $kind; } > run.scene
-            mtled run.scene block.mts > u.dat
-            below "$(off "${formula[@]}")" 1e-8
-            rows reactions u.dat | awk 'NR == 2 { for (i = 1; i <= NF; i++) if (!($i^2 < 1e-8)) exit 1 } END { exit NR != 2 }'
-        done
-    done
-}
-
 @test "components that are not known: - and nan; each row says what it says" {
     cloud_of 3
     printf '10 20 30 1 - nan\n80 10 20 1 2 -\n20 90 50 - 2 3\n70 60 90 - - 3\n10 80 10 1 - 3\n' > some.tsv

@@ -1,6 +1,6 @@
 #!/bin/bash
-# One body meshed by gmsh and from a label image with about as many nodes, of several sizes: bash meshes.sh BODY HELPERS > BODY.tsv, with
-# the folder of tests/helper's programs. `off_mm` is the mean distance of a solution from a reference, `apart_mm` its mean distance from
+# One body meshed by gmsh and from a label image with about as many nodes, of several sizes: bash meshes.sh BODY PHANTOM FILLED > BODY.tsv, with
+# the programs that make images. `off_mm` is the mean distance of a solution from a reference, `apart_mm` its mean distance from
 # the solutions on the meshes of gmsh, other than itself.
 #
 # ball: held at one opening and pressed in at the other; the reference is that of a fine mesh of gmsh.
@@ -12,7 +12,7 @@ set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 body=$1
-helpers=$(realpath "$2")
+phantom=$(realpath "$2") filled=$(realpath "$3")
 brain3d=$here/../../examples/brain3d
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -28,7 +28,7 @@ prepare_ball() {
     spacings=(6.2 6.35 6.5 6.65 6.8 6.95 7.1 7.25 7.4)
     cp "$here/ball.geo" body.geo
     cp "$here/ball.scene" body.scene
-    "$helpers/phantom" sphere 1 0.75 > body.nii.gz
+    "$phantom" sphere 1 0.75 > body.nii.gz
     printf '1 ball\n' > names
     groups=(-f 'top=ball:0,0,28,14' -f 'bottom=ball:0,0,-28,16')
     of_gmsh fine 1.8
@@ -48,7 +48,7 @@ prepare_brain() {
     triangles ventricles 201 218
     triangles tumour 301 306
     triangles craniotomy 100 100
-    "$helpers/filled" 1 1 brain.tsv 3 ventricles.tsv 2 tumour.tsv > body.nii.gz
+    "$filled" 1 1 brain.tsv 3 ventricles.tsv 2 tumour.tsv > body.nii.gz
     printf '1 brain\n2 tumour\n3 ventricles -\n' > names
     # gmsh's meshes are finer there, too.
     of_image=(--fine "9.5mm:ventricles,tumour")

@@ -8,7 +8,7 @@ nifti.py same A B TOLERANCE    fails unless the values agree to TOLERANCE and ty
 nifti.py moved SCAN RESULT     rms error of the moved test image, and that of the interpolation alone, inside the cube
 nifti.py fields TO BACK        largest distance from x of the place that TO and then BACK lead to, in voxels, inside the cube
 nifti.py volumes FILE          label and ml
-nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, as NIfTI-2, big-endian, of 4 dimensions, with a NaN, a middle slice
+nifti.py change IN OUT WHAT    OUT: IN as int16 scaled, as RGB, with a NaN, a middle slice, elsewhere
 nifti.py segments IN OUT LAYERS NAME...   labels as 3D Slicer writes a segmentation; in 2 layers the first segment overlaps the second
 nifti.py value FILE I J K ...   the values of voxels, a line each
 """
@@ -179,13 +179,6 @@ def change(source, path, what):
         for name, factor in zip("RGB", (1, 0.5, 0.25)):
             colours[name] = np.clip(values * factor, 0, 255)
         image = nib.Nifti1Image(colours, a.affine)
-    elif what == "second":
-        image = nib.Nifti2Image(values.astype(np.float64), a.affine)
-        image.set_data_dtype(np.float64)
-    elif what == "big":
-        image = nib.Nifti1Image(values.astype(">f4"), a.affine, nib.Nifti1Header(endianness=">"))
-    elif what == "volumes":
-        image = nib.Nifti1Image(np.stack([values, values], axis=-1).astype(np.float32), a.affine)
     elif what == "nan":
         values[38, 38, 38] = np.nan
         image = nib.Nifti1Image(values.astype(np.float32), a.affine)
@@ -195,17 +188,13 @@ def change(source, path, what):
         image = nib.Nifti1Image(values[38:39].astype(np.float32), a.affine)
     elif what == "coronal":
         image = nib.Nifti1Image(values[:, 38, :, None].astype(np.float32), a.affine[:, [0, 2, 1, 3]])
-    elif what == "um":
-        image = nib.Nifti1Image(values.astype(np.float32), np.diag([1e3, 1e3, 1e3, 1]) @ a.affine)
-        image.header.set_xyzt_units("micron")
     elif what == "far":
         shift = np.eye(4)
         shift[:3, 3] = 500
         image = nib.Nifti1Image(values.astype(np.float32), shift @ a.affine)
     else:
         sys.exit(f"no change '{what}'")
-    if what != "um":
-        image.header.set_xyzt_units("mm")
+    image.header.set_xyzt_units("mm")
     if what == "scaled":  # nibabel scales when it writes: the stored numbers are put in as they are
         image.header["scl_slope"], image.header["scl_inter"] = 0.25, 3
         with open(path, "wb") as file:

@@ -168,8 +168,6 @@ TEST_IN_EACH_DIM(convergence)
         struct adaptive_points points = integrate(&body, tolerance, deepest);
         double *K = stiffness(&body, points.count, points.x, points.weight);
         double error = apart(n, K, reference);
-        print_message("# %dD tolerance %g: %d points of %d, error %.2e\n", dim, tolerance, (int)points.count,
-                      (int)finest.count, error);
         AT_MOST(error, tolerance);
         assert_true(error <= error_before);
         assert_true(points.count >= before && points.count < finest.count / 2);
@@ -204,8 +202,6 @@ TEST(depth_where_needed)
             far_count++;
         }
     }
-    print_message("# mean level near %.2f, far %.2f, points %d, %d\n", near / (double)near_count,
-                  far / (double)far_count, (int)before.count, (int)after.count);
     assert_true(after.count > before.count);
     assert_true(near / (double)near_count > 2.0 * far / (double)far_count);
 }

@@ -15,7 +15,6 @@ struct setup {
     bool faces;      /* smoothed cells: by averages over faces, not by the table of gradients */
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
-    const struct ranks *ranks; /* NULL: one process */
     const bool *at_edge;       /* of each node; NULL: none */
     const int32_t *group;      /* of each material; NULL: each by itself */
 };
@@ -54,7 +53,6 @@ static inline struct body make_body(const struct sample *sample, const struct se
     struct body_input input = sample_input(sample, setup->material, setup->model_count, material);
     input.smoothed = setup->faces ? &smoothed : NULL;
     input.vertex = setup->averaged ? sample->vertex : NULL;
-    input.ranks = setup->ranks;
     input.at_edge = setup->at_edge;
     input.group = setup->group;
     GOOD(body_build(&input, &body, &error));

@@ -77,26 +77,21 @@ TEST_IN_EACH_DIM(averages_split_at_corners)
         struct sample sample = make_wide_sample(dim, smoothed == 1, dim == 2 ? 6 : 5, 2.6);
         FREED_BY(boundary_averages_free)
         struct boundary_averages averages = averages_of(&sample, all_facets(&sample));
-        int64_t expected = 0;
+        int64_t expected = 0, longest = 0;
         double area = 0.0, outward[3] = {0.0};
         check_averages(&sample, &averages);
         for (int32_t n = 0; n < sample.cloud.node_count; n++) {
-            int64_t parts = 0;
-            for (int64_t a = 0; a < averages.count; a++) {
-                parts += averages.node[a] == n;
+            int sides = sides_at(&sample, n); /* averages are in the order of their nodes */
+            for (int64_t a = expected; a < expected + sides; a++) {
+                assert_int_equal(averages.node[a], n);
             }
-            assert_int_equal(parts, sides_at(&sample, n));
-            expected += sides_at(&sample, n);
+            expected += sides;
         }
         assert_int_equal(averages.count, expected);
-        int64_t longest = 0;
-        for (int64_t a = 0; a < averages.count; a++) {
-            longest = averages.ptr[a + 1] - averages.ptr[a] > longest ? averages.ptr[a + 1] - averages.ptr[a]
-                                                                      : longest;
-        }
-        assert_true(dim == 2 || longest > 64); /* so that its row has grown */
         for (int64_t a = 0; a < averages.count; a++) {
             int aligned = 0;
+            longest = averages.ptr[a + 1] - averages.ptr[a] > longest ? averages.ptr[a + 1] - averages.ptr[a]
+                                                                      : longest;
             area += averages.area[a];
             for (int c = 0; c < dim; c++) {
                 double n = averages.normal[a * dim + c], x = averages.position[a * dim + c];
@@ -108,6 +103,7 @@ TEST_IN_EACH_DIM(averages_split_at_corners)
             }
             assert_int_equal(aligned, 1); /* no part mixes two sides */
         }
+        assert_true(dim == 2 || longest > 64); /* so that its row has grown */
         NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
         ALL_NEAR(dim, outward, NULL, 1e-14);
     }
@@ -303,96 +299,36 @@ TEST_IN_EACH_DIM(whole_sides)
     }
 }
 
-/* Node values: one entry for each node, never split, with the table's row of the node. */
-TEST_IN_EACH_DIM(node_values)
+/* held[faces]: the boundary on the side x = 0 below y = limit; all of it for an infinite limit. */
+static void hold(const struct sample *sample, double limit, bool *held)
 {
-    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
-    const struct neighbours lists = sample.assembly.node_lists;
-    const double *phi = sample.assembly.node_phi;
-    FREED_BY(boundary_averages_free) struct boundary_averages averages = {0};
-    int64_t count = sample.cloud.node_count, expected = 0;
-    double area = 0.0;
-    struct face_table table = sample_face_table(&sample);
-    struct facet_set set = all_facets(&sample);
-    GOOD(boundary_nodes_build(&table, &set, &lists, phi, &averages, &error));
-    check_averages(&sample, &averages);
-    for (int32_t n = 0; n < count; n++) {
-        expected += sides_at(&sample, n) > 0;
-    }
-    assert_int_equal(averages.count, expected);
-    for (int64_t a = 0; a < averages.count; a++) {
-        int32_t node = averages.node[a];
-        area += averages.area[a];
-        assert_int_equal(averages.ptr[a + 1] - averages.ptr[a], lists.ptr[node + 1] - lists.ptr[node]);
-        for (int64_t i = 0; i < lists.ptr[node + 1] - lists.ptr[node]; i++) {
-            assert_int_equal(averages.idx[averages.ptr[a] + i], lists.idx[lists.ptr[node] + i]);
-            NEAR_TO(averages.phi[averages.ptr[a] + i], phi[lists.ptr[node] + i], 0.0);
+    int dim = sample->dim;
+    for (int64_t f = 0; f < sample->assembly.faces.count; f++) {
+        held[f] = sample->assembly.faces.cell[2 * f + 1] < 0;
+        for (int k = 0; k < dim && isfinite(limit); k++) {
+            const double *x = sample->cloud.x + (int64_t)sample->assembly.faces.node[f * dim + k] * dim;
+            held[f] = held[f] && fabs(x[0]) < 1e-12 && x[1] < limit;
         }
-        ALL_NEAR(dim, averages.position + a * dim, sample.cloud.x + (int64_t)node * dim, 0.0);
     }
-    NEAR_TO(area, 2.0 * dim * pow(sample_size, dim - 1), 1e-14);
-}
-
-/* Whether a face lies on the side x = 0 of the box, there all of it below y = limit. */
-static bool on_side_below(const struct sample *sample, int64_t face, double limit)
-{
-    bool is_there = sample->assembly.faces.cell[2 * face + 1] < 0;
-    for (int k = 0; k < sample->dim; k++) {
-        const double *x =
-            sample->cloud.x + (int64_t)sample->assembly.faces.node[face * sample->dim + k] * sample->dim;
-        is_there = is_there && fabs(x[0]) < 1e-12 && x[1] < limit;
-    }
-    return is_there;
 }
 
 /* A side that is held in part ends where the held faces do; at the edges of the box, where the boundary
- * turns, and within a boundary that is held altogether nothing ends. */
+ * turns, and within a boundary that is held altogether nothing ends. The edges of the side are sharp ends,
+ * unless what is beyond them is held as well. */
 TEST_IN_EACH_DIM(ends)
 {
+    static const double whole[3] = {0.0, 1.0, INFINITY};
     FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 5);
     struct face_table table = sample_face_table(&sample);
     bool *held = zeros(sample.assembly.faces.count, sizeof *held);
     bool *touched = zeros(sample.assembly.faces.count, sizeof *touched);
     bool *end = zeros(sample.cloud.node_count, sizeof *end);
-    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
-    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-        held[f] = on_side_below(&sample, f, 2.0 * sample_size);
+    for (int i = 0; i < 3; i++) {
+        hold(&sample, whole[i], held);
+        GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
     }
-    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
-    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-        held[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
-    }
-    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
-    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-        assert_false(end[n]);
-    }
-    double highest = 0.0;
-    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-        held[f] = on_side_below(&sample, f, 0.6 * sample_size);
-        for (int k = 0; k < dim && held[f]; k++) {
-            highest =
-                fmax(highest, sample.cloud.x[(int64_t)sample.assembly.faces.node[f * dim + k] * dim + 1]);
-        }
-    }
-    assert_true(highest > 0.2 * sample_size);
-    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
-    int64_t count = 0;
-    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-        const double *x = sample.cloud.x + n * dim;
-        count += end[n];
-        if (end[n]) {
-            assert_true(fabs(x[0]) < 1e-12 && x[1] > 0.3 * sample_size && x[1] < 0.6 * sample_size);
-        }
-    }
-    assert_int_equal(count, dim == 2 ? 1 : 5);
-    /* The whole side, whose edges are sharp ends. */
-    memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
-    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-        held[f] = on_side_below(&sample, f, 2.0 * sample_size);
-    }
-    for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-        touched[f] = sample.assembly.faces.cell[2 * f + 1] < 0;
-    }
+    hold(&sample, whole[1], held);
+    hold(&sample, whole[2], touched);
     GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SHARP, held, touched, end, &error));
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         assert_false(end[n]);
@@ -400,12 +336,18 @@ TEST_IN_EACH_DIM(ends)
     GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SHARP, held, held, end, &error));
     for (int64_t n = 0; n < sample.cloud.node_count; n++) {
         const double *x = sample.cloud.x + n * dim;
-        bool is_edge = false;
-        for (int k = 1; k < dim; k++) {
-            is_edge = is_edge || x[k] < 1e-12 || x[k] > sample_size - 1e-12;
-        }
-        assert_int_equal(end[n], fabs(x[0]) < 1e-12 && is_edge);
+        assert_int_equal(end[n], fabs(x[0]) < 1e-12 && sides_at(&sample, (int32_t)n) > 1);
     }
+    memset(end, 0, (size_t)sample.cloud.node_count * sizeof *end);
+    hold(&sample, 0.6 * sample_size, held);
+    GOOD(boundary_find_junctions(&table, BOUNDARY_JUNCTION_SMOOTH, held, held, end, &error));
+    int64_t count = 0;
+    for (int64_t n = 0; n < sample.cloud.node_count; n++) {
+        const double *x = sample.cloud.x + n * dim;
+        count += end[n];
+        assert_true(!end[n] || (fabs(x[0]) < 1e-12 && x[1] > 0.3 * sample_size && x[1] < 0.6 * sample_size));
+    }
+    assert_int_equal(count, dim == 2 ? 1 : 5);
 }
 
 /* A box without its corner beyond the middle of the first two axes: of all its edges (2D: corners) only that

@@ -38,11 +38,6 @@ TEST_IN_EACH_DIM(reproduction)
                 FREED_BY(table_free) struct table table = {0};
                 GOOD(tabulate(&options, cloud.count, cloud.x, 100, cloud.points, &table, &error));
                 struct defects worst = table_defects(&table, dim, cloud.x, cloud.points, 2.0 * cloud.spacing);
-                if (getenv("SHOW")) {
-                    print_message("%dD %s %s %s: %.1e %.1e %.1e %.1e widened %d\n", dim, places[p].name,
-                                  basis_names[b], weight_names[w], worst.unity, worst.position,
-                                  worst.gradient_sum, worst.gradient_position, (int)table.lists.widened);
-                }
                 AT_MOST(worst.unity, 1e-12);
                 AT_MOST(worst.position, 1e-12);
                 AT_MOST(worst.gradient_sum, 1e-12);
@@ -305,7 +300,6 @@ TEST(normal_equations)
             }
         }
     }
-    print_message("# %d points decided by the normal equations, %d left\n", (int)decided, (int)left);
     assert_true(decided > 3 * left && left > 0);
 }
 
@@ -358,8 +352,6 @@ TEST(paper_table)
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         for (int c = 0; c < 3; c++) {
             double rmse = paper_error(rows[r].basis, rows[r].mu, radii[c]);
-            print_message("# %s mu %g R %g: %.5f, paper %.4f\n", basis_names[rows[r].basis], rows[r].mu,
-                          radii[c], rmse, rows[r].rmse[c]);
             if (isinf(rows[r].rmse[c])) {
                 assert_true(isinf(rmse));
             } else {

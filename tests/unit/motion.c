@@ -137,8 +137,6 @@ TEST(orders)
             drop_body(&body);
         }
         double order = log2(errors[0] / errors[1]);
-        print_message("%s: %.2e %.2e order %.2f\n", linear ? "linear" : "quadratic", errors[0], errors[1],
-                      order);
         assert_true(linear ? order > 1.7 : order > 2.7);
         assert_true(linear ? errors[1] < 3e-4 : errors[1] < 1e-5);
     }

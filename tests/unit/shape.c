@@ -201,8 +201,6 @@ TEST_IN_EACH_DIM(smoothing_is_consistent)
                                  .lists = {.count = s.cells.count, .ptr = s.smooth.ptr, .idx = s.smooth.idx}};
             struct defects worst =
                 table_defects(&view, dim, s.cells.x, centroids, 0.2 / (double)(per_axis - 1));
-            print_message("# %dD %s, offset %g m: %.1e %.1e %.1e %.1e\n", dim, basis_names[b], offset,
-                          worst.unity, worst.position, worst.gradient_sum, worst.gradient_position);
             AT_MOST(worst.unity, 1e-12);
             AT_MOST(worst.position, 1e-12);
             AT_MOST(worst.gradient_sum, 1e-12);
