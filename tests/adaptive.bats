@@ -28,14 +28,6 @@ setup() {
     ipoints -a 0.1 -R 30mm square.mts | mts print points.x | cmp - <(ipoints -a 0.1 -R 0.03 square.mts | mts print points.x)
 }
 
-@test "file and standard input, and any number of threads, give the same bytes" {
-    for threads in 1 2 3; do
-        OMP_NUM_THREADS=$threads ipoints -a 0.1 -k 2.4 square.mts > $threads.mts
-        cmp 1.mts $threads.mts
-    done
-    ipoints -a 0.1 -k 2.4 < square.mts | cmp - 1.mts
-}
-
 @test "an unfit support is a verdict that names the point" {
     run -1 --separate-stderr ipoints -a 0.1 -b mls2 -k 0.2 <(cloud -d 2 -k regular -n 3 --box 0,1,0,1)
     [[ "$stderr" == *"no good support"* ]]

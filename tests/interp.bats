@@ -143,18 +143,6 @@ END
     refused 2 "--skip-outside needs -p" interp --skip-outside field.txt
 }
 
-@test "file and standard input, text and binary, and any number of threads give the same" {
-    interp -p points.mts linear.mts > one.mts
-    interp -p points.mts < linear.mts | cmp - one.mts
-    mts text linear.mts | interp -p points.mts -t | grep -v '^# @' | cmp - <(mts text one.mts | grep -v '^# @')
-    for threads in 1 3; do
-        OMP_NUM_THREADS=$threads interp -p points.mts linear.mts | cmp - one.mts
-    done
-    run -0 --separate-stderr interp -o own.mts linear.mts
-    [[ "$stderr" == "interp: no sections of ipoints in the input: ran with defaults" ]]
-    ipoints linear.mts | support | shapefn | interp | mts print u | cmp - <(mts print u own.mts)
-}
-
 @test "nan in a field stays nan; broken supports are refused" {
     ipoints -g 3 linear.mts | support | shapefn | mts text > table.txt
     awk '/^# u / { at = 1; print; next } at && at++ == 70 { print "nan"; next } { print }' table.txt > nan.txt

@@ -58,19 +58,6 @@ volumes() {
     [ "$(wc -l < notes)" -eq 3 ]
 }
 
-@test "file, redirection, pipe and -o give the same bytes; so do -b and the default" {
-    square > square.msh
-    nodes -u mm square.msh > file.mts
-    nodes -u mm < square.msh > redirected.mts
-    cat square.msh | nodes -u mm > piped.mts
-    nodes -u mm -o named.mts square.msh
-    cmp file.mts redirected.mts
-    cmp file.mts piped.mts
-    cmp file.mts named.mts
-    nodes -u mm square.msh | grep -aq '^# cells i4 2 3 enc=bin'
-    nodes -u mm -t square.msh | grep -aq '^# cells i4 2 3 enc=text'
-}
-
 @test "the brain section has 702 nodes and 1247 triangles, in every format" {
     local geo=$BATS_TEST_DIRNAME/../examples/brain2d/brain2d.geo
     for format in "msh41 0" "msh41 1" "msh2 0" "msh2 1"; do

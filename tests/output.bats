@@ -45,6 +45,17 @@ told() {
     done
 }
 
+@test "a file, standard input, a pipe and -o, in one thread or in several: the same bytes" {
+    for command in "${writers[@]}" "ipoints -a 0.1 -k 2.4 square.mts" "interp -p square.mts u.dat" "warp --field slice.nii u.dat"; do
+        $command > file 2> note
+        OMP_NUM_THREADS=3 $command -o named 2> note
+        cmp file named
+        [[ $command != cloud* ]] || continue
+        ${command% *} < "${command##* }" 2> note | cmp - file
+        cat "${command##* }" | OMP_NUM_THREADS=2 ${command% *} - 2> note | cmp - file
+    done
+}
+
 @test "a closed standard output is status 3" {
     for command in "${writers[@]}" "${printers[@]}"; do
         run -3 --separate-stderr bash -c "$command >&-"

@@ -263,7 +263,7 @@ make_confined() {
     done
 }
 
-@test "foreign: meshes are as poor as they are meant to be; a row for each, whatever comes of it" {
+@test "foreign: meshes are as poor as they are meant to be; a row for each, of a mesh that is refused as well" {
     for name in jittered-1 voxels-hex; do bash "$pipelines/foreign/mesh.sh" $name $name.msh; done
     # between LEAST MOST MESH: its least quality
     between() {
@@ -274,27 +274,6 @@ make_confined() {
     between 0.5 1 voxels-hex
     run -2 bash "$pipelines/foreign/mesh.sh" none none.msh
 
-    cat > fake << 'END'
-#!/bin/bash
-printf 'steps\t40\nleast J\t0.5\n' >&2
-echo 'mtled: folded' >&2
-exit 1
-END
-    chmod +x fake
-    mkdir bin
-    mv fake bin/mtled
-    PATH=$PWD/bin:$PATH bash "$pipelines/foreign/push.sh" jittered-1 jittered-1.msh > row
-    awk -F '\t' '{ exit !(NF == 9 && $1 == "jittered-1" && $2 > 100 && $3 > 300 && $4 < 0.02 && $5 == 1 && $6 == 40 &&
-        $8 == 0.5 && $9 == "mtled: folded") }' row
-    cat > bin/mtled << 'END'
-#!/bin/bash
-echo "mtled: $(grep components "$2" | tail -n 1)" >&2
-exit 1
-END
-    for name in jittered-1 jittered-1-pulled; do
-        PATH=$PWD/bin:$PATH bash "$pipelines/foreign/push.sh" $name jittered-1.msh
-    done > rows
-    cut -f 9 rows | awk '{ way[NR] = $4 + 0 } END { exit !(NR == 2 && way[1] < -0.008 && way[2] == -way[1]) }'
     head -c 900 voxels-hex.msh > cut.msh
     bash "$pipelines/foreign/push.sh" cut cut.msh > row
     awk -F '\t' '{ exit !(NF == 9 && $2 == "-" && $5 == 2 && $9 ~ /^nodes: .*cut.msh: /) }' row

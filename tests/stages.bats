@@ -29,17 +29,6 @@ setup() {
     refused 2 "--mu: 6 values; in 2D" shapefn --mu 1,2,3,4,5,6 square.mts # six in 2D
 }
 
-@test "file, standard input and '-' give the same bytes" {
-    ipoints -g 3 square.mts > points.mts
-    support points.mts > lists.mts
-    shapefn lists.mts > table.mts
-    ipoints -g 3 < square.mts | cmp - points.mts
-    cat points.mts | support | cmp - lists.mts
-    shapefn - < lists.mts | cmp - table.mts
-    shapefn -o table2.mts lists.mts
-    cmp table.mts table2.mts
-}
-
 @test "the number of threads changes no byte" {
     cloud -d 3 -k jittered -n 8 --box 0,0.1,0,0.1,0,0.1 --jitter 0.1 > cube.mts
     for cloud in square cube; do

@@ -85,7 +85,6 @@ END
     cmp 1 2
     cmp 1 3
     voxels -h 5mm image.nii.gz 2> said | mts print cells > cells
-    voxels -h 5mm < image.nii.gz 2> said | mts print cells | cmp cells -
     gunzip -c image.nii.gz | voxels - -h 5mm 2> said | mts print cells | cmp cells -
 }
 

@@ -165,17 +165,6 @@ setup_file() {
         END { exit n != 2 }'
 }
 
-@test "same bytes: any number of threads, file or pipe, compressed or not" {
-    scan=$BATS_FILE_TMPDIR/scan.nii.gz
-    OMP_NUM_THREADS=1 warp "$scan" u.dat > one.nii.gz
-    OMP_NUM_THREADS=3 warp -o three.nii.gz "$scan" u.dat
-    cmp one.nii.gz three.nii.gz
-    gzip -dc "$scan" | warp -o plain.nii - u.dat
-    gzip -dc one.nii.gz | cmp - plain.nii
-    warp "$scan" < u.dat | cmp - one.nii.gz
-    gzip -t one.nii.gz
-}
-
 @test "outside of the body: as it was, a fill value, what the body left" {
     # Twice as flat: it leaves the upper half.
     with_u cube.mts 'print 0, 0, -.5 * $3' > flat.dat

@@ -44,49 +44,6 @@ static double box_volume(const struct cloud_options *options)
     return volume;
 }
 
-TEST_IN_EACH_DIM(cells_fill_the_box)
-{
-    for (int kind = CLOUD_REGULAR; kind <= CLOUD_GRADED; kind++) {
-        struct cloud_options options = options_of((enum cloud_kind)kind, dim);
-        FREED_BY(cloud_free) struct cloud cloud = make(&options);
-        if (kind == CLOUD_HALTON) {
-            assert_int_equal(cloud.node_count, 5);
-            assert_int_equal(cloud.cell_count, 0);
-        } else {
-            assert_int_equal(cloud.node_count, dim == 2 ? 20 : 60);
-            assert_int_equal(cloud.cell_count, dim == 2 ? 2 * 12 : 6 * 24);
-            assert_true(fabs(total_volume(&cloud) / box_volume(&options) - 1) < 1e-14);
-        }
-    }
-}
-
-/* Each side is covered once, all its facets looking outward: their area vectors sum to that of the side. */
-TEST_IN_EACH_DIM(facets_look_outward)
-{
-    struct cloud_options options = options_of(CLOUD_JITTERED, dim);
-    FREED_BY(cloud_free) struct cloud cloud = make(&options);
-    double sum[6][3] = {{0}};
-    double size[6] = {0};
-    for (int64_t f = 0; f < cloud.facet_count; f++) {
-        double vector[3] = {0};
-        int side = cloud.facet_set[f];
-        assert_true(f == 0 || cloud.facet_set[f - 1] <= side);
-        face_area_vector(dim, cloud.x, &cloud.facets[f * dim], vector);
-        for (int a = 0; a < dim; a++) {
-            sum[side][a] += vector[a];
-        }
-        size[side] += fabs(vector[side / 2]);
-    }
-    for (int side = 0; side < 2 * dim; side++) {
-        double area = box_volume(&options) / (options.high[side / 2] - options.low[side / 2]);
-        for (int a = 0; a < dim; a++) {
-            double expected = a == side / 2 ? (side % 2 == 0 ? -area : area) : 0;
-            assert_true(fabs(sum[side][a] - expected) < 1e-13);
-        }
-        assert_true(fabs(size[side] - area) < 1e-13);
-    }
-}
-
 /* Jitter moves inner nodes by no more than it may, the boundary not at all, and depends on the seed only. */
 TEST(jitter_is_bounded)
 {

@@ -19,32 +19,6 @@ static bool has_all(const int32_t *vertex, int corners, const int32_t *node, int
     return true;
 }
 
-/* Edges have two nodes each, in all faces the same ones, and no two edges have the same; they are numbered in
- * the order of their first use. */
-static void check_edges(const struct faces *faces)
-{
-    int dim = faces->dim;
-    int64_t next = 0;
-    int32_t *ends = zeros(faces->edge_count * 2, sizeof *ends);
-    GOOD(face_edges_ends(faces, ends, &error));
-    for (int64_t i = 0; i < faces->count * FACE_EDGES(dim); i++) {
-        int k = (int)(i % FACE_EDGES(dim));
-        int64_t f = i / FACE_EDGES(dim), edge = face_edge(faces, f, k);
-        const int32_t *node = faces->node + f * dim;
-        int32_t of_face[2] = {node[k], node[(k + 1) % dim]};
-        assert_true(edge <= next);
-        next += edge == next;
-        assert_true(has_all(ends + 2 * edge, 2, of_face, 2));
-    }
-    assert_int_equal(next, faces->edge_count);
-    for (int64_t e = 0; e < faces->edge_count; e++) {
-        assert_true(ends[2 * e] < ends[2 * e + 1]);
-        for (int64_t other = 0; other < e; other++) {
-            assert_false(has_all(ends + 2 * e, 2, ends + 2 * other, 2));
-        }
-    }
-}
-
 /* The mean of the points of each row is the middle of its edge, or of its face on the boundary. */
 static void check_points(const struct cells *cells, const struct faces *faces)
 {
@@ -98,7 +72,6 @@ TEST_IN_EACH_DIM(edges_of_faces)
     struct cells cells = cells_of(&cloud);
     struct faces faces;
     GOOD(faces_build(&cells, false, &faces, &error));
-    check_edges(&faces);
     check_points(&cells, &faces);
     check_cells(&cells, &faces);
     faces_free(&faces);
@@ -106,23 +79,6 @@ TEST_IN_EACH_DIM(edges_of_faces)
     assert_null(faces.edge);
     assert_int_equal(face_point_count(&faces), faces.count * FACE_POINTS(dim));
     faces_free(&faces);
-}
-
-/* An edge with other nodes in another face, and one that no face has. */
-TEST(wrong_edges)
-{
-    FREED_BY(cloud_free) struct cloud cloud = box_cloud(3, 3, 0.1, 0.0);
-    struct cells cells = cells_of(&cloud);
-    FREED_BY(faces_free) struct faces faces = {0};
-    GOOD(faces_build(&cells, false, &faces, &error));
-    int32_t *ends = zeros(faces.edge_count * 2 + 2, sizeof *ends), before = faces.edge[3 * 7 + 1];
-    faces.edge[3 * 7 + 1] = faces.edge[0];
-    FAILS(face_edges_ends(&faces, ends, &error), STATUS_INPUT,
-          "faces.edge: row 7: not the edges of this face");
-    faces.edge[3 * 7 + 1] = before;
-    faces.edge_count++;
-    FAILS(face_edges_ends(&faces, ends, &error), STATUS_INPUT, "faces.edge: edge ");
-    faces.edge_count--;
 }
 
 RUN_TESTS(NULL, NULL)

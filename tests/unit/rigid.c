@@ -265,43 +265,6 @@ TEST(normals_on_the_surface)
     }
 }
 
-/* Facets that touch nothing: every corner and edge is a rim. What is found is the closest; what is not lies
- * beyond the rim of the closest. */
-TEST_IN_EACH_DIM(loose_facets)
-{
-    struct random random = {5};
-    static struct shape shape;
-    shape = (struct shape){.dim = dim};
-    for (int f = 0; f < 300; f++) {
-        double corner[9], centre[3], size = f == 0 ? 2.0 : f % 7 == 0 ? 0.3 : 0.03;
-        for (int a = 0; a < dim; a++) {
-            centre[a] = uniform(&random, -1.0, 1.0);
-        }
-        for (int i = 0; i < dim * dim; i++) {
-            corner[i] = centre[i % dim] + uniform(&random, -size, size);
-        }
-        add_facet(&shape, corner, corner + dim, corner + 2 * dim);
-    }
-    FREED_BY(rigid_free) struct rigid_surface surface = built(&shape, false);
-    assert_int_equal(surface.vertex_count, 300 * dim);
-    int found = 0;
-    for (int i = 0; i < 2000; i++) {
-        double x[3], expected;
-        for (int a = 0; a < dim; a++) {
-            x[a] = uniform(&random, -1.5, 1.5);
-        }
-        struct rigid_contact contact = rigid_closest(&surface, x, INFINITY);
-        expected = brute_distance(&shape, x);
-        if (contact.found) {
-            NEAR_TO(contact.distance, expected, 1e-13);
-            found++;
-        } else {
-            assert_true(contact.distance >= 0.0 && contact.distance <= expected);
-        }
-    }
-    assert_in_range(found, 10, 1990);
-}
-
 /* An open curve ends at the normals through its ends; a sheet at the planes through its edges. */
 TEST(rims)
 {
