@@ -1,9 +1,8 @@
 /* Adaptive integration: the points fill the body, integrate what the rule integrates, come deep only where
  * the products of gradients demand it, and converge to brute subdivision; sorted lists. */
-#include "approx_fixture.h"
+#include "box_fixture.h"
 
 #include "approx/adaptive/adaptive.h"
-#include "approx/points/cloud.h"
 #include "approx/points/sorted.h"
 #include "base/vector.h"
 
@@ -17,17 +16,9 @@ struct body {
 
 static struct body body_of(int dim, int64_t per_axis)
 {
-    struct cloud_options wanted = {
-        .kind = CLOUD_JITTERED, .dim = dim, .jitter = dim == 2 ? 0.3 : 0.12, .seed = 3};
-    struct body body = {.options = adaptive_defaults(dim)};
-    for (int a = 0; a < dim; a++) {
-        wanted.count[a] = per_axis;
-        wanted.low[a] = 1.0;
-        wanted.high[a] = 1.1;
-    }
-    GOOD(cloud_make(&wanted, &body.cloud, &error));
-    body.cells =
-        (struct cells){dim, body.cloud.node_count, body.cloud.x, body.cloud.cell_count, body.cloud.cells};
+    struct body body = {.options = adaptive_defaults(dim),
+                        .cloud = box_cloud(dim, per_axis, dim == 2 ? 0.3 : 0.12, 1.0)};
+    body.cells = cells_of(&body.cloud);
     double *spacing = zeros(body.cells.node_count, sizeof *spacing);
     body.radius = calloc((size_t)body.cells.node_count, sizeof *body.radius);
     GOOD(cells_node_spacing(&body.cells, spacing, &error));

@@ -15,8 +15,8 @@ struct setup {
     bool faces;      /* smoothed cells: by averages over faces, not by the table of gradients */
     int model_count; /* points take the models in turn, by their place */
     struct material material[MATERIALS];
-    const bool *at_edge;       /* of each node; NULL: none */
-    const int32_t *group;      /* of each material; NULL: each by itself */
+    const bool *at_edge;  /* of each node; NULL: none */
+    const int32_t *group; /* of each material; NULL: each by itself */
 };
 
 static inline struct setup one_material(int model, bool averaged)

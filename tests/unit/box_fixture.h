@@ -1,4 +1,4 @@
-/* A jittered lattice over a square or cube of .1 m, with its cells. */
+/* A jittered lattice over a square or cube, .1 m or of that size, with its cells. */
 #pragma once
 
 #include "approx_fixture.h"
@@ -6,18 +6,24 @@
 #include "approx/cells/cells.h"
 #include "approx/points/cloud.h"
 
-static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, double offset)
+static inline struct cloud sized_cloud(int dim, int64_t per_axis, double jitter, double offset, double size)
 {
-    struct cloud_options options = {.kind = CLOUD_JITTERED, .dim = dim, .jitter = jitter, .seed = 5};
+    struct cloud_options options = {
+        .kind = jitter > 0.0 ? CLOUD_JITTERED : CLOUD_REGULAR, .dim = dim, .jitter = jitter, .seed = 5};
     struct cloud cloud;
     for (int a = 0; a < dim; a++) {
         options.count[a] = per_axis;
         options.low[a] = offset;
-        options.high[a] = offset + 0.1;
+        options.high[a] = offset + size;
     }
     GOOD(cloud_make(&options, &cloud, &error));
     assert_true(cloud.cell_count > 0);
     return cloud;
+}
+
+static inline struct cloud box_cloud(int dim, int64_t per_axis, double jitter, double offset)
+{
+    return sized_cloud(dim, per_axis, jitter, offset, 0.1);
 }
 
 static inline struct cells cells_of(const struct cloud *cloud)

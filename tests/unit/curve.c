@@ -13,23 +13,6 @@ static void rate_is_derivative(const struct load_curve *curve)
     }
 }
 
-TEST(smooth)
-{
-    FREED_BY(curve_free) struct load_curve curve = curve_of_kind(CURVE_SMOOTH);
-    NEAR_TO(curve_value(&curve, 0), 0, 0);
-    NEAR_TO(curve_value(&curve, 1), 1, 0);
-    NEAR_TO(curve_value(&curve, .5), .5, 1e-15);
-    NEAR_TO(curve_rate(&curve, 0), 0, 0);
-    NEAR_TO(curve_rate(&curve, 1), 0, 0);
-    NEAR_TO(curve_rate(&curve, .5), 1.875, 1e-15);
-    NEAR_TO(curve_rate(&curve, 1e-4) / 1e-4, 0, 1e-2); /* no acceleration at the ends */
-    NEAR_TO(curve_rate(&curve, 1 - 1e-4) / 1e-4, 0, 1e-2);
-    for (double s = 0; s <= .5; s += .01) {
-        NEAR_TO(curve_value(&curve, s) + curve_value(&curve, 1 - s), 1, 1e-14);
-    }
-    rate_is_derivative(&curve);
-}
-
 TEST(held_outside)
 {
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
@@ -44,18 +27,6 @@ TEST(held_outside)
     }
     NEAR_TO(curve_value(&table, 0), 1, 1e-15);
     NEAR_TO(curve_value(&table, 1), 3, 1e-15);
-}
-
-TEST(simple)
-{
-    struct load_curve linear = curve_of_kind(CURVE_LINEAR);
-    struct load_curve step = curve_of_kind(CURVE_STEP);
-    rate_is_derivative(&linear);
-    for (double s = 0; s <= 1; s += .125) {
-        NEAR_TO(curve_value(&linear, s), s, 0);
-        NEAR_TO(curve_value(&step, s), 1, 0);
-        NEAR_TO(curve_rate(&step, s), 0, 0);
-    }
 }
 
 /* Every point is taken; between two of them the factor stays between theirs, also beside a kink. */

@@ -1,29 +1,13 @@
 /* The discretisation error of a field: extrapolation, recovery of gradients, means over a body; and the sizes
  * of a graded mesh that follow. */
-#include "approx_fixture.h"
+#include "box_fixture.h"
 
-#include "approx/points/cloud.h"
 #include "approx/error/field_error.h"
 #include "approx/error/size_field.h"
 
-/* A lattice of n nodes per axis over the unit square or cube, jittered within. */
 static struct cloud lattice(int dim, int n, double jitter)
 {
-    struct cloud_options wanted = {.kind = jitter > 0.0 ? CLOUD_JITTERED : CLOUD_REGULAR,
-                                   .dim = dim,
-                                   .count = {n, n, n},
-                                   .high = {1.0, 1.0, 1.0},
-                                   .jitter = jitter,
-                                   .seed = 1};
-    struct cloud cloud;
-    GOOD(cloud_make(&wanted, &cloud, &error));
-    assert_true(cloud.cell_count > 0);
-    return cloud;
-}
-
-static struct cells cells_of(const struct cloud *cloud)
-{
-    return (struct cells){cloud->dim, cloud->node_count, cloud->x, cloud->cell_count, cloud->cells};
+    return sized_cloud(dim, n, jitter, 0.0, 1.0);
 }
 
 static double *array_of(int64_t count, double value)

@@ -1,4 +1,4 @@
-/* Values between voxels: exact for what each method reproduces, and none outside. */
+/* Values between voxels: the nearest, at the border, and none outside (more: warp.bats, sample.bats). */
 #include "unit.h"
 
 #include "io/image/image_sample.h"
@@ -34,34 +34,6 @@ static int drop(void **state)
     return 0;
 }
 
-/* A place away from the border, which cubics look beyond. */
-static void place(int i, double x[3])
-{
-    x[0] = 1 + fmod(0.3711 * i, 4);
-    x[1] = 1 + fmod(0.7123 * i, 3);
-    x[2] = 1 + fmod(0.2317 * i, 2);
-}
-
-TEST(reproduction)
-{
-    double x[3], value[2], expected[2];
-    for (int i = 0; i < 200; i++) {
-        place(i, x);
-        polynomials(x, expected);
-        assert_true(image_sample(&image, IMAGE_LINEAR, x, value));
-        assert_true(fabs(value[0] - expected[0]) <= 1e-12);
-        assert_true(image_sample(&image, IMAGE_CUBIC, x, value));
-        assert_true(fabs(value[0] - expected[0]) <= 1e-12);
-        assert_true(fabs(value[1] - expected[1]) <= 1e-12);
-        assert_true(image_sample(&image, IMAGE_NEAREST, x, value));
-        for (int d = 0; d < 3; d++) {
-            x[d] = floor(x[d] + 0.5);
-        }
-        polynomials(x, expected);
-        assert_true(value[0] == expected[0] && value[1] == expected[1]);
-    }
-}
-
 TEST(borders)
 {
     static const double within[][3] = {{-0.5, 0, 0}, {6.5, 5, 4}, {3, -0.4, 4.5}, {0, 5.5, 0}};
@@ -80,6 +52,10 @@ TEST(borders)
         polynomials((double[3]){0, 0, 0}, corner);
         assert_true(method == IMAGE_CUBIC || fabs(value[0] - corner[0]) <= 1e-12);
     }
+    double value[2], nearest[2];
+    assert_true(image_sample(&image, IMAGE_NEAREST, (double[3]){2.45, 2.55, 1.45}, value));
+    polynomials((double[3]){2, 3, 1}, nearest);
+    assert_true(value[0] == nearest[0] && value[1] == nearest[1]);
 }
 
 /* What is not a number spreads to what is interpolated from it, and no farther. */

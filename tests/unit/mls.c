@@ -217,45 +217,6 @@ TEST_IN_EACH_DIM(units_of_mu)
     }
 }
 
-/* Scaling by a power of two changes no bit of phi; a translation changes round-off only. */
-TEST_IN_EACH_DIM(invariance)
-{
-    for (int b = 0; b < BASIS_COUNT; b++) {
-        const double factor = 1024.0;
-        FREED_BY(scattered_free)
-        struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-        FREED_BY(scattered_free)
-        struct scattered scaled = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-        FREED_BY(scattered_free)
-        struct scattered moved = scatter(dim, dim == 2 ? 10 : 6, 50, &places[0], 0.3, 8);
-        for (int64_t i = 0; i < cloud.count * dim; i++) {
-            scaled.x[i] *= factor;
-            moved.x[i] += 1.0;
-        }
-        for (int64_t i = 0; i < 50 * dim; i++) {
-            scaled.points[i] *= factor;
-            moved.points[i] += 1.0;
-        }
-        struct support_options options = options_for(dim, (enum basis)b, WEIGHT_QUARTIC);
-        FREED_BY(table_free) struct table one = {0}, two = {0}, three = {0};
-        GOOD(tabulate(&options, cloud.count, cloud.x, 50, cloud.points, &one, &error));
-        GOOD(tabulate(&options, cloud.count, scaled.x, 50, scaled.points, &two, &error));
-        GOOD(tabulate(&options, cloud.count, moved.x, 50, moved.points, &three, &error));
-        int64_t pairs = one.lists.ptr[50];
-        assert_memory_equal(one.lists.ptr, two.lists.ptr, 51 * sizeof(int64_t));
-        assert_memory_equal(one.lists.idx, two.lists.idx, (size_t)pairs * sizeof(int32_t));
-        assert_memory_equal(one.lists.idx, three.lists.idx, (size_t)pairs * sizeof(int32_t));
-        assert_memory_equal(one.phi, two.phi, (size_t)pairs * sizeof(double));
-        for (int64_t i = 0; i < pairs; i++) {
-            AT_MOST(fabs(one.phi[i] - three.phi[i]), 1e-9);
-        }
-        for (int64_t i = 0; i < pairs * dim; i++) {
-            assert_true(one.dphi[i] == two.dphi[i] * factor);
-            AT_MOST(fabs(one.dphi[i] - three.dphi[i]) * cloud.spacing, 1e-8);
-        }
-    }
-}
-
 /* What the normal equations decide agrees with the orthogonal factorisation to round-off. */
 TEST(normal_equations)
 {

@@ -1,7 +1,6 @@
 /* The motion between the nodes, its inverse, and which cell each point of a grid lies in. */
-#include "unit.h"
+#include "box_fixture.h"
 
-#include "approx/points/cloud.h"
 #include "approx/field/motion.h"
 #include "approx/cells/raster.h"
 #include "base/vector.h"
@@ -38,16 +37,8 @@ static void smooth_field(int dim, const double *x, double *u)
 
 static void make_body(int dim, int64_t along, field_function field, struct body *body)
 {
-    struct cloud_options options = {.kind = CLOUD_JITTERED,
-                                    .dim = dim,
-                                    .count = {along, along, along},
-                                    .high = {1, 1, 1},
-                                    .jitter = dim == 2 ? 0.3 : 0.12,
-                                    .seed = 7};
-    GOOD(cloud_make(&options, &body->cloud, &error));
-    body->cells =
-        (struct cells){dim, body->cloud.node_count, body->cloud.x, body->cloud.cell_count, body->cloud.cells};
-    assert_true(body->cells.count > 0);
+    body->cloud = sized_cloud(dim, along, dim == 2 ? 0.2 : 0.12, 0.0, 1.0);
+    body->cells = cells_of(&body->cloud);
     body->u = calloc((size_t)(body->cells.node_count * dim), sizeof *body->u);
     assert_non_null(body->u);
     for (int64_t n = 0; n < body->cells.node_count; n++) {
@@ -164,23 +155,15 @@ TEST(walks)
     drop_body(&body);
 }
 
-/* Whether grid point y lies in a cell, by its corners' half-planes. */
+/* Whether grid point y lies in a cell. */
 static bool holds(const struct cells *cells, int64_t cell, const double *y)
 {
-    int dim = cells->dim;
-    for (int a = 0; a <= dim; a++) {
-        double x[12];
-        int32_t node[4] = {0, 1, 2, 3};
-        for (int b = 0; b <= dim; b++) {
-            const double *from = b == a ? y : cells->x + cells->node[cell * (dim + 1) + b] * dim;
-            memcpy(x + b * dim, from, (size_t)dim * sizeof *x);
-        }
-        struct cells one = {dim, dim + 1, x, 1, node};
-        if (cell_volume(&one, 0) < -1e-9) {
-            return false;
-        }
+    double coordinate[4], least = INFINITY;
+    cell_barycentric(cells, cell, y, coordinate);
+    for (int a = 0; a <= cells->dim; a++) {
+        least = fmin(least, coordinate[a]);
     }
-    return true;
+    return least > -1e-9;
 }
 
 TEST_IN_EACH_DIM(owners)

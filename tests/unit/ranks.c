@@ -1,5 +1,5 @@
-/* How processes share rows: stretches of about the same work. That a run has the bytes of one process, whatever
- * their number, is tested in mpi.bats. */
+/* How processes share rows: stretches of about the same work. That a run has the bytes of one process,
+ * whatever their number, is tested in mpi.bats. */
 #include "unit.h"
 
 #include "base/ranks.h"

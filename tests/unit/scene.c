@@ -200,7 +200,6 @@ TEST(density_that_is_not_felt)
 TEST(material_keys)
 {
     fails(HEAD "[material m]\nregion = r\nnu = .3\nrho = 1\n", 4, "E: missing: give Young's modulus in Pa");
-    fails(HEAD "[material m]\nregion = r\nE = 3\nrho = 1\n", 4, "nu: missing");
     fails(HEAD "gravity = 0, -9.81\n[material m]\nregion = r\nE = 3\nnu = .3\n", 5,
           "rho: missing: give the density in kg/m3");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n[material m]\nregion = r\nE = 3\nnu = .3\n", 4,
@@ -215,40 +214,30 @@ TEST(material_keys)
     fails(HEAD BODY "kappa = 1\n", 9, "kappa: not allowed: nu gives the volume: give one of nu, kappa, D");
     fails(HEAD BODY "mu = 1\n", 9, "mu: not allowed: the stiffness is given by E");
     fails(HEAD REGION "E = 9\nkappa = 1\n", 6, "E: is not below 9 kappa");
-    fails(HEAD REGION "kappa = 1\nD = 1\n", 4, "E: missing");
-    fails(HEAD REGION "mu = 1\nkappa = 1\nD = 1\n", 8, "D: not allowed: kappa gives the volume");
     fails(HEAD REGION "mu = 1\nD = 1e-320\n", 4, "the moduli are too small or too large");
     fails(HEAD REGION "model = yeoh\nc1 = 1e-300\nc2 = 1e300\nnu = 0\n", 4,
           "the moduli are too small or too large");
-    fails(HEAD REGION "mu = -1\nkappa = 1\n", 6, "mu: -1 is not above 0");
     fails(HEAD REGION "mu = 1, 2\nkappa = 1\n", 6, "mu: has more than 1 number");
     fails(HEAD REGION "model = ogden\nmu = 1, -1\nalpha = 2, 3\nnu = 0\n", 7, "mu: the sum is not positive");
     fails(HEAD REGION "model = ogden\nmu = 1, 2\nalpha = 3\nnu = 0\n", 8,
           "alpha: mu and alpha have different");
-    fails(HEAD REGION "model = ogden\nmu = 1, x\nalpha = 2, 3\nnu = 0\n", 7,
-          "mu: 'x' is not a finite number");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nc2 = -1\nnu = 0\n", 7, "c1: c1 + c2 is not positive");
-    fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nnu = 0\n", 4, "c2: missing");
     fails(HEAD REGION "model = mooney-rivlin\nc1 = 1\nratio = 1\n", 8, "ratio: not allowed: it goes with E");
     fails(HEAD BODY "fibre = 1, 0\n", 9, "fibre: not allowed: the law has no fibres, and no active");
-    fails(HEAD BODY "active = -1\n", 9, "active: -1 is not at least 0");
     fails(HEAD BODY "curve = step\n", 9, "curve: not allowed: it is that of active");
     fails(HEAD BODY "prony = .45 .5, .55 50\n", 9, "prony: the sum of g is 1, not below 1");
     fails(HEAD BODY "prony = .45 .5, .365 0\n", 9, "prony: 0 is not above 0");
     fails(HEAD BODY "prony = 0 .5\n", 9, "prony: 0 is not within (0, 1)");
-    fails(HEAD BODY "prony = .45 nan\n", 9, "prony: 'nan' is not a finite number");
     fails(HEAD BODY "prony = .45, .5\n", 9, "prony: '.45' is not a term: write g and tau in s");
     fails(HEAD BODY "prony = .1 1, .1 2, .1 3, .1 4, .1 5, .1 6, .1 7\n", 9, "prony: has more than 6 terms");
     fails(HEAD BODY "prony = .45 .5\n", 9, "prony: the scene has no time: give duration in [scene], s");
     fails(HEAD BODY "[solver]\ntime_steps = 5\n", 0, "time_steps: not allowed: the scene has neither duration nor friction");
-    fails(HEAD "duration = nan\n" BODY, 4, "duration: 'nan' is not a finite number");
     fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11, "method: a scene with duration takes newton");
     fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4, "duration: not allowed: a dynamic scene");
     fails(HEAD "duration = 1\n" BODY, 0, "[scene]: duration: of no use");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "active = 1\n", 9,
           "active: not allowed: it belongs to quasi");
     fails(HEAD GUCCIONE "fibre = 0, -0\n", 12, "fibre: has no length: give a direction, as 1, 0, 0");
-    fails(HEAD GUCCIONE "fibre = nan, 1\n", 12, "fibre: 'nan' is not a finite number");
     fails(HEAD GUCCIONE "fibre = 0, 0, 1\n", 12, "fibre: has 3 components: dim = 2 needs 2");
     fails(HEAD GUCCIONE "fibre = 0, 1\nfibre_plane = 0, 1\n", 13, "fibre_plane: not allowed: in 2D it is");
     fails(HEAD3 GUCCIONE "fibre = 0, 1, 0\nfibre_plane = 1, 0, 0\n", 13, "the law has one family of fibres");
@@ -256,18 +245,14 @@ TEST(material_keys)
     fails(HEAD3 HOLZAPFEL "fibre = 0, 1, 0\nfibre_plane = 0, 2, 1e-7\n", 13, "no direction other than fibre");
     fails(HEAD3 HOLZAPFEL "dispersion = .4\nfibre = 0, 1, 0\nfibre_plane = 1, 0, 0\n", 12,
           "dispersion: .4 is not within [0, 0.333333]");
-    fails(HEAD REGION "model = trans-iso\nc1 = -1\nc3 = 1\nc4 = 1\nfibre = 0, 1\n", 7,
-          "c1: c1 + c2 is not positive");
     fails(HEAD REGION "model = trans-iso\nc1 = 1\nc3 = 1\nc4 = 1\nc5 = 2\nfibre = 0, 1\n", 10,
           "c5: not allowed: it goes with lambda_max");
     fails(HEAD BODY "model = yeoh\n", 6, "E: not allowed: the law has its own moduli");
     fails(HEAD REGION "model = yeoh\nc1 = 1\n", 4, "nu: missing: give Poisson's ratio, or kappa in Pa, or D");
     fails(HEAD BODY "table = t\n", 6, "E: not allowed: the table gives E and nu");
     fails(HEAD "[material m]\nregion = r\nrho = 1\ntable = t\n", 7, "table: needs unit");
-    fails(HEAD BODY "unit = mm\n", 9, "unit: not allowed");
     fails(HEAD BODY "[material n]\nregion = q,r\nE = 1\nnu = 0\nrho = 1\n", 9,
           "[material n]: region: 'r' is of material m already");
-    fails(HEAD "[material m]\nregion = r,,q\n", 5, "region: has an empty name");
     fails(HEAD "[material m]\nregion = r, q, r\n", 5, "region: names 'r' twice");
 }
 
@@ -308,21 +293,17 @@ TEST(conditions)
     fails(HEAD BODY "[displacement d]\nnormal = 0\n", 9, "none of facets, nodes");
     fails(HEAD BODY "[displacement d]\nnodes = f\nnormal = 0\n", 10, "only facets have a normal");
     fails(HEAD BODY "[displacement d]\nfacets = f\ntable = t\n", 11, "table: needs unit = m, cm, mm or um");
-    fails(HEAD BODY "[displacement d]\nfacets = f\ntable = t\nunit = inch\n", 12, "'inch' is none of m, cm");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,1,2\n", 11,
           "has 3 components: dim = 2 needs 2, with decimal points");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = free,free\n", 11, "all are free");
-    fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,fre\n", 11, "'fre' is not a finite number");
     fails(HEAD BODY "[displacement d]\nfacets = f\ncomponents = 0,\n", 11, "'' is not a finite number");
     fails(HEAD BODY "[force d]\nnodes = f\ncomponents = 0,free\n", 11, "'free' is not a finite number");
     fails(HEAD BODY "[force d]\nfacets = f\ncomponents = 0,1\n", 10, "facets: unknown key");
     fails(HEAD BODY "[force d]\nnodes = f\n", 9, "components: missing: give the force on each node in N");
-    fails(HEAD BODY "[traction d]\ncomponents = 0,0\n", 9, "facets: missing");
     fails(HEAD BODY "[pressure d]\nfacets = f\n", 9, "none of value, density");
     fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\n", 9, "side: missing: left or right");
     fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nunit = m\nside = front\n", 13,
           "none of left, right");
-    fails(HEAD BODY "[contact c]\nfacets = f\nrigid = s\nside = left\n", 11, "rigid: needs unit");
     fails("[scene]\ndim = 3\nanalysis = quasi-static\n" BODY
           "[contact c]\nfacets = f\nrigid = s\nunit = m\nside = left\n",
           13, "none of front, back");
@@ -331,14 +312,10 @@ TEST(conditions)
 TEST(solver_and_output)
 {
     fails(HEAD BODY "[solver]\ntolerance = 1\n", 10, "tolerance: 1 is not within (0, 1)");
-    fails(HEAD BODY "[solver]\ntolerance = 0\n", 10, "tolerance: 0 is not within (0, 1)");
     fails(HEAD BODY "[solver]\nend_time = 1\n", 10, "a quasi-static scene has duration, in [scene]");
     fails(HEAD BODY "[solver]\nmax_steps = 0\n", 10, "not a whole number within [1,");
     fails(HEAD BODY "[solver]\nmax_steps = 1e3\n", 10, "'1e3' is not a whole number");
-    fails(HEAD BODY "[output]\nframes = -1\n", 10, "not a whole number");
-    fails(HEAD BODY "[solver]\ntime_step_margin = 1\n", 10, "1 is not within (0, 1)");
     fails(HEAD BODY "[solver]\nconstraints = penalty\n", 10, "none of ebciem, direct");
-    fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 0\n", 10, "0 is not above 0");
     fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "[solver]\nend_time = 1\ntolerance = .1\n", 11,
           "not allowed");
     fails(HEAD BODY "[initial]\ntable = t\nunit = m\n", 9, "only dynamic scenes begin somewhere");

@@ -1,9 +1,8 @@
-/* Distances, connected parts, sides, and the quality of cells. */
+/* Sides, and the quality of cells. */
 #include "unit.h"
 
 #include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
-#include "approx/points/select.h"
 
 TEST(regular_simplices_have_quality_one)
 {
@@ -35,34 +34,10 @@ TEST(quality_is_the_ratio_of_radii)
     assert_true(cell_quality(&cells, 0) == 0);
 }
 
-TEST(distances_to_pieces)
-{
-    const double triangle[] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
-    struct pieces pieces = {3, 3, 1, triangle};
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){0.5, 0.5, 3}) - 3) < 1e-14);
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){-3, -4, 0}) - 5) < 1e-14);
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){2, 2, 0}) - sqrt(2)) < 1e-14);
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){1, -1, 1}) - sqrt(2)) < 1e-14);
-    pieces = (struct pieces){2, 2, 1, (const double[]){0, 0, 1, 0}};
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){2, 1}) - sqrt(2)) < 1e-14);
-    pieces = (struct pieces){2, 1, 1, (const double[]){3, 4}};
-    assert_true(fabs(piece_distance(&pieces, 0, (double[]){0, 0}) - 5) < 1e-14);
-}
-
 /* Two squares of two triangles each that touch in a node only, and a third one apart, the largest. */
 static const double islands_x[] = {0, 0, 1, 0, 1, 1, 0, 1, 2, 1, 2, 2, 1, 2, 5, 0, 7, 0, 7, 2, 5, 2};
 static const int32_t islands[] = {0, 1, 2, 0, 2, 3, 2, 4, 5, 2, 5, 6, 7, 8, 9, 7, 9, 10};
 static const struct cells islands_cells = {2, 11, islands_x, 6, islands};
-
-TEST(bodies_share_faces_and_are_numbered_by_size)
-{
-    int32_t part[6];
-    int32_t count;
-    GOOD(cells_parts(&islands_cells, part, &count, &error));
-    assert_int_equal(count, 3);
-    const int32_t expected[] = {1, 1, 2, 2, 0, 0};
-    assert_memory_equal(part, expected, sizeof part);
-}
 
 TEST(sides_end_at_sharp_turns)
 {

@@ -17,37 +17,6 @@ TEST(round_trip)
     }
 }
 
-/* Large enough to need many blocks of the buffers and to grow, and to be mapped in place. */
-TEST(large_payload)
-{
-    enum { ROWS = 300000, COLS = 3 };
-    struct stream stream, copy;
-    double *values = array_new(ROWS * COLS, sizeof *values);
-    assert_non_null(values);
-    for (int64_t i = 0; i < ROWS * COLS; i++) {
-        values[i] = sin((double)i) * pow(10, (double)(i % 40 - 20));
-    }
-    stream_init(&stream);
-    GOOD(stream_put(&stream, "x", TYPE_F8, ROWS, COLS, "", values, true, &error));
-    for (int variant = 0; variant < 4; variant++) {
-        bool text = variant % 2 == 0, offset = variant / 2 == 1;
-        int file = memfd_create("stream", 0);
-        /* A file that does not stand at its beginning is read block by block. */
-        assert_int_equal(write(file, "junk", 4), 4);
-        lseek(file, offset ? 4 : 0, SEEK_SET);
-        GOOD(stream_write(&stream, file, text, &error));
-        lseek(file, offset ? 4 : 0, SEEK_SET);
-        GOOD(stream_read(&copy, file, "input", &error));
-        assert_same_stream(&stream, &copy);
-        assert_true((copy.mapping != NULL) == !offset);
-        assert_true(copy.sections[0].owned == (text || offset));
-        assert_int_equal((uintptr_t)copy.sections[0].data % 64, 0);
-        stream_free(&copy);
-        close(file);
-    }
-    stream_free(&stream);
-}
-
 #define HEAD "# mts 1\n# x f8 2 2 enc=text unit=m\n"
 #define TAIL "\n\n# end 1\n"
 
