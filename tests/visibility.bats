@@ -18,35 +18,6 @@ END
     nodes -u mm blocks.msh > blocks.mts
 }
 
-# drag ANALYSIS SOLVER_LINE: the scene of the upper block dragged away, the lower one held.
-drag() {
-    printf '[scene]\ndim = 2\nanalysis = %s\n[material body]\nregion = body\nE = 3000\nnu = 0.49\nrho = 1000\n' "$1"
-    printf '[displacement bottom]\nfacets = bottom\ncomponents = 0, 0\n[displacement top]\nfacets = top\n'
-    printf 'components = 1e-3, 2e-3\n[output]\nreactions = yes\n[solver]\n%s\n' "$2"
-}
-
-# rests FILE HEIGHT: whether the nodes below HEIGHT stay where they are, but for the round-off of some mm.
-rests() {
-    paste <(mts print nodes.x "$1") <(mts print u "$1") | awk -v height="$2" '
-        $2 < height { n++; if (!($3 ^ 2 + $4 ^ 2 < 1e-16 ^ 2)) bad++ }
-        END { exit !(n > 40 && bad + 0 == 0) }'
-}
-
-@test "two blocks with a gap: the other neither moves nor feels a force" {
-    blocks 0.5
-    drag dynamic 'end_time = 0.02' > dynamic.scene
-    drag quasi-static 'tolerance = 1e-9' > a.scene
-    support blocks.mts 2> notes | shapefn > table.mts
-    mtled dynamic.scene table.mts > u.dat
-    rests u.dat 0.0101
-    mts print reactions u.dat | awk 'NR == 1 { exit !($1 ^ 2 + $2 ^ 2 < 1e-12 ^ 2) }'
-    mtled a.scene table.mts > u.dat
-    mts print reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if (!($i ^ 2 < 1e-12)) bad = 1 } END { exit bad || NR == 0 }'
-    # By distance the gap carries a force: what the default is for.
-    support --reach distance blocks.mts 2> notes | shapefn | mtled a.scene > u.dat
-    mts print reactions u.dat | awk '{ for (i = 1; i <= NF; i++) if ($i > most) most = $i } END { exit !(most > 1) }'
-}
-
 @test "a slit: what is around the tip stands in the stream, the same bytes for any number of threads" {
     gmsh -2 -v 0 -setnumber h 2 "$top/examples/hard/slit.geo" -o slit.msh > /dev/null
     nodes -u mm slit.msh | ipoints -g 4 > points.mts

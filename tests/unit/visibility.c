@@ -340,36 +340,6 @@ static int sheet_of_fissure(const int *cube, int i, int j, int k)
     return i == 5 && (body.dim == 2 ? j : k) > 5 ? 1 + (cube[0] >= 5) : 0;
 }
 
-TEST_IN_EACH_DIM(fissure)
-{
-    build(dim, (int[3]){10, 10, 10}, of_ball, sheet_of_fissure);
-    find(2.0, true);
-    int64_t crossing = 0, away = 0;
-    for (int nodes = 0; nodes < 2; nodes++) {
-        const struct support_lists *lists = nodes ? &found.nodes : &found.lists;
-        const double *x = nodes ? body.x : found.x;
-        for (int64_t p = 0; p < lists->count; p++) {
-            const double *from = x + p * dim;
-            double height = from[dim - 1];
-            bool right = nodes ? body.key[p][3] == 2 || from[0] > 5.0 : from[0] > 5.0;
-            for (int64_t i = lists->ptr[p]; height > 5.0 && i < lists->ptr[p + 1]; i++) {
-                const double *to = body.x + (int64_t)lists->idx[i] * dim;
-                bool to_right = body.key[lists->idx[i]][3] == 2 || to[0] > 5.0;
-                if (to[dim - 1] <= 5.0 || right == to_right) {
-                    continue;
-                }
-                double legs = hypot(from[0] - 5.0, height - 5.0) + hypot(to[0] - 5.0, to[dim - 1] - 5.0);
-                double way = dim == 2 ? legs : hypot(legs, from[1] - to[1]);
-                AT_MOST(way, 2.0 * lists->widen[p]);
-                crossing++;
-            }
-            away += height > 7.0;
-        }
-    }
-    assert_true(crossing > 0 && away > 0);
-    lose();
-}
-
 /* Gradients at points that see around the corner are those of the values, where the neighbours stay. */
 TEST_IN_EACH_DIM(gradients)
 {
