@@ -32,32 +32,6 @@ setup() {
         END { exit failed || rows != 1 }'
 }
 
-@test "the craniotomy goes where it is prescribed" {
-    # Rows of facets, of their sets, then of nodes and u.
-    set=$(awk '/^# facets.set / { sub(/.*names=/, ""); split($1, name, ","); for (i in name) if (name[i] == "craniotomy") print i - 1 }' \
-        <(mts text u.dat))
-    paste <(mts print facets.set u.dat) <(mts print facets u.dat) | awk -v set="$set" '
-        $1 == set { for (i = 2; i <= 4; i++) print $i }' | sort -n | uniq > craniotomy
-    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
-        NR == FNR { inside[$1] = 1; next }
-        !(FNR - 1 in inside) { next }
-        {
-            dx = $1 - 0.063472; dy = $2 - 0.016069; dz = $3 - 0.019997
-            along = dx * 0.9798 + dy * 0.1591 + dz * 0.1212
-            r = sqrt(dx^2 + dy^2 + dz^2 - along^2)
-            u = r < 0.033 ? -0.005 * (1 + cos(atan2(0, -1) * r / 0.033)) : 0
-            error = sqrt(($4 - 0.9798 * u)^2 + ($5 - 0.1591 * u)^2 + ($6 - 0.1212 * u)^2)
-            if (error > worst) worst = error
-            if (u < deepest) deepest = u
-            sum += error
-            n++
-        }
-        END {
-            printf "%d nodes down to %g, off by %g, at most %g m\n", n, deepest, sum / n, worst
-            exit !(n > 10 && deepest < -0.008 && sum / n < 0.0006 && worst < 0.0012)
-        }' craniotomy -
-}
-
 # bats test_tags=thorough
 @test "the tables of the whole brain are those that its geometry gives" {
     mkdir -p made

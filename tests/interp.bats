@@ -49,19 +49,6 @@ with_section() {
     done
 }
 
-@test "a quadratic field: exact with mls2, nearly so with mmls2, smoothed with mls1" {
-    cloud -d 2 -k jittered -n 12 --box 0,1,0,1 --jitter 0.3 --field quadratic > field.mts
-    cloud -d 2 -k halton -n 60 --box 0,1,0,1 --field quadratic > points.mts
-    mts print u points.mts > expected
-    interp -b mls2 -k 2.6 -p points.mts field.mts | mts print u > u
-    near 1e-11 u expected
-    interp -p points.mts field.mts | mts print u > u
-    near 1e-4 u expected
-    interp -b mls1 -p points.mts field.mts | mts print u > u
-    near 5e-2 u expected
-    run ! near 1e-4 u expected
-}
-
 @test "a table of points in a unit, with comments; displaced points" {
     with_section linear.mts displacement f8 2 awk 'BEGIN { for (i = 0; i < 144; i++) print "0.25 -0.5" }' |
         sed 's/^# u /# scalar /; s/^# displacement /# u /' > moved.txt

@@ -80,16 +80,6 @@ fails() {
     [ ! -e build/out/hard/hard.tsv ] || grep -q 'FAIL$' build/out/hard/hard.tsv
 }
 
-@test "neurosurgery: a program of its many stages fails" {
-    at=neurosurgery
-    for tool in voxels mtled; do
-        fails $tool neurosurgery -- $at/true.u.dat $at/measured.tsv $at/craniotomy.u.dat $at/neurosurgery.tsv
-    done
-    fails interp neurosurgery -- $at/true.landmarks $at/exposed.tsv $at/neurosurgery.tsv
-    fails warp neurosurgery -- $at/true.scan.nii.gz $at/true.labels.nii.gz $at/volumes.tsv
-    fails interp neurosurgery-one NEURO_SCENARIO=resection -- $at/resection/true.landmarks $at/resection/neurosurgery.tsv
-}
-
 @test "a target that was there before the failure is gone, too, and made again when nothing fails" {
     rm -rf build/out
     goal=$fake/out/brain2d/default.dat

@@ -1,22 +1,7 @@
-/* Fields at points: linear in each cell; what is outside of a body. */
+/* What is outside of a body. */
 #include "approx_fixture.h"
 
 #include "approx/field/field_compare.h"
-
-/* Nodes of cells have the cells' spacing, others that of the nearest nodes. */
-TEST(spacing_with_and_without_cells)
-{
-    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 3, 0};
-    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
-    struct cells cells = {2, 5, x, 2, node}, bare = {2, 5, x, 0, NULL};
-    double spacing[5], nearest[5], alone[5];
-    GOOD(field_spacing(&cells, spacing, &error));
-    GOOD(nodes_spacing(2, 5, x, nearest, &error));
-    GOOD(field_spacing(&bare, alone, &error));
-    assert_memory_equal(alone, nearest, sizeof nearest);
-    AT_MOST(fabs(spacing[1] - 1.0), 1e-15);
-    assert_true(spacing[4] == nearest[4]);
-}
 
 /* Beyond a side, beyond a corner (an edge, in 3D), in a notch between cells; within 0 and within a margin. */
 TEST(outside_of_cells)

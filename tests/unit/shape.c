@@ -233,17 +233,4 @@ TEST_IN_EACH_DIM(rows_of_edges)
     }
 }
 
-/* Spacing of nodes from their cells: edges of a unit square cut in two. */
-TEST(spacing_of_cells)
-{
-    static const double x[] = {0, 0, 1, 0, 1, 1, 0, 1, 9, 9};
-    static const int32_t node[] = {0, 1, 2, 0, 2, 3};
-    struct cells cells = {2, 5, x, 2, node};
-    double spacing[5];
-    GOOD(cells_node_spacing(&cells, spacing, &error));
-    AT_MOST(fabs(spacing[0] - (2.0 + 2.0 * sqrt(2.0)) / 4.0), 1e-15);
-    AT_MOST(fabs(spacing[1] - 1.0), 1e-15);
-    assert_true(spacing[4] == 0.0);
-}
-
 RUN_TESTS(NULL, NULL)
