@@ -1,5 +1,5 @@
 # Not a study: what takes too long for make check. `make soak` is a dynamic run of a million steps, with memory and energy
-# error; `make kills` kills mtled a hundred times and goes on each time (see tests/soak.sh, tests/kills.sh).
+# error; `make kills` kills mtled a hundred times and goes on each time (see pipelines/soak/soak.sh, pipelines/soak/kills.sh).
 
 SOAK := $(OUT)/soak/soak.tsv
 
@@ -11,7 +11,7 @@ soak: $(SOAK)
 $(SOAK) kills: export PATH := $(abspath $(BUILD))/bin:$(PATH)
 $(SOAK): $(PROGRAMS) always
 	@mkdir -p $(@D)
-	@bash tests/soak.sh 1000000 > $@
+	@bash pipelines/soak/soak.sh 1000000 > $@
 
 kills: $(PROGRAMS)
-	@bash tests/kills.sh 100
+	@bash pipelines/soak/kills.sh 100

@@ -18,13 +18,11 @@ END
     awk -v s="$1" 'BEGIN { printf "-200 %.9g\n0 0\n200 %.9g\n", 200 * s, 200 * s }' > groove.tsv
 }
 
-# press DIM SIDEWAYS [SIDE]: contact.scene, and held.scene, where each side of the keel is kept on its plane by a condition.
+# press SIDEWAYS: contact.scene, and held.scene, where each side of the keel is kept on its plane by a condition.
 press() {
-    { block quasi-static | sed "s/dim = 2/dim = $1/"
-        printf '[displacement top]\nfacets = top\ncomponents = %s, -0.003%s\n[output]\nreactions = yes\n[solver]\ntolerance = 1e-4\n' \
-            "$2" "${3:+, 0}"
-        [ "$1" = 2 ] || printf '[displacement ends]\nfacets = ends\nnormal = 0\n'; } > one.scene
-    { cat one.scene; printf '[contact groove]\nfacets = left, right\nrigid = groove.tsv\nunit = mm\nside = %s\n' "${3:-left}"; } > contact.scene
+    { block quasi-static
+        printf '[displacement top]\nfacets = top\ncomponents = %s, -0.003\n[output]\nreactions = yes\n[solver]\ntolerance = 1e-4\n' "$1"; } > one.scene
+    { cat one.scene; printf '[contact groove]\nfacets = left, right\nrigid = groove.tsv\nunit = mm\nside = left\n'; } > contact.scene
     { cat one.scene; printf '[displacement l]\nfacets = left\nnormal = 0\n[displacement r]\nfacets = right\nnormal = 0\n'; } > held.scene
 }
 
@@ -41,34 +39,12 @@ same_force() {
     for case in '0.05 2e-4' '0.43 0' '1 2e-4'; do
         read -r slope sideways <<< "$case"
         keel "$slope"
-        press 2 "$sideways"
+        press "$sideways"
         mtled contact.scene keel.mts > contact.dat
         mtled held.scene keel.mts > held.dat
         same_force 2e-3
         fieldcmp --tol-avg 2e-5 contact.dat held.dat
     done
-}
-
-@test "the same in 3D, in other threads as well" {
-    keel 0.2
-    sed 's/Physical [^;]*;//g' keel.geo > solid.geo
-    cat >> solid.geo << 'END'
-Mesh.MeshSizeMax = 20; v[] = Extrude {0, 0, 40} { Surface{1}; };
-Physical Volume("body") = {v[1]}; Physical Surface("right") = {v[2]}; Physical Surface("top") = {v[4]}; Physical Surface("left") = {v[6]};
-Physical Surface("ends") = {1, v[0]};
-END
-    gmsh -v 1 -3 -nt 1 solid.geo -o keel.msh
-    nodes -u mm keel.msh | shapefn > keel.mts 2> note
-    awk 'BEGIN { for (s = -1; s <= 1; s += 2) { x = 200 * s; a = s < 0 ? -100 : 200; b = s < 0 ? 200 : -100
-        print 0, 0, a, x, 40, a, x, 40, b; print 0, 0, a, x, 40, b, 0, 0, b } }' > groove.tsv
-    press 3 2e-4 back
-    refused 2 'behind the rigid surface: state its other side' mtled contact.scene keel.mts
-    press 3 2e-4 front
-    mtled contact.scene keel.mts > contact.dat
-    mtled held.scene keel.mts > held.dat
-    same_force 1e-2
-    fieldcmp --tol-avg 5e-5 contact.dat held.dat
-    OMP_NUM_THREADS=2 mtled contact.scene keel.mts | cmp - contact.dat
 }
 
 @test "a cube in a corner of three planes stays there as when its sides are kept on them" {

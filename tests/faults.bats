@@ -325,7 +325,7 @@ slow() { cat block.scene && printf '[solver]\nmethod = relaxation\nramp_steps = 
 }
 
 @test "fault 22: SIGKILL while a checkpoint is written" {
-    run bash "$BATS_TEST_DIRNAME/kills.sh" "$([ -n "${THOROUGH:-}" ] && echo 40 || echo 3)"
+    run bash "$BATS_TEST_DIRNAME/../pipelines/soak/kills.sh" "$([ -n "${THOROUGH:-}" ] && echo 40 || echo 3)"
     record "killed at random moments, going on from the checkpoint" "$status" "${lines[-1]}" "$([ "$status" -eq 0 ] && echo yes || echo no)"
     [ "$status" -eq 0 ]
 }

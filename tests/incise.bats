@@ -77,30 +77,6 @@ size_of() {
     grep -q ' 0 nodes on the edge.*pieces: 4, ' said
 }
 
-@test "a body cut through is its two parts, each computed alone" {
-    body | tag -r 'body=all' --replace > body.mts 2> note
-    stl "$(panel .03 -.01 -.01 .02 0 .08 0 .09 0)" > blade.stl
-    incise -s blade.stl body.mts | tag -r other=body:2 > cut.mts
-    mts check cut.mts
-    {
-        pressed_cube zmin zmax .004
-        printf '[material other]\nregion = other\nE = 3000\nnu = 0.45\nrho = 1000\n'
-    } > whole.scene
-    incise -r other -o one.mts cut.mts
-    incise -r body -o two.mts cut.mts
-    sed '/material other/,$d' whole.scene > one.scene
-    awk '/^\[material body\]/ { off = 1; next } /^\[/ { off = 0 } !off' whole.scene > two.scene
-    for part in cut:whole one:one two:two; do
-        mtled -q "${part#*:}.scene" "${part%:*}.mts" 2> note | mts text > "${part%:*}.dat"
-    done
-    rows cells.region <(mts text cut.mts) > region
-    paste region <(rows cells <(mts text cut.mts)) | awk '{ for (i = 2; i <= 5; i++) of[$i] = $1 } END { for (n = 0; n in of; n++) print of[n] }' > of
-    for part in 0:one 1:two; do
-        paste of <(rows u cut.dat) | awk -v part="${part%:*}" '$1 == part { print $2, $3, $4 }' |
-            paste - <(rows u "${part#*:}.dat") | awk '{ for (i = 1; i <= 3; i++) { d = $i - $(i + 3); if (d * d > 1e-14) exit 1 } n++ } END { exit !(NF == 6 && n > 200) }'
-    done
-}
-
 @test "a slit in plane strain opens by 4 (1 - nu^2) sigma a / E in its middle, within 2 %" {
     # a = 10 mm in 80 x 80 mm, h = 1 mm about the slit; on the rim the displacements of the infinite plate (Westergaard)
     cat > slit.geo << 'END'

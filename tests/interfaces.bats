@@ -82,19 +82,6 @@ even() {
     [ "$status" -eq 1 ]
 }
 
-@test "any number of threads, a stream or a file: the same bytes; -i none: none of it" {
-    layers
-    ipoints body.mts > points.mts
-    OMP_NUM_THREADS=1 support -i middle,right points.mts | mts text | bare > one.txt
-    OMP_NUM_THREADS=3 support -i middle,right < points.mts | mts text | bare > three.txt
-    cmp one.txt three.txt
-    support -i left,middle,right points.mts | mts text | bare > all.txt
-    support points.mts | mts text | bare | cmp - all.txt
-    support -i none points.mts | mts text | bare > plain.txt
-    [ "$(rows support.side plain.txt | wc -l)" -eq 0 ]
-    support -i middle,right points.mts | support -i none | mts text | bare | cmp - plain.txt
-}
-
 @test "Gauss points see one side as well" {
     layers
     scene xmin,ymin,ymax xmax -0.01 | sed 's/^nu = .*/nu = 0.3/' > body.scene

@@ -150,7 +150,7 @@ END
 }
 
 @test "a long run: memory as at the start, energy kept" { # longer: make soak
-    bash "$BATS_TEST_DIRNAME/soak.sh" 100000 > table
+    bash "$BATS_TEST_DIRNAME/../pipelines/soak/soak.sh" 100000 > table
     growth=1.02
     ! nm "$(type -P mtled)" | grep -q ' __asan_init$' || growth=10 # it keeps what is freed for a while
     awk -v growth=$growth 'NR == 2 && $1 >= 100000 && $2 > 0 && $3 <= $2 * growth && $4 < 2e-3 { good = 1 } END { exit !good }' table

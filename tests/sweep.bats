@@ -177,17 +177,3 @@ AWK
         -f "$top/pipelines/uncertainty/percentile.awk" -f "$top/pipelines/uncertainty/place.awk" -v mesh=mesh.dat -v region=body) 2> said
     grep -q 'case short: [0-9]* rows, but the mesh has [0-9]* nodes' said
 }
-
-# bats test_tags=thorough
-@test "uncertainty: the same samples give the same table, others another one" {
-    table() {
-        make -C "$top" BUILD="$(realpath --relative-to "$top" "$BUILD")" OUT="$PWD/$1" UNCERTAINTY_SAMPLES="$2" UNCERTAINTY_SEED="$3" \
-            "$PWD/$1/uncertainty/uncertainty.tsv" > log 2>&1 || { cat log; return 1; }
-    }
-    table one 6 1
-    table two 6 1
-    table three 6 2
-    cmp one/uncertainty/uncertainty.tsv two/uncertainty/uncertainty.tsv
-    run ! cmp -s one/uncertainty/uncertainty.tsv three/uncertainty/uncertainty.tsv
-    awk -F '\t' '/centre moves\t/ { exit !($3 == 6 && $4 > 6 && $4 < 7 && $6 < $4 && $4 < $7) }' one/uncertainty/uncertainty.tsv
-}

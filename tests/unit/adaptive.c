@@ -1,9 +1,8 @@
 /* Adaptive integration: the points fill the body, integrate what the rule integrates, come deep only where
- * the products of gradients demand it, and converge to brute subdivision; sorted lists. */
+ * the products of gradients demand it, and converge to brute subdivision. */
 #include "box_fixture.h"
 
 #include "approx/adaptive/adaptive.h"
-#include "approx/points/sorted.h"
 #include "base/vector.h"
 
 /* A jittered box with its cells, radii of generous supports, and the options to integrate over it. */
@@ -41,21 +40,6 @@ static struct adaptive_points integrate(const struct body *body, double toleranc
     options.levels = levels;
     GOOD(adaptive_points_build(&options, &body->cells, body->radius, &points, &error));
     return points;
-}
-
-TEST(lists)
-{
-    static const int32_t a[] = {1, 4, 5, 9}, b[] = {0, 4, 9, 12, 13}, both[] = {0, 1, 4, 5, 9, 12, 13};
-    static const int32_t places_of_b[] = {0, 2, 4, 5, 6};
-    int32_t united[9], place[5];
-    assert_int_equal(sorted_union(a, 4, b, 5, united), 7);
-    assert_memory_equal(united, both, sizeof both);
-    assert_int_equal(sorted_union(a, 0, b, 5, united), 5);
-    assert_memory_equal(united, b, sizeof b);
-    assert_int_equal(sorted_union(a, 4, b, 0, united), 4);
-    assert_memory_equal(united, a, sizeof a);
-    sorted_places(b, 5, both, place);
-    assert_memory_equal(place, places_of_b, sizeof places_of_b);
 }
 
 /* Each cell's weights sum to its volume, its points lie in it and in its order; quadratics come out exact. */

@@ -143,40 +143,6 @@ TEST_IN_EACH_DIM(divergence_theorem)
     assert_true(largest > 0.01 * pow(sample_size, dim - 1));
 }
 
-/* A facet is the same face whatever node it begins with; which way it is turned gives the normal. */
-TEST_IN_EACH_DIM(other_vertex_orders)
-{
-    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, 4);
-    struct facet_set set = all_facets(&sample);
-    FREED_BY(boundary_averages_free) struct boundary_averages expected = averages_of(&sample, set);
-    int32_t *turned = zeros(set.count * dim, sizeof *turned);
-    for (int shift = 1; shift < dim + 1; shift++) {
-        /* Begin with the next node; at last, swap two: inside out. */
-        for (int64_t f = 0; f < set.count; f++) {
-            for (int k = 0; k < dim; k++) {
-                int from = dim == 2 || shift == dim ? dim - 1 - k : (k + shift) % dim;
-                turned[f * dim + k] = set.facet[f * dim + from];
-            }
-        }
-        double sign = dim == 2 || shift == dim ? -1.0 : 1.0;
-        FREED_BY(boundary_averages_free)
-        struct boundary_averages averages = averages_of(&sample, (struct facet_set){set.count, turned});
-        assert_int_equal(averages.count, expected.count);
-        for (int64_t a = 0; a < averages.count; a++) {
-            assert_int_equal(averages.node[a], expected.node[a]);
-            NEAR_TO(averages.area[a], expected.area[a], 1e-15);
-            for (int c = 0; c < dim; c++) {
-                NEAR_TO(averages.position[a * dim + c], expected.position[a * dim + c], 1e-15);
-                NEAR_TO(averages.normal[a * dim + c], sign * expected.normal[a * dim + c], 1e-14);
-            }
-            for (int64_t i = averages.ptr[a]; i < averages.ptr[a + 1]; i++) {
-                assert_int_equal(averages.idx[i], expected.idx[i]);
-                NEAR_TO(averages.phi[i], expected.phi[i], 1e-14);
-            }
-        }
-    }
-}
-
 /* In 3D two facets that touch at one node only do not share its boundary average. */
 TEST(touching_facets)
 {

@@ -34,15 +34,6 @@ TEST(extrapolation)
     assert_true(field_error_order(1.0, NAN, 2.0) == FIELD_ERROR_MOST_ORDER);
 }
 
-TEST_IN_EACH_DIM(ratio_of_cells)
-{
-    FREED_BY(cloud_free) struct cloud fine = lattice(dim, 9, 0.0), coarse = lattice(dim, 5, 0.0);
-    struct cells f = cells_of(&fine), c = cells_of(&coarse), nodes = c;
-    AT_MOST(fabs(field_error_ratio(&f, &c) - 2.0), 1e-14);
-    nodes.count = 0;
-    AT_MOST(fabs(field_error_ratio(&f, &nodes) - 1.8), 1e-14);
-}
-
 /* A mean over the body is no mean over its nodes, which a graded cloud has in one corner. */
 TEST_IN_EACH_DIM(mean_over_body)
 {

@@ -178,24 +178,6 @@ static struct mls with_mu(struct mls mls, double mu)
     return mls;
 }
 
-/* MMLS lies between linear MLS (mu huge) and quadratic MLS (mu nothing). */
-TEST_IN_EACH_DIM(limits_of_modified)
-{
-    FREED_BY(scattered_free)
-    struct scattered cloud = scatter(dim, dim == 2 ? 10 : 6, 30, &places[0], 0.3, 5);
-    struct support_options options = options_for(dim, BASIS_QUADRATIC, WEIGHT_QUARTIC);
-    FREED_BY(table_free) struct table table = {0};
-    GOOD(tabulate(&options, cloud.count, cloud.x, 30, cloud.points, &table, &error));
-    struct mls linear = options_for(dim, BASIS_LINEAR, WEIGHT_QUARTIC).mls;
-    struct mls modified = options_for(dim, BASIS_MODIFIED, WEIGHT_QUARTIC).mls;
-    struct mls huge = with_mu(modified, 1e12), nothing = with_mu(modified, 1e-14);
-    AT_MOST(apart(&huge, &linear, &cloud, &table), 1e-9);
-    AT_MOST(apart(&nothing, &options.mls, &cloud, &table), 1e-8);
-    struct mls middle = with_mu(modified, 1e-2);
-    assert_true(apart(&middle, &linear, &cloud, &table) > 1e-3);
-    assert_true(apart(&middle, &options.mls, &cloud, &table) > 1e-3);
-}
-
 /* An absolute mu is the dimensionless mu s^4; one mu for each monomial acts on that one. */
 TEST_IN_EACH_DIM(units_of_mu)
 {

@@ -76,15 +76,6 @@ TEST(a_line_is_extended_across)
     AT_MOST(fabs(value[1] * 1e3 - quadratic(on, 1)), 1e-12);
 }
 
-TEST(one_point_is_a_constant)
-{
-    double row[4] = {0.3, 0.3, 0, 0};
-    FREED_BY(scattered_fit_free) struct scattered_fit fit = table(row, 1, linear);
-    double x[2] = {1e-3, 0}, value[2], distance, spacing;
-    GOOD(scattered_fit_evaluate(&fit, 0, x, value, &distance, &spacing, &error));
-    AT_MOST(fabs(value[0] * 1e3 - linear(row, 0)), 1e-15);
-}
-
 /* The nearest of many points, by the grid as by looking at all; far from the points as well. */
 TEST(nearest_by_the_grid)
 {

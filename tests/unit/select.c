@@ -4,22 +4,6 @@
 #include "approx/cells/parts.h"
 #include "approx/cells/quality.h"
 
-TEST(regular_simplices_have_quality_one)
-{
-    const double triangle[] = {0, 0, 2, 0, 1, sqrt(3)};
-    const double tetrahedron[] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
-    const int32_t positive3[] = {0, 1, 3, 2};
-    const int32_t negative3[] = {0, 1, 2, 3};
-    const int32_t positive2[] = {0, 1, 2};
-    struct cells cells = {2, 3, triangle, 1, positive2};
-    assert_true(fabs(cell_quality(&cells, 0) - 1) < 1e-12);
-    cells = (struct cells){3, 4, tetrahedron, 1, positive3};
-    double q = cell_quality(&cells, 0);
-    assert_true(fabs(fabs(q) - 1) < 1e-12);
-    cells.node = negative3;
-    assert_true(fabs(cell_quality(&cells, 0) + q) < 1e-12);
-}
-
 /* A corner of the unit cube: V = 1/6, surface (3 + sqrt 3) / 2, R = sqrt 3 / 2. A flat one has none. */
 TEST(quality_is_the_ratio_of_radii)
 {
