@@ -1,4 +1,4 @@
-# make foreign: meshes as other programs make them (voxels, slivers, surfaces meshed anew, bodies with a gap, slender ones), held at one end and pushed by 12 %, as a new user would
+# make foreign: meshes as other programs make them (voxels, slivers, surfaces meshed anew, bodies with a gap, slender ones), fixed at one end and compressed by 12 %
 #
 # None has named parts of the boundary: tag makes them. A row for each mesh, whatever comes of it; at the end the share
 # that ran by default within 3 000 steps. Lips and bodies that the push presses into each other are pulled by as much in a row of

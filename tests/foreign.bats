@@ -218,7 +218,7 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
         [[ $(names --regions-of gmsh:geometrical $file) == gmsh_geometrical_1,gmsh_geometrical_2* ]]
     done
     sed 's/gmsh:physical/one/; s/gmsh:geometrical/other/' two.vtu > unknown.vtu
-    refused 2 "several arrays of whole numbers: --regions-of tells which has the regions: one, other" nodes -u m unknown.vtu
+    refused 2 "several arrays of whole numbers: --regions-of names the one with the regions: one, other" nodes -u m unknown.vtu
     refused 2 "the cells have no array 'none' of whole numbers" nodes -u m --regions-of none two.vtu
     [ "$(names numbered.vtu)" = body ]
     sed 's/$/\r/' "$corpus/vtk/text.vtk" > windows.vtk

@@ -28,11 +28,11 @@ size_of() {
     tag -v "$2" 2>&1 > /dev/null | sed -nE "s/^tag: (facets|region) ${1//|/[|]}: [^,]*, [a-z]+ ([^ ]+) m.*/\2/p"
 }
 
-@test "a cut ends inside: two lips of its area on it, an edge around it; nothing lost of the body, its regions and groups" {
+@test "a cut ends inside: two faces of its area on it, an edge around it; nothing lost of the body, its regions and groups" {
     body > body.mts
     stl "$(panel .03 .01 .012 .04 0 .004 0 .035 .02)" > blade.stl
     incise -v -s blade.stl -n knife -o cut.mts body.mts 2> said
-    [[ "$(cat said)" == "incise: knife: lips of "*"pieces: 1, "* ]]
+    [[ "$(cat said)" == "incise: knife: faces of "*"pieces: 1, "* ]]
     mts check cut.mts
     # .04 x .035 along: |u x v| = .0016148 m2; its corners are cut off within a cell
     for lip in front back; do
@@ -41,7 +41,7 @@ size_of() {
     for group in body lump xmin xmax ymin ymax zmin zmax; do
         awk -v a="$(size_of $group body.mts)" -v b="$(size_of $group cut.mts)" 'BEGIN { exit !(a > 0 && a / b - 1 < 1e-3 && 1 - a / b < 1e-3) }'
     done
-    # no node of a lip is off the plane by a tenth of a spacing; (-.14, -.8, 1.4) is its normal
+    # no node of a face is off the plane by a tenth of a spacing; (-.14, -.8, 1.4) is its normal
     mts text cut.mts > cut.txt
     rows facets cut.txt > facets
     paste <(rows facets.set cut.txt) facets | awk -v front=6 '$1 >= front { print $2; print $3; print $4 }' | sort -nu > lips
@@ -189,7 +189,7 @@ flat_blade() {
             else { line(.05, .06, 0, .2) } }'
 }
 
-# pressed_open DIM REGION... > SCENE: the lips of the cut k are pushed apart, the rest of the boundary is on springs
+# pressed_open DIM REGION... > SCENE: the faces of the cut k are pushed apart, the rest of the boundary is on springs
 pressed_open() {
     printf '[scene]\ndim = %s\nanalysis = quasi-static\n' "$1"
     for region in "${@:2}"; do printf '[material %s]\nregion = %s\nE = 3000\nnu = 0.45\nrho = 1000\n' "$region" "$region"; done
@@ -270,7 +270,7 @@ blades() {
     { cat whole.scene; printf '[contact lips]\nfacets = cut|front\nagainst = cut|back\n'; } > cut.scene
     stl "$(panel .02 .02 .04 .06 0 0 0 .06 0)" > blade.stl
     incise -v -s blade.stl -o cut.mts body.mts 2> said
-    grep -q 'lips of 0.0036 m2, 12 nodes on the edge; nodes: 2 put on edges, 0 moved, 6 doubled' said
+    grep -q 'faces of 0.0036 m2, 12 nodes on the edge; nodes: 2 put on edges, 0 moved, 6 doubled' said
     mtled -q whole.scene body.mts 2> note | mts print reactions > whole
     mtled -q cut.scene cut.mts 2> note | mts print reactions > cut
     paste whole cut | awk 'NR < 3 { d = $6 / $3 - 1; if (d > .005 || d < -.005) exit 1; n++ } END { exit n != 2 }'

@@ -234,10 +234,10 @@ END
     refused 2 "nodes on a facet of another cell, without being its corners: 1, the first at (0.01, 0.005) m: " nodes -u cm hang.msh
     sed 's/^8$/10/; s/^8 2 1 0$/&\n9 1 0 0\n10 1 1 0/; s/2 2 6 7 5/2 9 6 7 5/; s/8 3$/8 10/' hang.msh > apart.msh
     nodes -u cm apart.msh > apart.mts 2> said
-    grep -q "^nodes: nodes on a facet of another body or lip, without being its corners: 1, the first at (0.01, 0.005) m: " said
+    grep -q "^nodes: nodes on a facet of another body or face of a slit, without being its corners: 1, the first at (0.01, 0.005) m: " said
     mts check apart.mts | grep -q '^cells: nodes on a facet of another body'
     sed 's/^3$/6/; s/^3 3 2.*/&\n4 1 2 9 9 2 3\n5 1 2 9 9 2 5\n6 1 2 9 9 5 3/' hang.msh | nodes -u cm > lips.mts 2> said
-    grep -q "nodes on a facet of another body or lip, without being its corners: 1, " said
+    grep -q "nodes on a facet of another body or face of a slit, without being its corners: 1, " said
     printf '# mts 1\n# nodes.x f8 5 2 enc=text unit=m\n0 0\n1 0\n0 1\n0.5 0.5\n1 1\n\n\n' > hang.mts
     printf '# cells i4 3 3 enc=text\n0 1 2\n1 4 3\n3 4 2\n\n\n# end 2\n' >> hang.mts
     run -1 mts check hang.mts
@@ -257,11 +257,11 @@ END
     run ! grep corners said
 }
 
-@test "files of other programs are refused; the commands that nodes -h tells make meshes of them" {
+@test "files of other programs are refused; the commands that nodes -h gives make meshes of them" {
     cube tet
     sed 's/Physical [^;]*;//g' cube.geo > bare.geo # with groups gmsh writes these only
     gmsh -v 1 -2 bare.geo -o body.stl
-    refused 2 "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h tells how to make one" nodes -u m body.stl
+    refused 2 "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h says how to make one" nodes -u m body.stl
     printf 'Merge "body.stl";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n' > fill.geo
     gmsh -v 1 -3 fill.geo -o filled.msh
     nodes -u m -t filled.msh 2> /dev/null | volumes /dev/stdin | grep -qx '1 1'

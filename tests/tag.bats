@@ -113,7 +113,7 @@ END
     grep -q "region 'body' has no cells left: its name is dropped" said
     mts check i.mts
     refused 2 "104 of 1500 cells belong to no region" tag --replace -r lump=ball:0.05,0.05,0.1,0.03 g.mts
-    refused 2 "its cells would belong to nobody" tag -d lump g.mts
+    refused 2 "its cells would belong to no region" tag -d lump g.mts
     tag -r a=high:x,10% g.mts > twice.mts 2> /dev/null
     refused 2 "both facets and region have that name: write facets:a or region:a" tag -m a=c twice.mts
     tag -m region:a=c twice.mts | mts list | grep -q 'cells.region.*names=body,lump,c$'

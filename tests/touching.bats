@@ -93,7 +93,7 @@ notch_scene() { # FACETS AGAINST [MORE OUTPUT]
     printf '[contact lips]\nfacets = %s\nagainst = %s\n[output]\nreactions = yes\ngaps = yes\n%s[solver]\ntolerance = 1e-6\n' "$1" "$2" "${3-}"
 }
 
-@test "lips of a notch close as half of it does on a plane, and do not cross, whichever way they are named" {
+@test "faces of a notch close as half of it does on a plane, and do not cross, whichever way they are named" {
     notch
     printf '50 30\n50 120\n' > plane.tsv
     { notch_scene x x | sed '/displacement right/,/against/d; /^\[output/,$d'
@@ -314,7 +314,7 @@ END
     try 's/^against.*/against = nothing/' "[contact pair]: the mesh has no facet group 'nothing'; present: "
     try 's/^against.*/against = low, up/' '[contact pair]: facets and against have 8 facets in common: name the same groups in both'
     try 's/^against.*/against = */' 'facets in common: name the same groups in both'
-    try 's/^against.*/against = low/' '[contact pair]: no facet faces another one at rest: name groups whose outsides look at each other'
+    try 's/^against.*/against = low/' '[contact pair]: no facet faces another one at rest: name groups that face each other'
     try 's/^against.*/against = ymax/' 'no facet faces another one at rest'
     try 's/^against.*/&\nrigid = floor.tsv/' 'rigid: not allowed: against names facets of the body'
     try 's/^against.*/&\ncurve = linear/' 'curve: not allowed: against names facets of the body'

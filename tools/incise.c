@@ -7,13 +7,13 @@ static const char usage[] =
     "Reads a stream with nodes and cells (see nodes, voxels) and cuts the body along a blade: in 3D\n"
     "triangles, in 2D curves. The blade may end within the body, where the cut then has its edge, go\n"
     "through it, or branch. Cells are divided along it, nodes on it are doubled, and each of the two\n"
-    "lips is boundary with a name: facets NAME|front, the lip of the part in front of the blade, to\n"
-    "which its normals point (2D: on the right of the curve), and NAME|back. Nodes where the lips meet\n"
+    "faces is boundary with a name: facets NAME|front, that of the part in front of the blade, to\n"
+    "which its normals point (2D: on the right of the curve), and NAME|back. Nodes where they meet\n"
     "are the set NAME|edge. A cut of a name that exists extends it. Nodes near the blade are moved onto\n"
     "it, but stay on the boundaries of body, regions and groups; edges and corners of the blade are cut\n"
     "off within a cell. Regions, groups and sets go along; sections of later stages are left out.\n"
     "\n"
-    "Between its lips a cut that closes needs a contact in the scene: facets = NAME|front,\n"
+    "A cut that closes needs a contact of its faces in the scene: facets = NAME|front,\n"
     "against = NAME|back. To go on from the state before the cut: mtled --start. A blade that opens\n"
     "nothing is an error.\n"
     "\n"
@@ -25,7 +25,7 @@ static const char usage[] =
     "  -d, --deformed FILE  the blade is where the body is deformed by u of this stream, a result of mtled\n"
     "                       for these cells or others of the body\n"
     "  -x, --excise         take out what lies behind the blade, which is closed\n"
-    "  -l, --least PART%    take out pieces with a lip that are smaller than this part of the body, by\n"
+    "  -l, --least PART%    take out pieces at the cut that are smaller than this part of the body, by\n"
     "                       volume (default 0: keep all; below 0.1% they are noted)\n"
     "  -r, --region REGION  take out the cells of a region; the wall that is left is facets NAME|wall\n"
     "                       (default REGION|wall)\n"
@@ -125,7 +125,7 @@ static void tell(const struct tool *tool, const struct incise_options *options,
     }
     if (tool_given(tool, "verbose") && options->blade != NULL) {
         tool_note(tool,
-                  "%s: lips of %.4g %s, %lld nodes on the edge; nodes: %lld put on edges, %lld moved, %lld "
+                  "%s: faces of %.4g %s, %lld nodes on the edge; nodes: %lld put on edges, %lld moved, %lld "
                   "doubled; pieces: %d, the smallest of %.4g %s; poorest quality of a cell %.2g",
                   options->name, report->lips, size, (long long)report->edge, (long long)report->split,
                   (long long)report->moved, (long long)report->doubled,

@@ -35,7 +35,7 @@ static const char usage[] =
     "      --mu-unit UNIT     MU is absolute, in coordinates of that unit\n"
     "      --deformed         add x.deformed: the points, m, moved by the displacement field u\n"
     "      --skip-outside     leave out the points that lie in no cell, as of a grid that covers the\n"
-    "                         body; a section points.row then tells the rows of POINTS that are there\n"
+    "                         body; a section points.row then has the rows of POINTS that are there\n"
     "  -t, --text             write text instead of binary\n"
     "  -o, --output FILE      write to FILE, which appears only when whole; with\n"
     "                         --deformed and a name in .mrk.json or .fcsv, the moved points as landmarks\n"

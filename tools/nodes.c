@@ -26,7 +26,7 @@ static const char usage[] =
     "Groups of other files: in a deck of Abaqus, flat or of one part and instance, the sections, or else\n"
     "the sets of elements, are regions, surfaces are facets, sets of nodes node sets. In a model of FEBio\n"
     "the parts are regions, surfaces and shells facets, sets of nodes node sets. In a file of VTK an array\n"
-    "of whole numbers of the cells tells the regions, ARRAY_VALUE: cells.region of tovtk, whose facets and\n"
+    "of whole numbers of the cells gives the regions, ARRAY_VALUE: cells.region of tovtk, whose facets and\n"
     "sets come back as node sets; gmsh:physical of meshio; the only one; or that of --regions-of. What\n"
     "else such a file says is left out, with a note.\n"
     "\n"
@@ -41,7 +41,7 @@ static const char usage[] =
     "Options:\n"
     "  -u, --unit UNIT         unit of the coordinates: m, cm, mm, um, or metres as 0.0254 (required)\n"
     "  -r, --regions NAME,...  keep these regions only, with their nodes and facets\n"
-    "      --regions-of ARRAY  the array of a VTK file's cells that tells their regions\n"
+    "      --regions-of ARRAY  the array of a VTK file's cells with their regions\n"
     "  -l, --list              instead: list the groups of the mesh, with dimension, tag and number of\n"
     "                          elements, and stop\n"
     "  -v, --verbose           report box, volume, connected bodies, and the cells of poorest quality\n"
@@ -98,7 +98,7 @@ static void report(const struct tool *tool, const struct mesh *mesh, bool verbos
 }
 
 /* Cells of one body that part at nodes which hang on their facets are an error; different bodies may touch,
- * and lips that have names, not numbers of entities. */
+ * and faces of slits that have names, not numbers of entities. */
 static void check_joined(const struct tool *tool, const struct mesh *mesh, bool by_entity)
 {
     struct cells cells = {mesh->dim, mesh->node_count, mesh->x, mesh->cell_count, mesh->cells};

@@ -129,7 +129,7 @@ static enum status cut_along_blade(struct cut_body *whole, struct error *error)
 /* Of a connected piece. */
 struct piece {
     double volume;
-    bool front, back; /* has facets of that lip */
+    bool front, back; /* has facets of that side */
     bool taken_out;
 };
 

@@ -67,7 +67,7 @@ static int64_t find_edge(const struct cut_body *whole)
     return own;
 }
 
-/* of_lip[nodes], bits: 1 for a node of the front lip, 2 of the back. */
+/* of_lip[nodes], bits: 1 for a node of the front face, 2 of the back. */
 static void mark_lips(int dim, int64_t count, const int32_t *facet, const int32_t *group, int32_t front,
                       int32_t back, int32_t *of_lip)
 {
@@ -76,8 +76,9 @@ static void mark_lips(int dim, int64_t count, const int32_t *facet, const int32_
     }
 }
 
-/* edge[nodes]: nodes of both lips, where the cells go round: which have no copy, as they have in the corner
- * of a piece between lips of two sheets. Old nodes that were on a lip before are judged as they were then. */
+/* edge[nodes]: nodes of both faces, where the cells go round: which have no copy, as they have in the corner
+ * of a piece between faces of two sheets. Old nodes that were on a face before are judged as they were then.
+ */
 static enum status mark_edge(const struct cut_body *whole, bool *edge, struct error *error)
 {
     const struct division *body = &whole->body;

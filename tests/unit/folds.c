@@ -341,7 +341,7 @@ TEST(flat)
         assert_int_equal(folds_list_flat(&shape.folds, cell), cases[i].listed);
         if (cases[i].listed > 0) {
             assert_int_equal(cell[0], 2);
-            shape.folds.upright[2] = true;
+            shape.folds.oriented[2] = true;
             assert_int_equal(found(&shape, y).kind, FOLD_NONE);
         }
         folds_free(&shape.folds);

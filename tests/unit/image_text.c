@@ -65,10 +65,10 @@ TEST(notes)
     static const char *const cases[][2] = {
         {NRRD3
          "space: LPS\nspace orign: (1,2,3)\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nmin: 1\nmin: 1\n" V,
-         "tells no space origin: the first voxel lies at 0; fields that are not known, left out: space "
+         "has no space origin: the first voxel lies at 0; fields that are not known, left out: space "
          "orign"},
         {MHA "ElementSpacing = 1 1 1\nColor = 1 0 0 1\nOfset = 1 2 3\nElementSizes = 1 1 1\n" MHA_END,
-         "tells no Offset: the first voxel lies at 0; fields that are not known, left out: Ofset, "
+         "has no Offset: the first voxel lies at 0; fields that are not known, left out: Ofset, "
          "ElementSizes"},
         {MHA "ElementSpacing = 1 1 1 9\nOffset = 1 2 3\n" MHA_END, ""},
     };

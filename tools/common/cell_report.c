@@ -67,8 +67,8 @@ enum status cell_report_hanging(const struct cells *cells, int64_t named_count, 
                  "nodes on a facet of another %s, without being its corners: %lld, the first at %s m: the "
                  "sides are not joined there: mesh both alike (in gmsh: BooleanFragments, or Coherence, "
                  "before meshing); %s",
-                 *parts ? "cell" : "body or lip", (long long)found->count, place,
-                 *parts ? "lips of a slit need names (physical groups)"
+                 *parts ? "cell" : "body or face of a slit", (long long)found->count, place,
+                 *parts ? "the faces of a slit need names (physical groups)"
                         : "where they are to touch, the scene needs a contact");
     }
     return STATUS_OK;

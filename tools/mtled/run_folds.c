@@ -113,7 +113,7 @@ static enum status find_upright_cells(struct run *run, int64_t count, const doub
     enum status status = field_least_determinants(&recorded.support, &recorded.shapes, &folds->space, count,
                                                   folds->flat, u, least, error);
     for (int64_t i = 0; i < count && status == STATUS_OK; i++) {
-        folds->folds.upright[folds->flat[i]] = least[i] > 0.0;
+        folds->folds.oriented[folds->flat[i]] = least[i] > 0.0;
     }
     return status == STATUS_VERDICT ? STATUS_OK : status;
 }
@@ -122,8 +122,8 @@ static enum status find_upright_cells(struct run *run, int64_t count, const doub
 static struct fold find(struct run *run, const double *u)
 {
     struct run_folds *folds = &run->folds;
-    bool *upright = folds->folds.upright;
-    memset(upright, 0, (size_t)folds->folds.input.cell_count * sizeof *upright);
+    bool *oriented = folds->folds.oriented;
+    memset(oriented, 0, (size_t)folds->folds.input.cell_count * sizeof *oriented);
     struct fold fold = folds_find(&folds->folds, folds->field, folds->stopped);
     int64_t count = fold.kind == FOLD_CELL ? folds_list_flat(&folds->folds, folds->flat) : 0;
     if (count > 0) {

@@ -48,7 +48,7 @@ void run_folds_at_rest(const struct run *run)
                   "%s: %s: set them apart in the mesh, or allow it ([output] folds = allowed)",
                   run->scene->path, text);
     }
-    tool_note(run->tool, "%s: %s; whether others do later is not looked for", run->scene->path, text);
+    tool_note(run->tool, "%s: %s; later ones are not searched for", run->scene->path, text);
 }
 
 /* Whether a contact of the scene lets all of the boundary touch itself. */

@@ -81,7 +81,7 @@ static enum status fail_kept(const struct run *run, struct error *error)
                 run->frames.kept_file, run->checkpoint.file);
 }
 
-/* Open FILE.frames, cut to what it held at the checkpoint. */
+/* Open FILE.frames, cut to what it had at the checkpoint. */
 static enum status open_kept(struct run *run, struct error *error)
 {
     struct run_frames *frames = &run->frames;

@@ -81,7 +81,7 @@ static bool borders(int dim, const int32_t *face, int count, const int32_t *corn
 }
 
 /* Whether a node is on an edge of the facet, within `near`, that is an edge of a named facet as well: at the
- * rim of a lip, where the surface beyond may have no name. */
+ * rim of a slit's face, where the surface beyond may have no name. */
 static bool is_on_rim(const struct search *search, int64_t facet, int32_t node, double near)
 {
     int dim = search->cells->dim;
@@ -103,7 +103,7 @@ static bool is_on_rim(const struct search *search, int64_t facet, int32_t node, 
     return false;
 }
 
-/* Whether a facet is a lip, and the node on another one. */
+/* Whether a facet is a face of a slit, and the node on another one. */
 static bool is_lip(const struct search *search, int64_t facet, int32_t node, double near)
 {
     bool other = false;

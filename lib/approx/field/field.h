@@ -25,7 +25,8 @@ MUST_CHECK enum status field_outside(const struct cells *cells, const double *sp
  * each cell of values[node_count * cols]. Outside of the cells, that of the nearest cell is continued;
  * STATUS_INPUT farther away than FIELD_MARGIN. An interpolated displacement that inverts none of these cells
  * hardly inverts a cell of a finer mesh. The solver's smooth field may, as its gradients vary within a cell
- * near corners. Where lips or bodies touch, each node takes the value on the side of its own cells. */
+ * near corners. Where faces of a slit or bodies touch, each node takes the value on the side of its own
+ * cells. */
 MUST_CHECK enum status field_carry(const struct cells *from, int64_t cols, const double *values,
                                    const struct cells *to, double *result, struct error *error);
 

@@ -24,7 +24,7 @@ struct volumes {
     double *pressure; /* labels->count */
     double *matrix;   /* labels->count squared */
     bool *movable;    /* nodes: of interfaces that are near them */
-    bool *free;       /* nodes: movable, and not held by their cells or the bound in the last sweep */
+    bool *free;       /* nodes: movable, and not stopped by their cells or the bound in the last sweep */
     double *place;    /* nodes: on their interface */
 };
 

@@ -13,7 +13,7 @@
 /* Facets that turn by 45 degrees or more at a node belong to different sides; slightly less, so that
  * round-off does not decide at chamfers of 45 degrees. */
 static const double side_cosine = 0.7072;
-/* Angle in radians below which the two sides of an edge are the lips of a closed slit, not those of a spike.
+/* Angle in radians below which the two sides of an edge are the faces of a closed slit, not those of a spike.
  */
 static const double least_angle = 1e-6;
 

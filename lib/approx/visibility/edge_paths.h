@@ -3,7 +3,7 @@
  * A place belongs to the node nearest to it. It is connected to another node when the straight segment
  * between the two nodes stays within the cells (see visibility.h), or when the shortest path along edges of
  * the cells is at most twice as long as that segment. So places around a mild fold of the boundary are
- * connected, the two lips of a slit are not. */
+ * connected, the two faces of a slit are not. */
 #pragma once
 
 #include "approx/visibility/visibility.h"

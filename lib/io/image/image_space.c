@@ -196,7 +196,7 @@ enum status nifti_space(const struct nifti *header, struct image *image, struct 
         image->space = header->qform;
     } else {
         from_sizes(header, matrix);
-        image_note(image, "tells neither sform nor qform: first voxel at the origin, axes taken to be RAS");
+        image_note(image, "has neither sform nor qform: first voxel at the origin, axes taken to be RAS");
     }
     if (header->sform > 0 && header->qform > 0) {
         from_qform(header, other);

@@ -117,10 +117,10 @@ static enum status place(const struct metaimage *meta, const struct text_header 
         matrix[r][3] = sign[r] * meta->origin[r];
     }
     if (!header_has(header, SPACING) && !header_has(header, ELEMENT)) {
-        image_note(image, "tells no spacing: 1 mm taken");
+        image_note(image, "has no spacing: 1 mm taken");
     }
     if (!header_has(header, ORIGIN)) {
-        image_note(image, "tells no Offset: the first voxel lies at 0");
+        image_note(image, "has no Offset: the first voxel lies at 0");
     }
     header_note_unknown(header, image);
     image->intent = meta->channels > 1 ? IMAGE_INTENT_VECTOR : 0;

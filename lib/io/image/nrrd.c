@@ -287,11 +287,11 @@ static enum status place(struct nrrd *nrrd, const struct text_header *header, st
     }
     if (image->space == IMAGE_SPACE_UNKNOWN) {
         image_note(image, nrrd->has_directions || header_has(header, SPACINGS)
-                              ? "tells no anatomical space: axes taken to be RAS"
-                              : "tells neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
+                              ? "has no anatomical space: axes taken to be RAS"
+                              : "has neither spacing nor anatomical space: 1 mm, and axes RAS, taken");
     }
     if (nrrd->has_directions && !header_has(header, ORIGIN)) {
-        image_note(image, "tells no space origin: the first voxel lies at 0");
+        image_note(image, "has no space origin: the first voxel lies at 0");
     }
     header_note_unknown(header, image);
     RETURN_IF_ERROR(header_sizes(size, component < 0 ? 1 : nrrd->size[component],

@@ -239,7 +239,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     if (format == NULL) {
         return fail(error, STATUS_INPUT,
                     size == 0 ? "empty"
-                              : "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h tells how to "
+                              : "not a mesh of gmsh, Abaqus, CalculiX, FEBio or VTK: nodes -h says how to "
                                 "make one of other files");
     }
     format->read(&reader);

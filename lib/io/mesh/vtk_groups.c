@@ -63,7 +63,7 @@ static const struct vtk_array *find_regions(struct vtk_input *v)
     } else if (count > 1) {
         msh_fail(
             v->r,
-            "the cells have several arrays of whole numbers: --regions-of tells which has the regions: %s",
+            "the cells have several arrays of whole numbers: --regions-of names the one with the regions: %s",
             names);
     }
     return found;

@@ -41,7 +41,7 @@ static enum status add_row(const struct prescription *p, const struct boundary_a
                                direction, target, p->condition->curve, p->number, averages->node[a], error);
 }
 
-/* Add all rows of one average, whatever directions are held already. */
+/* Add all rows of one average, whatever directions are prescribed already. */
 static enum status add_average(const struct prescription *p, const struct boundary_averages *averages,
                                int64_t a, struct error *error)
 {
@@ -53,7 +53,7 @@ static enum status add_average(const struct prescription *p, const struct bounda
     return status;
 }
 
-/* Mark in shared[], of an average's group, the components that are held at its node. */
+/* Mark in shared[], of an average's group, the components that are prescribed at its node. */
 static void note_shared(const struct prescription *p, int32_t node, bool *shared)
 {
     int dim = p->held->dim;
@@ -66,7 +66,7 @@ static void note_shared(const struct prescription *p, int32_t node, bool *shared
 }
 
 /* Add the rows of one average along directions that no earlier condition holds at its node. Where the whole
- * displacement is prescribed, the directions are made orthogonal to those held. */
+ * displacement is prescribed, the directions are made orthogonal to those prescribed before. */
 static enum status add_rest(const struct prescription *p, const struct boundary_averages *averages, int64_t a,
                             bool *shared, struct error *error)
 {

@@ -97,7 +97,7 @@ static enum status add_between(const struct assembly *input, const struct contac
         part, itself ? 0 : condition->sign, condition->stiffness, !condition->whole, contact, &any, error));
     if (!any && !condition->whole) {
         return fail(error, STATUS_INPUT,
-                    "%s: no facet faces another one at rest: name groups whose outsides look at each other",
+                    "%s: no facet faces another one at rest: name groups that face each other",
                     condition->where);
     }
     return STATUS_OK;

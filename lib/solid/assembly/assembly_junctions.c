@@ -11,7 +11,7 @@
 static const double junction_stiffness = 0.85;
 
 /* (*junction)[node_count], to be freed: nodes of edges of these kinds, where faces with at least `least`
- * prescribed directions are held. */
+ * prescribed directions end. */
 static enum status find_junctions(const struct assembly *input, int kinds, int least, bool **junction,
                                   struct error *error)
 {

@@ -32,7 +32,7 @@ static void axes_of_normal(int dim, const double *n, double *axis)
 }
 
 /* The springs of one point. Of rows of one average the stiffest comes first: the preconditioner takes the
- * average to be held by that in all directions. */
+ * average to be supported by that in all directions. */
 static enum status add_springs(const struct assembly *input, int64_t number,
                                const struct boundary_averages *points, int64_t p, struct solid_system *system,
                                struct error *error)

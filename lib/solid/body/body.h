@@ -59,7 +59,7 @@ struct block {
 struct nodal_pressures {
     struct sparse matrix;
     double *inverse; /* of each row: S^-1; 0 where nothing carries pressure; */
-    double *held;    /* pressure held since an augmentation, Pa; */
+    double *held;    /* pressure of the last augmentation, Pa; */
     double *change;  /* what the last augmentation changed it by, Pa; */
     double *weight;  /* by which it counts, m3/Pa (2D: m2/Pa): 0 without a limit */
     bool limited;    /* some weights are not 0 */
@@ -149,10 +149,10 @@ void body_gather(struct body *body, double *vector);
 void body_limit_bulk(struct body *body, double most);
 bool body_is_limited(const struct body *body);
 
-/* Augmentation: the nodal pressures of the last evaluation become the held ones. Where the body can change
- * its volume, few augmentations suffice; where it is confined, each one supplies only the share limited /
- * bulk of what the pressures lack. `steady`: the load was the same at the last two augmentations; where their
- * changes form a geometric sequence, and they lack more than `most`, its limit is held (Aitken's
+/* Augmentation: the nodal pressures of the last evaluation become those of the augmentation. Where the body
+ * can change its volume, few augmentations suffice; where it is confined, each one supplies only the share
+ * limited / bulk of what the pressures lack. `steady`: the load was the same at the last two augmentations;
+ * where their changes form a geometric sequence, and they lack more than `most`, its limit is taken (Aitken's
  * extrapolation). Returns an estimate of what the pressures still lack, relative to the pressures or to the
  * shear stress at `strain`, whichever is larger; INFINITY: not known yet. */
 double body_augment(struct body *body, bool steady, double most, double strain);

@@ -315,7 +315,7 @@ KERNEL_INLINE void couple_volumes(const lanes *J, const lanes *volume, const lan
     *pressure -= c;
 }
 
-/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + c g + p J), p held: see smoothed_cells.h. */
+/* dE/dF in P and dE/dF_h in T of w (W_iso(F) + c g + p J), p constant: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            block_rows P, block_rows T)
 {

@@ -18,12 +18,12 @@ MUST_CHECK enum status held_build(int dim, int64_t node_count, struct held_direc
                                   struct error *error);
 void held_free(struct held_directions *held);
 
-/* rest[dim] = the component of a direction orthogonal to the held directions of the node and to `count` more
- * orthonormal vectors; returns its length. */
+/* rest[dim] = the component of a direction orthogonal to the prescribed directions of the node and to `count`
+ * more orthonormal vectors; returns its length. */
 double held_rest(const struct held_directions *held, int32_t node, int count, const double *more,
                  const double *direction, double *rest);
 
-/* A unit direction is held if its component orthogonal to the held directions is shorter than this. */
+/* A unit direction counts as prescribed if its component orthogonal to those is shorter than this. */
 #define HELD_LEAST 1e-3
 
 /* Add the directions of the rows from `first` to before `last`. */

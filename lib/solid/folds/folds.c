@@ -99,7 +99,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
     struct box box = box_of(input->dim, input->node_count, input->x);
     folds->extent = box_diagonal(&box);
     RETURN_IF_ERROR(NEW_ARRAY(&folds->y, size, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&folds->upright, input->cell_count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&folds->oriented, input->cell_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->boxes, input->facet_count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&folds->found, ranks_count(input->ranks), error));
     RETURN_IF_ERROR(build_rings(folds, error));
@@ -120,7 +120,7 @@ enum status folds_build(const struct fold_input *input, struct folds *folds, str
 
 void folds_free(struct folds *folds)
 {
-    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->upright, folds->is_held, folds->part,
+    FREE_ALL(folds->rings, folds->ring_ptr, folds->ring_cell, folds->oriented, folds->is_held, folds->part,
              folds->bodies, folds->y, folds->boxes, folds->found);
     *folds = (struct folds){0};
 }

@@ -73,8 +73,8 @@ struct folds {
     int64_t ring_count;
     int64_t *ring_ptr;  /* ring_count + 1: the cells around each, */
     int32_t *ring_cell; /* by their dim + 1 nodes, in a positive order, those of the ring first */
-    bool *upright; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
-    bool *is_held; /* node_count: of a held facet */
+    bool *oriented; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
+    bool *is_held;  /* node_count: of a prescribed facet */
     double extent; /* diagonal of the box around the nodes, m */
     int32_t *part; /* cell_count: the connected body of each cell */
     struct fold_body *bodies; /* body_count */
@@ -96,8 +96,9 @@ void folds_free(struct folds *folds);
 
 /* Look for folds of the displacement field u[node_count * dim] at the nodes: where the map is not one-to-one.
  * Of several kinds the one that comes first in the list of kinds is returned. Nodes that are `stopped`
- * [node_count] are in contact with a surface. A cell between such nodes and held ones is pressed flat against
- * a plate. It may be turned over a little, as conditions hold averages and not nodes, and does not count. */
+ * [node_count] are in contact with a surface. A cell between such nodes and prescribed ones is pressed flat
+ * against a plate. It may be turned over a little, as conditions hold averages and not nodes, and does not
+ * count. */
 struct fold folds_find(struct folds *folds, const double *u, const bool *stopped);
 
 /* After folds_find: list the cells that are turned over and were flat at rest, with a height of less than a

@@ -56,8 +56,8 @@ static struct fold search(const struct folds *folds, int64_t count, search_range
     return combine(ranks_count(ranks), folds->found);
 }
 
-/* Whether the cell is pressed flat against an obstacle: all its nodes are held or stopped, and at least one
- * is stopped. */
+/* Whether the cell is pressed flat against an obstacle: all its nodes are prescribed or in contact, and at
+ * least one is stopped. */
 static bool is_flattened(const struct folds *folds, const int32_t *node)
 {
     bool all = true, any = false;
@@ -113,7 +113,7 @@ static struct fold search_cells(const struct folds *folds, int64_t begin, int64_
     int dim = input->dim, corners = dim + 1;
     for (int64_t c = begin; c < end; c++) {
         const int32_t *node = input->cell + c * corners;
-        bool folded = !(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) && !folds->upright[c] &&
+        bool folded = !(cell_size(folds, node) > 0.0) && is_turned_over(folds, node) && !folds->oriented[c] &&
                       !is_flattened(folds, node);
         if (folded && fold.count++ == 0) {
             fold.kind = FOLD_CELL;

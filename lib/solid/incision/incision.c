@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A node on a lip along which the blade goes, to this cosine, is on the blade within this share of its
- * longest edge: a cut goes on from its edge, although a deformed body, or a blade that has moved, is off it a
- * little. */
+/* A node on a face of an earlier cut along which the blade goes, to this cosine, is on the blade within this
+ * share of its longest edge: a cut goes on from its edge, although a deformed body, or a blade that has
+ * moved, is off it a little. */
 static const double along_lip = 0.87, near_lip = 0.4;
 
 /* ---- values at nodes ---- */
@@ -16,7 +16,7 @@ void cut_free(struct cut *cut)
     FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->lip);
 }
 
-/* The lips of a cut that goes on. */
+/* The faces of a cut that is continued. */
 static enum status find_lips(struct cut *cut, int32_t front, int32_t back, struct error *error)
 {
     const struct division *body = cut->body;

@@ -1,4 +1,5 @@
-/* Cutting a body along a blade: cells are divided, nodes on the blade doubled, its lips become facets.
+/* Cutting a body along a blade: cells are divided, nodes on the blade doubled, the faces of the cut become
+ * facets.
  *
  * The height of a node over a sheet of the blade has a sign; the sheet is continued beyond its border along
  * its tangents. Edges between heights of different signs are split where they meet it, in all cells that the
@@ -14,8 +15,8 @@
 #include "solid/incision/blade.h"
 #include "solid/incision/division.h"
 
-/* Cut along one sheet. The facets of the lips become facets of the groups front, that of the cells in front
- * of the sheet, and back. *opened: how many faces have become lips; 0: the sheet meets no cell, lies on the
+/* Cut along one sheet. The faces of the cut become facets of the groups front, that of the cells in front
+ * of the sheet, and back. *opened: how many faces are opened; 0: the sheet meets no cell, lies on the
  * boundary, or within one cell. Errors: STATUS_INPUT as faces_build, STATUS_SYSTEM (memory). */
 MUST_CHECK enum status incision_cut(struct division *body, const struct sheet *sheet, int32_t front,
                                     int32_t back, int64_t *opened, struct error *error);

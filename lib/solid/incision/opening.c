@@ -1,4 +1,4 @@
-/* Opening the faces on the blade: nodes doubled, lips; see incision.h. */
+/* Opening the faces on the blade: nodes doubled, faces of the cut; see incision.h. */
 #include "solid/incision/incision_private.h"
 
 #include "base/sets.h"

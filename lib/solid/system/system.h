@@ -192,7 +192,7 @@ double system_penalty_force(const struct solid_system *system, int64_t r, const 
 
 /* Whether relaxations use an inverse factor (inverse_stiffness.h): with smoothed cells and node values, in
  * 3D, and in 2D if cells are flat. Otherwise, in 2D supports are narrow, and it costs more than it saves
- * where lips press on each other. */
+ * where faces of a cut press on each other. */
 bool system_has_inverse(const struct solid_system *system);
 
 /* mass[node_count] > 0: the fictitious mass, a bound of each node's stiffness, N/m (2D: N/m2). Without an
