@@ -18,18 +18,7 @@ two_triangles() {
     echo '# end 8'
 }
 
-# Every tag closed in order, one root: enough XML for what tovtk writes.
-well_formed() {
-    awk 'BEGIN { RS = "<" }
-         NR == 1 { if ($0 != "") exit bad = 1; next }
-         { if (!match($0, />/)) exit bad = 1
-           tag = substr($0, 1, RSTART - 1)
-           if (tag ~ /^\?/ || tag ~ /\/$/) next
-           split(tag, word, /[ \n]/)
-           if (tag ~ /^\//) { if (stack[depth--] != substr(word[1], 2)) exit bad = 1 }
-           else { if (depth == 0 && roots++ > 0) exit bad = 1; stack[++depth] = word[1] } }
-         END { exit bad || depth != 0 || roots != 1 }' "$1"
-}
+well_formed() { /usr/bin/python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$1"; }
 
 # The content of the DataArray named $2 of file $1.
 array() {

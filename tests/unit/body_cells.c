@@ -1,44 +1,9 @@
-/* Smoothed cells in the force loop: the patch test, gradients as those of the table, and volume ratios that
- * make up the volume within the boundary. */
+/* Smoothed cells in the force loop: gradients as those of the table, and volume ratios that make up the
+ * volume within the boundary. */
 #include "body_setup.h"
 
 #include "base/vector.h"
 #include "solid/body/stress.h"
-
-/* A linear field of a body of one material is in equilibrium inside: with smoothed cells to round-off. */
-TEST_IN_EACH_DIM(accumulation)
-{
-    static const double A[9] = {1.1, 0.2, 0, 0.1, 0.95, 0, 0, 0, 1};
-    FREED_BY(sample_free) struct sample sample = make_sample(dim, true, dim == 2 ? 9 : 7);
-    for (int averaged = 0; averaged < 2; averaged++) {
-        struct setup setup = one_material(MATERIAL_NEO_HOOKEAN, averaged == 1);
-        setup.faces = true;
-        FREED_BY(body_free) struct body body = make_body(&sample, &setup);
-        int64_t inner = 0;
-        double *u = linear_field(&sample, A, NULL);
-        double *force = zeros(sample.cloud.node_count * dim, sizeof *force);
-        bool *outer = zeros(sample.cloud.node_count, sizeof *outer);
-        for (int64_t f = 0; f < sample.assembly.faces.count; f++) {
-            for (int g = 0; g < FACE_POINTS(dim) && sample.assembly.faces.cell[2 * f + 1] < 0; g++) {
-                int64_t point = f * FACE_POINTS(dim) + g;
-                for (int64_t i = sample.assembly.boundary_lists.ptr[point];
-                     i < sample.assembly.boundary_lists.ptr[point + 1]; i++) {
-                    outer[sample.assembly.boundary_lists.idx[i]] =
-                        true; /* the boundary's integral feels it */
-                }
-            }
-        }
-        (void)body_force(&body, u, force);
-        double most = largest(force, sample.cloud.node_count * dim);
-        for (int64_t n = 0; n < sample.cloud.node_count; n++) {
-            inner += !outer[n];
-            for (int a = 0; a < dim && !outer[n]; a++) {
-                NEAR_TO(force[n * dim + a], 0.0, 1e-12 * most);
-            }
-        }
-        assert_true(inner > 0);
-    }
-}
 
 /* Displacement at a node, or mean over a face, from the tables of shape functions. */
 static void value_at_node(const struct sample *sample, int64_t node, const double *u, double *value)

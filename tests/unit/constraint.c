@@ -109,34 +109,6 @@ TEST(dependent_rows_share)
     system_free(&line.system);
 }
 
-/* On some nodes alone rows put what they put there of all nodes, to the last bit, and nothing elsewhere. */
-TEST(rows_of_some_nodes)
-{
-    static const double force[4] = {0.3, -0.7, 1.1, 0.13};
-    const bool wanted[NODES] = {[3] = true, [4] = true, [7] = true};
-    struct line line;
-    struct constraint_nodes of_all, kept;
-    double all[2 * NODES] = {0.0}, some[2 * NODES] = {0.0};
-    line_begin(&line);
-    hold(&line, 0, 2, 0.1, 0); /* none of its nodes */
-    hold(&line, 2, 5, 0.3, 0);
-    hold(&line, 3, 7, 0.2, 1);
-    hold(&line, 4, 8, 0.5, 0);
-    GOOD(constraint_nodes_build(&line.system.rows, NODES, line.mass, NULL, &of_all, &error));
-    GOOD(constraint_nodes_build(&line.system.rows, NODES, line.mass, wanted, &kept, &error));
-    assert_true(!kept.used[0] && kept.used[1] && kept.lists.ptr[NODES] == 2 + 2 + 2);
-    constraint_nodes_spread(&of_all, force, all);
-    constraint_nodes_spread(&kept, force, some);
-    NEAR_TO(all[2 * 3], (force[1] / 3 + force[2] / 4) / line.mass[3], 1e-15);
-    for (int i = 0; i < 2 * NODES; i++) {
-        double expected = wanted[i / 2] ? all[i] : 0.0;
-        assert_memory_equal(&some[i], &expected, sizeof expected);
-    }
-    constraint_nodes_free(&of_all);
-    constraint_nodes_free(&kept);
-    system_free(&line.system);
-}
-
 /* Targets that disagree are a verdict with both sections, the node, its place and the difference. */
 TEST(disagreement_is_named)
 {
