@@ -169,12 +169,15 @@ def volumes(path):
 def change(source, path, what):
     a = nib.load(source)
     values = a.get_fdata()
-    if what == "scaled":
-        values = np.round(values * 4)
-        image = nib.Nifti1Image(values.astype(np.int16), a.affine, a.header)
-        image.set_data_dtype(np.int16)
-        image.header.set_slope_inter(0.25, 3)
-    elif what == "rgb":
+    if what == "scaled":  # nibabel scales when it writes: the stored numbers are put in as they are
+        header = nib.Nifti1Image(values.astype(np.int16), a.affine, a.header).header
+        header.set_data_dtype(np.int16)
+        header.set_xyzt_units("mm")
+        header["scl_slope"], header["scl_inter"], header["vox_offset"] = 0.25, 3, 352
+        with open(path, "wb") as file:
+            file.write(header.binaryblock + b"\0\0\0\0" + np.round(values * 4).astype("<i2").tobytes(order="F"))
+        return
+    if what == "rgb":
         colours = np.zeros(values.shape, dtype=[("R", "u1"), ("G", "u1"), ("B", "u1")])
         for name, factor in zip("RGB", (1, 0.5, 0.25)):
             colours[name] = np.clip(values * factor, 0, 255)
@@ -195,13 +198,6 @@ def change(source, path, what):
     else:
         sys.exit(f"no change '{what}'")
     image.header.set_xyzt_units("mm")
-    if what == "scaled":  # nibabel scales when it writes: the stored numbers are put in as they are
-        image.header["scl_slope"], image.header["scl_inter"] = 0.25, 3
-        with open(path, "wb") as file:
-            header = image.header.copy()
-            header["vox_offset"] = 352
-            file.write(header.binaryblock + b"\0\0\0\0" + values.astype("<i2").tobytes(order="F"))
-        return
     nib.save(image, path)
 
 
