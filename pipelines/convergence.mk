@@ -15,7 +15,7 @@ block10_graded.schemes := default mixed
 cube_graded.schemes := default mixed
 schemes = $(or $($(1).schemes),$(CONVERGENCE_SCHEMES))
 
-# Meshes: geometry, unit, sizes, what gmsh is told.
+# Meshes: geometry, unit, sizes, settings of gmsh.
 square.geometry := $(CONVERGENCE_INPUT)/square.geo
 cook.geometry := examples/hard/cook.geo
 brain.geometry := examples/brain2d/brain2d.geo

@@ -1,6 +1,6 @@
 # make estimate: how well runs know their remaining error, and how many steps beyond the optimum they take, on the hard cases
 #
-# Each relaxation of the hard cases to 1e-3 and to 1e-5: the estimated error, with what contacts still give way by, which is to be an upper bound; the true
+# Each relaxation of the hard cases to 1e-3 and to 1e-5: the estimated error, with the remaining penetration of contacts, which is to be an upper bound; the true
 # one, against a run to 1e-8, the larger of those at the worst node and on the whole; the steps, those in which the load went on among them, and over
 # their optimum, those of the load and of the critical damping of the lowest mode, log(1 / error) w_max / w_min / 2.
 ESTIMATE := $(OUT)/estimate

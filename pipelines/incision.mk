@@ -46,7 +46,7 @@ $(INCISION_SIZES:%=$(INCISION)/penny-%.dat): $(INCISION)/penny.scene
 $(INCISION_OPENINGS:%=$(INCISION)/%.dat): %.dat: %.mts
 	mtled -v $(@D)/$(firstword $(subst -, ,$(notdir $*))).scene $< > $@ $(INCISION_LOG)
 
-# The lips are the last two groups.
+# The faces of the cut are the last two groups.
 $(INCISION_OPENINGS:%=$(INCISION)/%.row): %.row: %.dat %.mts $(INCISION_SCRIPTS)/opening.awk
 	bash -c 'paste <(mts print facets.set $*.mts) <(mts print facets $*.mts)' | awk '{ for (i = 2; i <= NF; i++) lip[$$i] = $$1; if ($$1 > last) last = $$1 } \
 	    END { for (n in lip) if (lip[n] >= last - 1) print lip[n], n }' > $*.lips

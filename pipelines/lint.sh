@@ -1,5 +1,5 @@
 #!/bin/bash
-# Static checks: clang-tidy (.clang-tidy), cppcheck and shellcheck; see lint.mk. A program that is not installed is told of and left
+# Static checks: clang-tidy (.clang-tidy), cppcheck and shellcheck; see lint.mk. A program that is not installed is reported and left
 # out. Status 1 when something is found.
 # shellcheck disable=SC2317 # functions are called by name
 set -u -o pipefail

@@ -71,7 +71,7 @@ END
     [ "$(mts print sets.idx body.mts | paste -sd' ')" = "0 1 2 0 3" ]
 }
 
-@test "decks of Abaqus: what is wrong is told by keyword and line" {
+@test "decks of Abaqus: errors name keyword and line" {
     faulty inp << 'END'
 solid|s/^2, 1.D0/2, nan/|*NODE: line 6: coordinate: 'nan' is not a finite number
 solid|s/^9, 0/6, 0/|nodes: line 11: node tag 6 stands twice
@@ -119,7 +119,7 @@ END
     [ "$(mts print facets body.mts | wc -l)" -eq 2 ]
 }
 
-@test "models of FEBio: what is wrong is told by element and line" {
+@test "models of FEBio: errors name element and line" {
     faulty feb << 'END'
 v25|s/version="2.5"/version="1.2"/|<febio_spec>: line 3: version '1.2': open it in FEBio Studio
 v25|s/ 2, 1, 0</ 2, inf, 0</|<Nodes>: line 6: coordinate: 'inf' is not a finite number
@@ -234,7 +234,7 @@ m.Mesh(a.points, [("tetra", a.cells_dict["tetra10"][:, :4])], cell_data={"id": [
     grep -q "volume 5 m3" said
 }
 
-@test "VTU and VTK: what is wrong is told by array and line" {
+@test "VTU and VTK: errors name array and line" {
     faulty vtk << 'END'
 text.vtu|s/="UnstructuredGrid" /="PolyData" /|type 'PolyData': only UnstructuredGrid is read
 text.vtu|s/byte_order/compressor="vtkLZ4DataCompressor" byte_order/|compressor vtkLZ4DataCompressor: only zlib is read

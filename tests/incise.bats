@@ -117,7 +117,7 @@ END
     mts list left.mts | grep -q '^cells.region.*names=body$'
     # five of the six sides of the lump of .03 x .02 x .03 m are within; cells are jittered
     awk -v a="$(size_of 'lump|wall' left.mts)" -v body="$(size_of body body.mts)" -v b="$(size_of body left.mts)" 'BEGIN { exit !(a > 2e-3 && a < 6e-3 && body / b - 1 < 1e-12) }'
-    # an octahedron about (.05, .03, .025) of radius .024 m, closed: its inside is taken out, its front lip stays
+    # an octahedron about (.05, .03, .025) of radius .024 m, closed: its inside is taken out, its front face stays
     awk 'BEGIN { r = .024; c[0] = .05; c[1] = .03; c[2] = .025
         for (k = 0; k < 8; k++) { s[0] = k % 2 ? -1 : 1; s[1] = int(k / 2) % 2 ? -1 : 1; s[2] = k > 3 ? -1 : 1; flip = s[0] * s[1] * s[2] < 0
             for (v = 0; v < 3; v++) { i = flip ? 2 - v : v; for (a = 0; a < 3; a++) printf "%g ", c[a] + (a == i ? s[i] * r : 0) } print "" } }' > closed.tsv
@@ -126,7 +126,7 @@ END
     mts check bitten.mts
     [ -z "$(size_of 'bite|back' bitten.mts)" ]
     awk -v a="$(size_of 'bite|front' bitten.mts)" -v taken="$(sed -n 's/.*taken out: 1, \([^ ]*\).*/\1/p' said)" 'BEGIN { exit !(a > .88 * .00399 && a < .00399 && taken > .88 * 1.843e-5 && taken < 1.843e-5) }'
-    # without -x both lips stay
+    # without -x both faces stay
     [ "$(incise -s closed.tsv body.mts 2> note | mts check | grep -c '2 connected bodies')" = 1 ]
     # a corner of 1 % of the body is cut off: kept, noted where it is less than .1 %, taken out by -l
     printf '%s\n' '.02 -.02 0 -.01 .02 0 -.01 -.01 .03' > corner.tsv
@@ -196,7 +196,7 @@ pressed_open() {
     printf '[support outer]\nfacets = outer\nnormal = 1e5\ntangential = 1e5\n[pressure lips]\nfacets = k|front, k|back\nvalue = 30\n'
 }
 
-# solved STREAM SCENE: valid; the computation ends well, so no lip passes through the other
+# solved STREAM SCENE: valid; the computation ends well, so neither face of the cut passes through the other
 solved() {
     mts check "$1" > said || { cat said; return 1; }
     mtled -q "$2" "$1" > u.dat 2> note || { cat note; return 1; }

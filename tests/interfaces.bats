@@ -101,7 +101,7 @@ even() {
     awk -v a="$(unevenness with)" -v b="$(unevenness without)" 'BEGIN { print a, b; exit !(a > 0 && a < 0.8 * b) }'
 }
 
-@test "a jump across which supports reach is told: of regions, and of a table of E" {
+@test "a jump across which supports reach is reported: of regions, and of a table of E" {
     layers
     scene xmin,ymin ymax -0.006 > body.scene
     through -i none

@@ -14,7 +14,7 @@ setup() {
     chmod +x build/bin/*
 }
 
-# A program that reads its input and writes half of something where it is told to, and then succeeds or fails; with
+# A program that reads its input and writes half of something where its input says, and then succeeds or fails; with
 stand_in() {
     cat << 'END_OF_SCRIPT'
 #!/bin/bash

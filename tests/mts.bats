@@ -4,7 +4,7 @@ load common.bash
 
 setup() { enter_loosely; }
 
-# A square of two triangles, with everything that mts check looks at.
+# A square of two triangles, with everything that mts check checks.
 square() {
     printf '%s\n' '# mts 1' '# @ test 1 test'
     section 'nodes.x f8 4 2 enc=text unit=m cols=x,y' '0 0' '1 0' '1 1' '0 1'

@@ -1,4 +1,4 @@
-# Rigid surfaces that move, and bodies that fold: what presses, what is told, and what is refused.
+# Rigid surfaces that move, and bodies that fold: forces, notes, and what is refused.
 
 load common.bash
 
@@ -172,7 +172,7 @@ buckled() {
         printf '[output]\n%b\n[solver]\ntolerance = %s\n' "$4" "$3"; } > buckled.scene
 }
 
-@test "a body that buckles comes to a state that is stable, without a word; where it cannot leave the other one, that is told" {
+@test "a body that buckles comes to a state that is stable, without a word; where it cannot leave the unstable one, that is reported" {
     # Homogeneous states are exact. The free edges become unstable between stretches of .51 and .5, with 6 nodes a side of .53 and .51.
     for case in '5 0.51' '5 0.495' '6 0.515'; do
         read -r n stretch <<< "$case"

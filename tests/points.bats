@@ -132,7 +132,7 @@ assert a == b and a[0].strip() == "\u00e9\U0001f600, \"a\\" and len(a[0]) == 69,
     below "$rms" 0.0002
 }
 
-@test "a spring gives way by its force: k goes with the inverse square of the deviation and the square of model_error" {
+@test "a spring yields by its force: k goes with the inverse square of the deviation and the square of model_error" {
     for dim in 2 3; do
         cloud_of $dim
         last=ymin

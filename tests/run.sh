@@ -14,7 +14,7 @@ export OMP_NUM_THREADS=1 OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export logs=$BUILD/check tags='!thorough'
 [ "${1:-}" != all ] || tags=
 
-# Run one unit program (unit/NAME) or suite (NAME.bats). Its output gets a line "not ok" if it ends before it has told so itself.
+# Run one unit program (unit/NAME) or suite (NAME.bats). Its output gets a line "not ok" if it ends before it has reported that itself.
 run() {
     local log=$logs/${1//\//-} begin=$EPOCHREALTIME command status=0
     case $1 in

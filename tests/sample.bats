@@ -104,7 +104,7 @@ exact='{ e = 100 + 50 * sin(300 * $1) * cos(200 * $2 + 1) + 30 * sin(250 * $3) }
     awk '!/^#/ { d = $3 - ($1 < .05 ? 1000 + 2000 / 6 : 4000); if (!(d * d < 1e-12)) exit 1; n++ } END { exit n == 0 }' stiffness.tsv
     mtled -q -b table.scene table.mts | mts print u > step.u
     run -1 cmp -s step.u uniform.u
-    # Beyond the table its ends are taken, and told.
+    # Beyond the table its ends are taken, and that is reported.
     nifti step far.nii -20 170
     run -0 --separate-stderr sample -i nearest --material law.tsv far.nii table.mts
     [[ $stderr == *"values lie beyond the table of --material"* ]]

@@ -1,4 +1,4 @@
-# Contact between facets of the body: two bodies, two lips, a boundary with itself.
+# Contact between facets of the body: two bodies, two faces of a slit, a boundary with itself.
 
 load common.bash
 

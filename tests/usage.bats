@@ -51,7 +51,7 @@ setup() {
 
 # Options are asked for by name in the program's own file, or where several programs share them: of supports and shape functions, of
 # comparisons, of images. -o and -t are looked at where a stream is written.
-@test "every option that a usage text declares is one that the program looks at" {
+@test "every option that a usage text declares is one that the program reads" {
     for tool in "${tools[@]}"; do
         shared=()
         grep -qE 'radius_parse|mls_parse' "$top/tools/$tool.c" && shared+=("$top/tools/common/stage_options.c")
@@ -128,7 +128,7 @@ setup() {
          tag && /^\.B / { gsub(/,/, ""); for (k = 1; k <= count; k++) for (i = 2; i <= NF; i++) print kind[k], $i }
          { tag = /^\.TP/ }' "$top/tools/mtled-scene.5" | sort > told
     [ -z "$(comm -23 allowed told)" ] || { comm -23 allowed told; false; }
-    # Those of the loads, told in one list, are keys of one of them.
+    # Those of the loads, described in one list, are keys of one of them.
     join -v 2 <(sed 's/.* //' allowed | sort -u) <(comm -13 allowed told | sed 's/.* //' | sort -u) > unknown
     [ ! -s unknown ] || { cat unknown; false; }
 }

@@ -184,7 +184,7 @@ sizes() {
     refused 2 "more than 67108864 lattice points" voxels -h 4mm --sizes many.dat image.nii.gz
     sizes 0.001 0.3 0 0 0 > tiny.dat
     refused 2 "a size of 1e-06 m: at least 1/128 of the spacing" voxels -h 4mm --sizes tiny.dat image.nii.gz
-    # What sizes leave out is told.
+    # What sizes leave out is reported.
     sizes 2 0.3 0 0 0 | awk '/^# / { on = $2 == "nodes.x" } on && NF == 3 { $1 += 0.05 } { print }' > aside.dat
     voxels -h 8mm --sizes aside.dat image.nii.gz 2> said > body.mts
     grep -qE "voxels: [45][0-9.]* % of the body lie beyond the sizes" said
@@ -285,7 +285,7 @@ END
     { block quasi-static | sed 's/dim = 2/dim = 3/; s/= body/= label_1/'
         printf '[displacement held]\nfacets = held\ncomponents = 0, 0, 0.001\n'
         printf '[contact skull]\nfacets = label_1|outside\nrigid = gap.tsv\nunit = m\nside = back\n'; } > slide.scene
-    # A body with a furrow narrower than twice the gap moves freely in it, where the surface is told to be nearer.
+    # A body with a furrow narrower than twice the gap moves freely in it, where the surface is set nearer.
     /usr/bin/python3 - << 'END'
 import nibabel as nib, numpy as np
 x, y, z = np.mgrid[:44, :40, :30]

@@ -2,7 +2,7 @@
 #
 # field: u.dat as mtled or mixed/solve.sh write it, with the reactions; LOG: what they report. Forces on the body, N: that
 # of the prescribed displacement, that of the contact, and what is missing to their balance; then the deepest of the contact
-# gaps, and how many contact nodes (or nodes) touch. "-" where it is not told. J is that of the integration points, from the strains.
+# gaps, and how many contact nodes (or nodes) touch. "-" where it is not reported. J is that of the integration points, from the strains.
 
 BEGIN {
     read_stream(field, "")

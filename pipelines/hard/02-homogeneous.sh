@@ -43,7 +43,7 @@ END
 
 unconfined 2 0.8 -763.26922 1.11574668
 # The state of row 3 is stable on 4 and 5 nodes a side. On finer clouds its free edges buckle, smoothly on 6 nodes a side at .51,
-# and then the free sides crease (Lestringant, Maurini, Lazarus and Audoly 2017; Hong, Zhao and Suo 2009): told.
+# and then the free sides crease (Lestringant, Maurini, Lazarus and Audoly 2017; Hong, Zhao and Suo 2009): reported as a fold.
 mv "$work/table.mts" "$work/five.mts"
 cloud -d 3 -k jittered -n 4 --jitter 0.15 --seed 7 --box 0,0.1,0,0.1,0,0.1 | shapefn -o "$work/table.mts" 2> /dev/null
 unconfined 3 0.5 -3503.55836 ''

@@ -59,7 +59,7 @@ END
 swing 'pressure wave' 2 17.91338
 swing 'shear mode' 1 2.50838
 
-# ---- 14 and 15: bodies of one cell, which are a few oscillators and masses that can be told ----
+# ---- 14 and 15: bodies of one cell, which reduce to a few oscillators and masses ----
 
 # one_cell DIM: an equilateral triangle, or a regular tetrahedron, about the origin; corners 1 m away from it.
 one_cell() {

@@ -107,7 +107,7 @@ at_least 18 'block, 50 %, with contact: least J' "$(reported "$work/b.dat" 'leas
 row 18 'block, 50 %, with contact: balance of the forces' "$(balance b "$(reaction "$work/b.dat" side 2)")" 0 balance
 row 18 "block, 50 %, with contact: force, N/m, $(count fine) nodes against $(count coarse)" "$(force b)" "$(force a)" block-50-contact
 
-# Without plates as wide as the bulge, sides fold over the plates' edges, as nothing in the scene forbids it: that is told. With
+# Without plates as wide as the bulge, sides fold over the plates' edges, as nothing in the scene forbids it: that is reported. With
 # plates: 26-plates.sh.
 press fine b 0.49 0.035
 told 18 'block, 70 %' "$work/b.dat"

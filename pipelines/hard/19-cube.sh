@@ -63,7 +63,7 @@ row 19 "clamped cube, 20 %: limit of the forces on $(count rim1), $(count rim2),
 
 press coarsest c 0.025
 row 18 'cube, 50 %: work of the force / stored energy' "$(calc "$(work pushing 0.025) / $(stored "$work/c.dat")")" 1 work
-# Rims fold over the plates' edges, as nothing in the scene forbids it: that is told. With plates: 26-plates.sh.
+# Rims fold over the plates' edges, as nothing in the scene forbids it: that is reported. With plates: 26-plates.sh.
 press fine b 0.035
 told 18 'cube, 70 %' "$work/b.dat"
 

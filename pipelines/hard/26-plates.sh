@@ -1,7 +1,7 @@
 #!/bin/bash
 # Row 26: a block and a cube of .1 m bonded to plates that are wider than they are, pressed to 50 and 70 %. The plates are
 # rigid surfaces that move with the bonded faces, and the sides that bulge lie down on them; without them they would go
-# through the planes of the plates, which is told.
+# through the planes of the plates, which is reported.
 #
 # A quarter of the block, an eighth of the cube; the middle stays and the plate comes down. The force is that of the bonded
 # face and of the plate together. A plate that is turned as it presses ends the row.
@@ -82,7 +82,7 @@ for part in '50 0.025' '70 0.035'; do
     row 26 "block, $percent %, plates: balance of the forces" \
         "$(calc "$(reaction "$work/fine.dat" middle 2) / ($(force 2 fine)) - 1")" 0 balance-plates
 done
-# On a mesh that is graded to the rim. A crease beside the plate was told here at 69 % while contacts acted on the nodes; they act
+# On a mesh that is graded to the rim. A crease beside the plate was reported here at 69 % while contacts acted on the nodes; they act
 # on quadrature points now, the side lies on the plate up to the end, and the force is judged as on even meshes. At 20 % it is
 # the plate that makes the problem one with a solution: without it mixed elements on this graded mesh find no equilibrium beyond .78 of the
 # load, and here a cell turns over at .87.
@@ -107,7 +107,7 @@ done
 plates=no press 2 fine alone 0.035 2> "$work/said"
 row 26 'block, 70 %, without plates: told that it folds' "$(grep -c 'the body folds from 0\.[0-9]* of the load on' "$work/said")" 1 none
 
-# A disc and a ball of the same size, which nothing bonds: a quarter of the disc, an eighth of the ball, between the
+# A disc and a ball of the same size, not bonded to the plates: a quarter of the disc, an eighth of the ball, between the
 # same plates. Pressures reach ten shear moduli.
 squeeze() { # DIM MESH OUT PUSH
     local down symmetry='normal = 0' side=right

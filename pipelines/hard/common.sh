@@ -112,7 +112,7 @@ estimate() {
             }
             END {
                 if (largest < 1e-18) exit
-                estimated = told["iteration error, m"] / sqrt(largest) # with what contacts still give way by
+                estimated = told["iteration error, m"] / sqrt(largest) # with the remaining penetration of contacts
                 true = sqrt(worst / largest)
                 if (sqrt(differences / sizes) > true) true = sqrt(differences / sizes)
                 optimum = told["loading steps"] + log(1 / told["estimated error"]) * told["frequency ratio"] / 2
@@ -148,7 +148,7 @@ count() {
     mts print nodes.x "$work/$1.mts" | wc -l
 }
 
-# told CASE QUANTITY OUT: the run said that the body folds.
+# told CASE QUANTITY OUT: the run reports that the body folds.
 told() {
     at_least "$1" "$2: told that it folds" "$(grep -c 'the body folds' "$3.log")" told
 }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Rows of incision.tsv: twenty blades (blade.awk) through three bodies, and pairs of blades that cross, lips pressed apart on springs: how many are
+# Rows of incision.tsv: twenty blades (blade.awk) through three bodies, and pairs of blades that cross, faces pressed apart on springs: how many are
 # solved, and the largest number of force evaluations beside that of the body that is whole: blades.sh FOLDER SCRIPTS LIVER. FOLDER gets blades.tsv,
 # a row for each cut.
 set -euo pipefail

@@ -1,8 +1,8 @@
 # The opening of a cut in its middle beside the exact one, as a row of incision.tsv; and its profile:
 # awk -v case=NAME -v size=N -v exact=MM -v profile=FILE LIPS NODES
 #
-# LIPS has rows of a lip's number and a node, NODES those of the nodes: place and u, m. The radius is 10 mm, the cut across the last
-# axis. The opening is that of the ellipse, w sqrt(1 - r^2 / a^2), fitted to the nodes of each lip within half the radius.
+# LIPS has rows of the number of a face of the cut and a node, NODES those of the nodes: place and u, m. The radius is 10 mm, the cut across the last
+# axis. The opening is that of the ellipse, w sqrt(1 - r^2 / a^2), fitted to the nodes of each face within half the radius.
 NR == FNR { lip[$2] = $1; next }
 {
     dim = NF / 2; nodes++

@@ -1,5 +1,5 @@
 /* The force loop: no forces from rigid motion, forces that are the gradient of the energy and balance, exact
- * linear fields, and faults told. */
+ * linear fields, and reported errors. */
 #include "body_setup.h"
 
 /* Translation, quarter turns and other rotations make no forces, and no energy. */

@@ -1,5 +1,5 @@
 /* How the force loop computes: the same bits from any number of threads, nodal volumes, the bound of the
- * stiffness, and inversion told where it is. */
+ * stiffness, and the place of an inversion. */
 #include "body_setup.h"
 
 #include "solid/body/kernel.h"

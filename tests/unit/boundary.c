@@ -345,7 +345,7 @@ TEST_IN_EACH_DIM(reentrant)
     }
 }
 
-/* The tip of a slit whose lips lie on each other; its mouth is not re-entrant. */
+/* The tip of a slit whose faces lie on each other; its mouth is not re-entrant. */
 TEST(closed_slit)
 {
     static const double x[] = {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 0.5, 0.5, 1.0, 0.5, 1.0, 0.5};

@@ -120,8 +120,7 @@ TEST(disagreement_is_named)
     line.system.conditions = conditions;
     hold(&line, 3, 4, 0.25, 0);
     hold(&line, 3, 4, 0.5, 1);
-    assert_int_equal(system_constrain(&line.system, line.mass, &constraint, &said),
-                     STATUS_VERDICT);
+    assert_int_equal(system_constrain(&line.system, line.mass, &constraint, &said), STATUS_VERDICT);
     assert_non_null(strstr(said.text, "[displacement plate]"));
     assert_non_null(strstr(said.text, "[displacement rim]"));
     assert_non_null(strstr(said.text, "node 3 at (0.3, 0)"));
@@ -130,7 +129,7 @@ TEST(disagreement_is_named)
     system_free(&line.system);
 }
 
-/* A row over all nodes beside one for each node but one: it is long, and told apart from a dependent one. */
+/* A row over all nodes beside one for each node but one: it is long, and not taken for a dependent one. */
 TEST(long_rows)
 {
     for (int32_t all = 0; all < 2; all++) {

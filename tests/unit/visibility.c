@@ -180,7 +180,7 @@ TEST_IN_EACH_DIM(convex)
     }
 }
 
-/* Points whose cells are not told are found in them. */
+/* Points whose cells are not given are found in them. */
 static bool of_l(const int *cube)
 {
     return cube[0] < 4 || cube[1] < 4;
@@ -410,7 +410,7 @@ static bool reaches(struct edge_paths *paths, int32_t from, int64_t place)
 }
 
 /* Places, here the nodes themselves, are within reach round a corner and a fissure's end, not across a gap or
- * from one lip to the other. */
+ * from one face to the other. */
 TEST_IN_EACH_DIM(paths)
 {
     struct edge_paths paths;

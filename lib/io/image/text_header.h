@@ -16,7 +16,7 @@ struct text_header {
     char separator; /* ':' or '=' */
     char line[HEADER_LINE];
     size_t begun;             /* bytes of the next line that line[] holds already */
-    const int64_t *dimension; /* of the image, as the header told it; 0: not yet */
+    const int64_t *dimension; /* of the image, as the header gives it; 0: not yet */
     const struct header_type *types;
     char *key; /* of the field read last, in line[]; NULL: the header has ended */
     char *value;
