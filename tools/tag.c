@@ -183,7 +183,8 @@ static enum status delete_group(const struct request *request, struct error *err
     int64_t place;
     enum status status = find_any(request, request->use->value, &kind, &place, error);
     if (status == STATUS_OK && kind == GROUP_REGION) {
-        return fail(error, STATUS_INPUT, "its cells would belong to no region: give them another region by -r");
+        return fail(error, STATUS_INPUT,
+                    "its cells would belong to no region: give them another region by -r");
     }
     if (status == STATUS_OK) {
         group_remove(&request->body->groups[kind], place);

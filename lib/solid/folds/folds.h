@@ -75,8 +75,8 @@ struct folds {
     int32_t *ring_cell; /* by their dim + 1 nodes, in a positive order, those of the ring first */
     bool *oriented; /* cell_count: flat cells in which the field keeps its orientation; the caller's to set */
     bool *is_held;  /* node_count: of a prescribed facet */
-    double extent; /* diagonal of the box around the nodes, m */
-    int32_t *part; /* cell_count: the connected body of each cell */
+    double extent;  /* diagonal of the box around the nodes, m */
+    int32_t *part;  /* cell_count: the connected body of each cell */
     struct fold_body *bodies; /* body_count */
     int64_t body_count;
     struct fold
