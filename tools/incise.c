@@ -127,7 +127,7 @@ static void tell(const struct tool *tool, const struct incise_options *options,
         tool_note(tool,
                   "%s: faces of %.4g %s, %lld nodes on the edge; nodes: %lld put on edges, %lld moved, %lld "
                   "doubled; pieces: %d, the smallest of %.4g %s; poorest quality of a cell %.2g",
-                  options->name, report->lips, size, (long long)report->edge, (long long)report->split,
+                  options->name, report->face_area, size, (long long)report->edge, (long long)report->split,
                   (long long)report->moved, (long long)report->doubled,
                   (int)(report->pieces - report->taken_out), report->smallest, volume, report->poorest);
     }

@@ -16,7 +16,7 @@ struct incise_options {
 struct incise_report {
     int64_t opened, unopened;       /* faces opened; sheets that opened none */
     int64_t split, moved, doubled;  /* nodes put on edges, moved, copied */
-    double lips;                    /* area of one face of the cut, m2 (2D: m) */
+    double face_area;               /* area of one face of the cut, m2 (2D: m) */
     int64_t edge;                   /* nodes on the edge of the cut */
     int32_t pieces;                 /* connected pieces at the cut */
     int32_t taken_out;              /* of these: as too small, or as excised */

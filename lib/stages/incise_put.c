@@ -208,7 +208,7 @@ static void report_result(struct cut_body *whole)
     for (int64_t f = 0; f < body->facet_count; f++) {
         double normal[3];
         face_area_vector(body->dim, body->x, body->facet + f * body->dim, normal);
-        report->lips += body->group[f] == whole->front ? vector_length(body->dim, normal) : 0.0;
+        report->face_area += body->group[f] == whole->front ? vector_length(body->dim, normal) : 0.0;
     }
     for (int64_t c = 0; c < body->cell_count; c++) {
         report->poorest = fmin(report->poorest, cell_quality(&cells, c));

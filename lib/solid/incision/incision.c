@@ -7,13 +7,13 @@
 /* A node on a face of an earlier cut along which the blade goes, to this cosine, is on the blade within this
  * share of its longest edge: a cut goes on from its edge, although a deformed body, or a blade that has
  * moved, is off it a little. */
-static const double along_lip = 0.87, near_lip = 0.4;
+static const double along_face = 0.87, near_face = 0.4;
 
 /* ---- values at nodes ---- */
 
 void cut_free(struct cut *cut)
 {
-    FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->lip);
+    FREE_ALL(cut->value[0], cut->value[1], cut->shortest, cut->longest, cut->face_normal);
 }
 
 /* The faces of a cut that is continued. */
@@ -21,17 +21,17 @@ static enum status find_lips(struct cut *cut, int32_t front, int32_t back, struc
 {
     const struct division *body = cut->body;
     int dim = body->dim;
-    RETURN_IF_ERROR(NEW_ARRAY(&cut->lip, body->node_count * dim, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&cut->face_normal, body->node_count * dim, error));
     for (int64_t f = 0; f < body->facet_count; f++) {
         double normal[3], way = body->group[f] == front ? 1.0 : body->group[f] == back ? -1.0 : 0.0;
         face_area_vector(dim, body->at, body->facet + f * dim, normal);
         for (int k = 0; k < dim; k++) {
-            add_scaled(dim, way, normal, cut->lip + (int64_t)body->facet[f * dim + k] * dim);
+            add_scaled(dim, way, normal, cut->face_normal + (int64_t)body->facet[f * dim + k] * dim);
         }
     }
     cut->old = body->node_count;
     for (int64_t n = 0; n < cut->old; n++) {
-        vector_normalise(dim, cut->lip + n * dim);
+        vector_normalise(dim, cut->face_normal + n * dim);
     }
     return STATUS_OK;
 }
@@ -75,8 +75,9 @@ static void evaluate_node(struct cut *cut, int64_t n)
     bool near = sheet_at(cut->sheet, cut->body->at + n * cut->body->dim, reach, &place);
     double least = COARSE_ROUND_OFF * cut->longest[n];
     int dim = cut->body->dim;
-    if (near && n < cut->old && fabs(vector_dot(dim, cut->lip + n * dim, place.normal)) > along_lip) {
-        least = near_lip * cut->longest[n];
+    if (near && n < cut->old &&
+        fabs(vector_dot(dim, cut->face_normal + n * dim, place.normal)) > along_face) {
+        least = near_face * cut->longest[n];
     }
     cut->value[LEVEL_HEIGHT][n] = near ? place.height : NAN;
     cut->value[LEVEL_EXTENT][n] = NAN;

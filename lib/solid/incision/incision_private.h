@@ -19,8 +19,8 @@ struct cut {
     int64_t room, known, old; /* the first `known` nodes have values */
     double *value[2]; /* by level, m; 0: on it; heights NAN: far; extents only of nodes on the sheet */
     double *shortest, *longest; /* edges at the node, m */
-    double *lip; /* old nodes * dim: mean normal of the front face, reversed of the back, of a cut that is
-                    continued */
+    double *face_normal; /* old nodes * dim: mean normal of the front face, reversed of the back, of a cut
+                    that is continued */
 };
 
 /* The faces of cells with a node that is near, by their nodes; item = cell * (dim + 1) + vertex opposite. */
