@@ -197,4 +197,84 @@ TEST_IN_EACH_DIM(groups)
     assert_true(merged > 0);
 }
 
+/* (grad f . v) . w of the forces, about. */
+static double second(struct body *body, const double *u, const double *v, const double *w, int64_t count)
+{
+    double h = 1e-6, sum = 0.0, *at = zeros(count, sizeof *at), *force[2];
+    for (int k = 0; k < 2; k++) {
+        force[k] = zeros(count, sizeof **force);
+        for (int64_t n = 0; n < count; n++) {
+            at[n] = u[n] + (k == 0 ? h : -h) * v[n];
+        }
+        (void)body_force(body, at, force[k]);
+    }
+    for (int64_t n = 0; n < count; n++) {
+        sum += (force[0][n] - force[1][n]) / (2.0 * h) * w[n];
+    }
+    return sum;
+}
+
+/* A viscoelastic body that is held, in steps: forces and energy go from those of the moduli at first to those
+ * of the last, whatever varies within cells. In a step forces have an energy, as their derivative is
+ * symmetric, and turn with the body. */
+TEST_IN_EACH_DIM(relaxation)
+{
+    static const double prony[] = {0.5, 2.0, 0.2, 2.0}, turned[9] = {0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1};
+    struct random random = {7};
+    FREED_BY(sample_free) struct sample sample = sliver_sample(dim, 1e-3 * sample_size);
+    struct setup setup[3];
+    struct body body[3];
+    int64_t count = sample.cloud.node_count * dim;
+    double *u = random_field(&sample, 0.005 * sample_size, &random), *force[3], energy[3];
+    double *expected = zeros(count, sizeof *expected);
+    double *v = random_field(&sample, 1.0, &random), *w = random_field(&sample, 1.0, &random);
+    for (int i = 0; i < 3; i++) { /* at first, at last, in time */
+        setup[i] = three_materials(false);
+        setup[i].faces = true;
+        for (int m = 0; m < 2; m++) {
+            setup[i].material[m].shear_modulus *= i == 1 ? 0.3 : 1.0;
+            setup[i].material[m].prony = prony;
+            setup[i].material[m].prony_terms = i == 2 ? 2 : 0;
+        }
+        body[i] = make_body(&sample, &setup[i]);
+        force[i] = zeros(count, sizeof *u);
+        (void)body_force(&body[i], u, force[i]);
+        energy[i] = body_energy(&body[i], u);
+    }
+    assert_true(body[2].cells.merged_count > 0);
+    ALL_NEAR(count, force[2], force[0], 1e-12 * largest(force[0], count));
+    for (int step = 0; step <= 3; step++) {
+        double left = exp(-0.35 * step);
+        body_step(&body[2], step > 0 ? 0.7 : 0.0);
+        (void)body_force(&body[2], u, force[2]);
+        for (int64_t n = 0; n < count; n++) {
+            expected[n] = force[1][n] + left * (force[0][n] - force[1][n]);
+        }
+        ALL_NEAR(count, force[2], expected, 1e-12 * largest(force[0], count));
+        body_accept(&body[2]);
+        NEAR_TO(body_energy(&body[2], u), energy[1] + left * left * (energy[0] - energy[1]),
+                1e-12 * energy[0]);
+        NEAR_TO(body_energy(&body[2], u) + body[2].prony.dissipated, energy[0], 1e-12 * energy[0]);
+    }
+    body_step(&body[2], 0.5);
+    double product = second(&body[2], u, v, w, count);
+    NEAR_TO(product, second(&body[2], u, w, v, count), 1e-7 * fabs(product));
+    (void)body_force(&body[2], u, force[2]);
+    for (int64_t i = 0; i < count; i += dim) {
+        for (int a = 0; a < dim; a++) {
+            v[i + a] = -sample.cloud.x[i + a];
+            expected[i + a] = 0.0;
+            for (int b = 0; b < dim; b++) {
+                v[i + a] += turned[3 * a + b] * (sample.cloud.x[i + b] + u[i + b]);
+                expected[i + a] += turned[3 * a + b] * force[2][i + b];
+            }
+        }
+    }
+    (void)body_force(&body[2], v, force[0]);
+    ALL_NEAR(count, force[0], expected, 1e-11 * largest(expected, count));
+    for (int i = 0; i < 3; i++) {
+        body_free(&body[i]);
+    }
+}
+
 RUN_TESTS(NULL, NULL)

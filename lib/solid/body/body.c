@@ -17,12 +17,13 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
-/* The law of a point, which with active stress or viscosity counts as another one: it has no kernel of its
- * own. */
+/* The law of a point, which with active stress, that has no kernel of its own, or with viscosity counts as
+ * another one. */
 static int model_of(const struct body_input *input, int64_t point)
 {
     const struct material *material = &input->materials[input->material[point]];
-    return material->model + (fabs(material->active) > 0.0 || material->prony_terms > 0 ? law_count : 0);
+    int variant = (fabs(material->active) > 0.0 ? 1 : 0) + (material->prony_terms > 0 ? 2 : 0);
+    return material->model + variant * law_count;
 }
 
 /* Order the points by material law, so that each block has one law, and within a law along a Morton curve, so
@@ -87,12 +88,13 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
 {
     int64_t most = points_of_block(body->dim);
     RETURN_IF_ERROR(
-        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + 2 * law_count + 1, error));
+        NEW_ARRAY(&body->blocks, body->point_count / (most - MERGED_MOST_CELLS) + 4 * law_count + 1, error));
     for (int64_t q = 0; q < body->point_count;) {
         struct block *block = &body->blocks[body->block_count++];
         int model = model_of(input, body->order[q]);
         block->first_point = q;
-        block->neo_hookean = model == MATERIAL_NEO_HOOKEAN;
+        block->neo_hookean = model % (2 * law_count) == MATERIAL_NEO_HOOKEAN;
+        block->relaxes = model >= 2 * law_count;
         while (q < body->point_count && model_of(input, body->order[q]) == model) {
             int64_t next = smoothed_cells_group_end(body, q);
             if (next - block->first_point > most) {

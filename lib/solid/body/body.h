@@ -50,6 +50,7 @@ struct block {
     int64_t first_point, point_count; /* in the body's order */
     int64_t boundary_face; /* the first boundary face of these cells, or of later ones (field_averages.h) */
     bool neo_hookean;      /* all its points; else the general law */
+    bool relaxes;          /* all its points are viscoelastic; else none is */
     double least_jacobian; /* at the last evaluation, and where, in the body's order */
     int64_t worst_point;
     double energy, dissipated; /* at the last call of body_energy, J (2D: J/m) */

@@ -1,6 +1,6 @@
 /* The force loop: deformation gradients from parameters (apply the operator), stresses, and forces on
  * the parameters (apply its transpose); equation (12) of lib/README.md. */
-#include "solid/body/merged_cells.h"
+#include "solid/body/kernel.h"
 #include "solid/body/nodal_volume.h"
 #include "solid/body/stress.h"
 
@@ -29,10 +29,7 @@ static void stress_cell_block(struct body *body, int64_t b)
         stress_cells(body, &body->blocks[b], P, T);
         note_volumes(body, &body->blocks[b]);
     }
-    if (body->cells.group != NULL) {
-        merged_cells_stresses(body, &body->blocks[b], P, T);
-    }
-    force_cell_forces(body, b, (const double(*)[BLOCK_MOST_POINTS])P, (const double(*)[BLOCK_MOST_POINTS])T);
+    force_cell_forces(body, b, P, T);
 }
 
 /* Stresses of a block of points. */
@@ -190,6 +187,7 @@ struct deformation body_own_force(struct body *body, const double *u, double *fo
 {
     struct deformation deformation = {.least_jacobian = INFINITY};
     int64_t worst = 0;
+    prony_prepare(body);
     evaluate(body, u, force);
     for (int64_t b = 0; b < body->block_count && !isnan(deformation.least_jacobian); b++) {
         if (!(body->blocks[b].least_jacobian >= deformation.least_jacobian)) { /* NaN counts as the least */
@@ -240,16 +238,22 @@ double body_volume(const struct body *body)
 }
 
 /* Add the energies of a point to its block's. */
-static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *block)
+static void add_energy(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     const struct material *material = &body->materials[body->material[q]];
-    struct block *of_block = block;
-    double dissipated = 0.0, W = material_isochoric_energy(material, F);
-    double sum = prony_energy(body, q, F, W, &dissipated) + stress_active_energy(body, q, F);
-    sum += stress_coupling_energy(body, q, F, J);
+    struct block *block = context;
+    double W = material_isochoric_energy(material, F), active = stress_active_energy(body, q, F);
+    double coupling = stress_coupling_energy(body, q, F, J);
+    double varying = body->smoothed ? stress_variance_energy(body, q) : 0.0;
+    if (block->relaxes) {
+        double whole = body->weight[q] * (W + coupling) + varying;
+        varying = prony_energy(body, q, whole, varying, &block->dissipated);
+        W = coupling = 0.0;
+    }
+    double sum = W + active;
+    sum += coupling;
     sum += body->averaged ? nodal_volume_energy(body, q) : material_volume_energy(material, J);
-    of_block->energy += body->weight[q] * sum + (body->smoothed ? stress_variance_energy(body, q) : 0.0);
-    of_block->dissipated += body->weight[q] * dissipated;
+    block->energy += body->weight[q] * sum + varying;
 }
 
 double body_energy(struct body *body, const double *u)

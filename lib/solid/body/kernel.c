@@ -2,9 +2,11 @@
 
 #include "base/processor.h"
 #include "solid/body/kernel_cells.h"
+#include "solid/body/kernel_prony.h"
 #include "solid/body/kernel_sparse.h"
 
-/* The call with DIM as a constant, so that it is compiled for each dimension. */
+/* The call with DIM as a constant, so that it is compiled for each dimension; and with RELAXES, for
+ * viscoelastic blocks and others. */
 #define FOR_DIM(dim, call)                                                                                   \
     do {                                                                                                     \
         if ((dim) == 2) {                                                                                    \
@@ -13,6 +15,17 @@
         } else {                                                                                             \
             enum { DIM = 3 };                                                                                \
             call;                                                                                            \
+        }                                                                                                    \
+    } while (0)
+
+#define FOR_KIND(body, b, call)                                                                              \
+    do {                                                                                                     \
+        if ((body)->blocks[b].relaxes) {                                                                     \
+            enum { RELAXES = true };                                                                         \
+            FOR_DIM((body)->dim, call);                                                                      \
+        } else {                                                                                             \
+            enum { RELAXES = false };                                                                        \
+            FOR_DIM((body)->dim, call);                                                                      \
         }                                                                                                    \
     } while (0)
 
@@ -42,7 +55,7 @@ ALL_SETS void force_point_gradients(struct body *body, int64_t b)
 
 ALL_SETS void force_point_neo_hookean(const struct body *body, int64_t b, block_rows P)
 {
-    FOR_DIM(body->dim, kernel_neo_hookean(body, &body->blocks[b], DIM, P));
+    FOR_KIND(body, b, kernel_neo_hookean(body, &body->blocks[b], DIM, RELAXES, P));
 }
 
 ALL_SETS void force_point_forces(struct body *body, int64_t b, const block_rows P)
@@ -57,10 +70,15 @@ ALL_SETS void force_cell_gradients(struct body *body, int64_t b)
 
 ALL_SETS void force_cell_neo_hookean(const struct body *body, int64_t b, block_rows P, block_rows T)
 {
-    FOR_DIM(body->dim, kernel_cell_neo_hookean(body, &body->blocks[b], DIM, P, T));
+    FOR_KIND(body, b, kernel_cell_neo_hookean(body, &body->blocks[b], DIM, RELAXES, P, T));
 }
 
-ALL_SETS void force_cell_forces(struct body *body, int64_t b, const block_rows P, const block_rows T)
+ALL_SETS void force_cell_forces(struct body *body, int64_t b, block_rows P, block_rows T)
 {
-    FOR_DIM(body->dim, kernel_cell_forces(body, &body->blocks[b], DIM, P, T));
+    FOR_KIND(body, b, kernel_cell_forces(body, &body->blocks[b], DIM, RELAXES, P, T));
+}
+
+ALL_SETS void force_prony_state(const struct body *body, int64_t b, prony_rows X, prony_rows x)
+{
+    FOR_DIM(body->dim, kernel_prony_state(body, &body->blocks[b], DIM, X, x));
 }

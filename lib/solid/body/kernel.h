@@ -29,7 +29,11 @@ void force_point_forces(struct body *body, int64_t block, const block_rows P);
  * cells; and what the corners then put on the averages. */
 void force_cell_gradients(struct body *body, int64_t block);
 void force_cell_neo_hookean(const struct body *body, int64_t block, block_rows P, block_rows T);
-void force_cell_forces(struct body *body, int64_t block, const block_rows P, const block_rows T);
+void force_cell_forces(struct body *body, int64_t block, block_rows P, block_rows T);
+
+/* X and the strains of a viscoelastic block at the last evaluation: see prony.h. */
+typedef double prony_rows[PRONY_MOST][BLOCK_MOST_POINTS];
+void force_prony_state(const struct body *body, int64_t block, prony_rows X, prony_rows x);
 
 /* Scratch of body_diagonal. */
 MUST_CHECK enum status body_make_bounds(struct body *body, struct error *error);

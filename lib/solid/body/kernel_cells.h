@@ -2,27 +2,10 @@
  * vertices, the neo-Hookean law, and the forces on these values; private to lib/solid. */
 #pragma once
 
-#include "solid/body/kernel_points.h"
+#include "solid/body/kernel_variance.h"
 #include "solid/body/merged_cells.h"
 
-/* Values in a block's cells: component a of edge or vertex k in row k dim + a, one column for each cell. */
-typedef double block_vertices[12][BLOCK_MOST_POINTS];
-typedef double block_edges[18][BLOCK_MOST_POINTS];
-
-/* Read or write `each` uses of each cell, the first of the body's is `first`. */
-KERNEL_INLINE void read_uses(const struct field_averages *averages, int64_t first, int each,
-                             const struct block *block, int dim, double (*values)[BLOCK_MOST_POINTS])
-{
-    const int32_t *of_use = averages->of_use + first + block->first_point * each;
-    for (int64_t i = 0; i < block->point_count; i++) {
-        for (int k = 0; k < each; k++, of_use++) {
-            for (int a = 0; a < dim; a++) {
-                values[k * dim + a][i] = averages->value[*of_use + a];
-            }
-        }
-    }
-}
-
+/* Write `each` uses of each cell, the first of the body's is `first`. */
 KERNEL_INLINE void write_uses(struct field_averages *averages, int64_t first, int each,
                               const struct block *block, int dim, const double (*forces)[BLOCK_MOST_POINTS])
 {
@@ -32,28 +15,6 @@ KERNEL_INLINE void write_uses(struct field_averages *averages, int64_t first, in
             for (int a = 0; a < dim; a++) {
                 use_force[a] = forces[k * dim + a][i];
             }
-        }
-    }
-}
-
-KERNEL_INLINE void read_cells(const struct body *body, const struct block *block, int dim, block_edges edges,
-                              block_vertices vertices)
-{
-    const struct field_averages *averages = &body->cells.averages;
-    read_uses(averages, 0, CELL_EDGES(dim), block, dim, edges);
-    read_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim, vertices);
-}
-
-/* Gradients of the linear shape functions N_0 .. N_dim in the cells from q on, each in a row of 3. */
-KERNEL_INLINE void load_linear_gradients(const struct body *body, int64_t q, int dim, lanes grad_N[12])
-{
-    lanes rest[9];
-    load_matrix(body->cells.linear_gradient + q, body->point_count, dim, rest);
-    for (int b = 0; b < dim; b++) {
-        grad_N[b] = (lanes){0.0};
-        for (int k = 1; k <= dim; k++) {
-            grad_N[3 * k + b] = rest[(k - 1) * dim + b];
-            grad_N[b] -= rest[(k - 1) * dim + b];
         }
     }
 }
@@ -106,74 +67,6 @@ KERNEL_INLINE void cell_forces(const lanes P[3], const lanes T[3], int dim, cons
     }
     for (int k = 0; k <= dim && VERTEX_GRADIENT(dim) > 0.0; k++) {
         on_vertex[k] += VERTEX_GRADIENT(dim) * mean[k];
-    }
-}
-
-/* V times factor, where sum_k |R_k - R|^2 = s . V s with the offsets s_e of one component of the field. With
- * h_e = grad N_i + grad N_j, e from i to j, V_ef is -h_e . h_f / (dim + 1), and more for each vertex that e
- * and f share: the product of the gradients of N at their other ends. */
-KERNEL_INLINE void variance_matrix(int dim, const lanes grad_N[12], const lanes *factor, lanes V[6][6])
-{
-    lanes product[4][4];
-    for (int k = 0; k <= dim; k++) {
-        for (int l = 0; l <= k; l++) {
-            product[k][l] = grad_N[3 * k] * grad_N[3 * l];
-            for (int b = 1; b < dim; b++) {
-                product[k][l] += grad_N[3 * k + b] * grad_N[3 * l + b];
-            }
-            product[k][l] *= *factor;
-            product[l][k] = product[k][l];
-        }
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        for (int f = 0; f <= e; f++) {
-            lanes with_end[2], sum;
-            for (int i = 0; i < 2; i++) {
-                int k = cell_edge_ends[e][i];
-                with_end[i] = product[k][cell_edge_ends[f][0]] + product[k][cell_edge_ends[f][1]];
-            }
-            sum = (-1.0 / (dim + 1)) * (with_end[0] + with_end[1]);
-            for (int i = 0; i < 4; i++) {
-                if (cell_edge_ends[e][i / 2] == cell_edge_ends[f][i % 2]) {
-                    sum += product[cell_edge_ends[e][1 - i / 2]][cell_edge_ends[f][1 - i % 2]];
-                }
-            }
-            V[e][f] = V[f][e] = sum;
-        }
-    }
-}
-
-/* Add the forces of component a of the energy s . V s / 2, here with s_e = m_e - (v_i + v_j) / 2. */
-KERNEL_INLINE void add_variance_forces(const block_edges edges, const block_vertices vertices, int64_t i,
-                                       int dim, int a, lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
-{
-    lanes value[4], offset[6];
-    for (int k = 0; k <= dim; k++) {
-        LOAD(value[k], vertices[k * dim + a] + i);
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        LOAD(offset[e], edges[e * dim + a] + i);
-        offset[e] -= 0.5 * (value[cell_edge_ends[e][0]] + value[cell_edge_ends[e][1]]);
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        lanes force = V[e][0] * offset[0];
-        for (int f = 1; f < CELL_EDGES(dim); f++) {
-            force += V[e][f] * offset[f];
-        }
-        on_edge[e] += force;
-        force *= 0.5;
-        on_vertex[cell_edge_ends[e][0]] -= force;
-        on_vertex[cell_edge_ends[e][1]] -= force;
-    }
-}
-
-/* Rows of a block's cells into an array over all cells. */
-KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block, int count,
-                             const block_rows from, double *rows)
-{
-    for (int k = 0; k < count; k++) {
-        memcpy(rows + k * body->point_count + block->first_point, from[k],
-               (size_t)block->point_count * sizeof *from[k]);
     }
 }
 
@@ -317,12 +210,13 @@ KERNEL_INLINE void couple_volumes(const lanes *J, const lanes *volume, const lan
 
 /* dE/dF in P and dE/dF_h in T of w (W_iso(F) + c g + p J), p constant: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
-                                           block_rows P, block_rows T)
+                                           bool relaxes, block_rows P, block_rows T)
 {
     double weighted_pressure[BLOCK_MOST_POINTS];
+    block_rows S;
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], H[9], D[9], C[9], J, volume, weight, shear, bulk, pressure;
+        lanes F[9], H[9], D[9], C[9], added[9] = {{0.0}}, J, volume, weight, shear, bulk, pressure;
         struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
@@ -335,10 +229,21 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         lanes_cofactor(F, dim, C);
         lanes_determinant(F, C, dim, &J);
         neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
+        lanes elastic = pressure;
         couple_volumes(&J, &volume, &shear, &isochoric, &pressure);
+        if (relaxes) {
+            lanes ratio = volume / J, by_ratio = (pressure - elastic) * J;
+            isochoric.along_cofactor += by_ratio * ratio / J;
+            relax(body, q, i, dim, F, C, &J, &isochoric, &by_ratio, added, S);
+            isochoric.along_cofactor -= by_ratio * ratio / J;
+            pressure = elastic + by_ratio / J;
+        }
         for (int k = 0; k < dim * dim; k++) {
             D[k] = H[k] - F[k];
             F[k] = isochoric.along_gradient * F[k] + isochoric.along_cofactor * C[k];
+            if (relaxes) {
+                F[k] += added[k];
+            }
         }
         lanes_cofactor(H, dim, C);
         for (int k = 0; k < dim * dim; k++) {
@@ -351,24 +256,31 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
             STORE(T[k] + i, stress);
         }
     }
+    if (relaxes) {
+        keep_rows(body, block, PRONY_OFFSETS, (const double(*)[BLOCK_MOST_POINTS])S, body->prony.stress);
+    }
 }
 
 /* The forces of the cells on their rows: of the stresses P and T, and of the variance. */
-KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim,
-                                      const block_rows P, const block_rows T)
+KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *block, int dim, bool relaxes,
+                                      block_rows P, block_rows T)
 {
     struct field_averages *averages = &body->cells.averages;
     block_edges edges, at_edges;
     block_vertices vertices, at_vertices;
     read_cells(body, block, dim, edges, vertices);
+    if (relaxes) {
+        add_rest_stresses(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
+                          (const double(*)[BLOCK_MOST_POINTS])vertices, P);
+    }
+    if (body->cells.group != NULL) {
+        merged_cells_stresses(body, block, P, T);
+    }
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], V[6][6], modulus, shear, bulk;
+        lanes grad_N[12], mean[3], interpolant[3], on_edge[6], on_vertex[4], V[6][6];
         int64_t q = block->first_point + i;
         load_linear_gradients(body, q, dim, grad_N);
-        load_moduli(body, q, &shear, &bulk);
-        LOAD(modulus, body->cells.variance_weight + q);
-        modulus *= EDGE_OFFSET * EDGE_OFFSET * VARIANCE_FACTOR(dim) * shear;
-        variance_matrix(dim, grad_N, &modulus, V);
+        load_variance_matrix(body, q, dim, grad_N, relaxes, V);
         for (int a = 0; a < dim; a++) {
             for (int b = 0; b < dim; b++) {
                 LOAD(mean[b], P[a * dim + b] + i);
@@ -378,6 +290,9 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
             add_variance_forces((const double(*)[BLOCK_MOST_POINTS])edges,
                                 (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, V, on_edge,
                                 on_vertex);
+            if (relaxes) {
+                add_rest_forces(body, q, dim, a, on_edge, on_vertex);
+            }
             for (int e = 0; e < CELL_EDGES(dim); e++) {
                 STORE(at_edges[e * dim + a] + i, on_edge[e]);
             }
@@ -386,7 +301,7 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
             }
         }
     }
-    forces_at_boundary(body, block, dim, P, at_edges, at_vertices);
+    forces_at_boundary(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])P, at_edges, at_vertices);
     write_uses(averages, 0, CELL_EDGES(dim), block, dim, (const double(*)[BLOCK_MOST_POINTS])at_edges);
     write_uses(averages, field_averages_vertices(averages, dim), dim + 1, block, dim,
                (const double(*)[BLOCK_MOST_POINTS])at_vertices);

@@ -7,13 +7,15 @@
 
 #include <math.h>
 
-enum { STRESS = 0, STRAIN = 6, WORK = 12, TERMS = 13, COMPONENTS = 6 };
-
-static const int place[COMPONENTS] = {0, 4, 8, 1, 5, 2}; /* of the components in a matrix */
-
-int prony_row(const struct prony *prony)
+int prony_components(const struct body *body)
 {
-    return TERMS + COMPONENTS * prony->terms;
+    return PRONY_OFFSETS + (body->smoothed ? CELL_EDGES(body->dim) * body->dim : 0);
+}
+
+/* Rows of the history. */
+static int rows_of(const struct body *body)
+{
+    return prony_components(body) * (body->prony.terms + 2) + 1;
 }
 
 static struct prony_step step_of(const struct material *material, double dt)
@@ -49,6 +51,7 @@ void body_step(struct body *body, double dt)
 enum status prony_build(struct body *body, struct error *error)
 {
     struct prony *prony = &body->prony;
+    int64_t points = body->point_count;
     for (int64_t m = 0; m < body->material_count; m++) {
         int terms = body->materials[m].prony_terms;
         prony->terms = terms > prony->terms ? terms : prony->terms;
@@ -57,167 +60,219 @@ enum status prony_build(struct body *body, struct error *error)
         return STATUS_OK;
     }
     RETURN_IF_ERROR(NEW_ARRAY(&prony->steps, 2 * body->material_count, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&prony->history, body->point_count * prony_row(prony), error));
-    RETURN_IF_ERROR(NEW_ARRAY(&prony->stress, body->point_count * COMPONENTS, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&prony->history, points * rows_of(body), error));
+    RETURN_IF_ERROR(NEW_ARRAY(&prony->rest, points * prony_components(body) + BODY_POINT_PADDING, error));
+    RETURN_IF_ERROR(NEW_ARRAY(&prony->stress, points * PRONY_OFFSETS + BODY_POINT_PADDING, error));
     for (int64_t m = 0; m < body->material_count; m++) {
         prony->steps[body->material_count + m] = step_of(&body->materials[m], 0.0);
     }
     set_steps(body, 0.0);
+    prony->rest_step = NAN;
     return STATUS_OK;
 }
 
 void prony_free(struct prony *prony)
 {
-    FREE_ALL(prony->steps, prony->history, prony->stress);
+    FREE_ALL(prony->steps, prony->history, prony->rest, prony->stress);
     *prony = (struct prony){0};
 }
 
-static const struct prony_step *present_step(const struct body *body, int64_t q)
+const struct prony_step *prony_steps(const struct body *body)
 {
-    const struct prony *prony = &body->prony;
-    return prony->steps + body->material[q] + (prony->accepted ? body->material_count : 0);
+    return body->prony.steps + (body->prony.accepted ? body->material_count : 0);
 }
 
-static double *history_of(const struct body *body, int64_t q)
+/* Set the constants of a block: keep h - add X. */
+static void set_block_rest(const struct body *body, const struct block *block)
 {
-    return body->prony.history + q * prony_row(&body->prony);
+    const struct prony *prony = &body->prony;
+    int64_t components = prony_components(body), row = body->point_count;
+    const struct prony_step *steps = prony_steps(body);
+    for (int64_t c = 0; c < components; c++) {
+        for (int64_t q = block->first_point; q < block->first_point + block->point_count; q++) {
+            const struct prony_step *step = &steps[body->material[q]];
+            const double *X = prony->history + c * row + q;
+            double sum = 0.0;
+            for (int k = 0; k < prony->terms; k++) {
+                sum += step->keep[k] * X[(k + 1) * components * row] - step->add[k] * X[0];
+            }
+            prony->rest[c * row + q] = sum;
+        }
+    }
+}
+
+/* The same of some blocks. */
+static void set_rest(struct body *body, int64_t first, int64_t last)
+{
+    body->prony.rest_step = body->prony.accepted ? 0.0 : body->prony.step;
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (int64_t b = first; b < last; b++) {
+        if (body->blocks[b].relaxes) {
+            set_block_rest(body, &body->blocks[b]);
+        }
+    }
+}
+
+void prony_prepare(struct body *body)
+{
+    struct prony *prony = &body->prony;
+    if (prony->terms > 0 && prony->rest_step != (prony->accepted ? 0.0 : prony->step)) {
+        set_rest(body, body->share.begin_block, body->share.end_block);
+    }
+}
+
+void prony_prepare_all(struct body *body)
+{
+    if (body->prony.terms > 0) {
+        set_rest(body, 0, body->block_count);
+    }
 }
 
 /* S = F^-1 P */
-static void second_stress(const double F[9], const double P[9], double S[COMPONENTS])
+static void second_stress(const double F[9], const double P[9], double S[PRONY_RATIO])
 {
     double C[9], J = determinant(F);
     cofactor(F, C);
-    for (int c = 0; c < COMPONENTS; c++) {
-        int i = place[c] / 3, j = place[c] % 3;
+    for (int c = 0; c < PRONY_RATIO; c++) {
+        int i = tensor_row[c], j = tensor_column[c];
         S[c] = (C[i] * P[j] + C[3 + i] * P[3 + j] + C[6 + i] * P[6 + j]) / J;
     }
 }
 
-/* Component c of term k at the end of the step, at which S is `stress`. */
-static inline double term(const struct prony_step *step, const double *history, int k, int c, double stress)
+void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9], double *by_ratio)
 {
-    return step->keep[k] * history[TERMS + COMPONENTS * k + c] + step->add[k] * (stress - history[c]);
-}
-
-void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9])
-{
-    const struct material *material = &body->materials[body->material[q]];
-    if (material->prony_terms == 0) {
-        return;
-    }
-    const struct prony_step *step = present_step(body, q);
-    const double *history = history_of(body, q);
-    double *S = body->prony.stress + q * COMPONENTS, rest[9], added[9];
+    const struct prony *prony = &body->prony;
+    double factor = prony_steps(body)[body->material[q]].factor, weight = body->weight[q];
+    double S[PRONY_OFFSETS], rest[9], added[9];
     second_stress(F, P, S);
-    for (int c = 0; c < COMPONENTS; c++) {
-        double sum = 0.0;
-        for (int k = 0; k < material->prony_terms; k++) {
-            sum += term(step, history, k, c, 0.0);
-        }
-        rest[place[c]] = sum;
+    S[PRONY_RATIO] = *by_ratio;
+    for (int c = 0; c < PRONY_OFFSETS; c++) {
+        prony->stress[c * body->point_count + q] = weight * S[c];
     }
-    rest[3] = rest[1];
-    rest[7] = rest[5];
-    rest[6] = rest[2];
+    for (int k = 0; k < 9; k++) {
+        rest[k] = prony->rest[tensor_component[k / 3][k % 3] * body->point_count + q] / weight;
+    }
     multiply(F, rest, added);
     for (int k = 0; k < 9; k++) {
-        P[k] = step->factor * P[k] + added[k];
+        P[k] = factor * P[k] + added[k];
+    }
+    *by_ratio = factor * *by_ratio + prony->rest[PRONY_RATIO * body->point_count + q] / weight;
+}
+
+/* What each component counts for in squares and products. */
+static double count_of(int64_t component)
+{
+    return component > 2 && component < PRONY_RATIO ? 2.0 : 1.0;
+}
+
+/* |X|^2 of such rows, of S and of the offsets. */
+static void squares(const struct body *body, const double *X, double square[2])
+{
+    square[0] = square[1] = 0.0;
+    for (int64_t c = 0; c < prony_components(body); c++) {
+        double value = X[c * body->point_count];
+        square[c >= PRONY_OFFSETS] += c != PRONY_RATIO ? count_of(c) * value * value : 0.0;
     }
 }
 
-/* A : B of symmetric tensors. */
-static double contract(const double A[COMPONENTS], const double B[COMPONENTS])
-{
-    return A[0] * B[0] + A[1] * B[1] + A[2] * B[2] + 2.0 * (A[3] * B[3] + A[4] * B[4] + A[5] * B[5]);
-}
-
-double prony_energy(const struct body *body, int64_t q, const double F[9], double W, double *dissipated)
+double prony_energy(const struct body *body, int64_t q, double W, double W_v, double *dissipated)
 {
     const struct material *material = &body->materials[body->material[q]];
-    if (material->prony_terms == 0) {
-        return W;
-    }
-    const struct prony_step *step = present_step(body, q);
-    const double *history = history_of(body, q);
-    double P[9], S[COMPONENTS], h[COMPONENTS], share = 1.0, stored = 0.0, mu = material->shear_modulus;
-    material_isochoric_stress(material, F, P);
-    second_stress(F, P, S);
-    double compliance = W > COARSE_ROUND_OFF * mu ? W / contract(S, S) : 0.25 / mu;
+    const double *X = body->prony.history + q;
+    double volume_modulus = material->shear_modulus * body->weight[q], share = 1.0, stored = 0.0, square[2];
+    squares(body, X, square);
+    double of_stress = 0.25 / volume_modulus, of_offsets = square[1] > 0.0 ? W_v / square[1] : 0.0;
+    double whole = of_stress * square[0] + of_offsets * square[1];
     for (int k = 0; k < material->prony_terms; k++) {
         double g = material->prony[2 * k];
-        for (int c = 0; c < COMPONENTS; c++) {
-            h[c] = term(step, history, k, c, S[c]);
-        }
+        squares(body, X + (k + 1) * prony_components(body) * body->point_count, square);
+        double of_term = (of_stress * square[0] + of_offsets * square[1]) / g;
         share -= g;
-        stored += contract(h, h) / g * compliance;
+        stored += whole > COARSE_ROUND_OFF * volume_modulus ? of_term * W / whole : fmax(of_term, g * W);
     }
-    *dissipated = history[WORK] - stored;
+    *dissipated += X[(rows_of(body) - 1) * body->point_count] - stored;
     return share * W + stored;
 }
 
-/* The step of point q becomes its history. The work of the terms is that of their mean, and in a jump, which
- * is from rest, their share of W. */
-static void accept_point(struct body *body, int64_t q)
+/* Of a jump, which is from rest: the work of the terms is their share of the energy. */
+static void accept_jump(const struct body *body, int64_t q, const double F[9], double J, void *context)
 {
     const struct material *material = &body->materials[body->material[q]];
-    const struct prony_step *step = present_step(body, q);
-    const double *S = body->prony.stress + q * COMPONENTS;
-    double *history = history_of(body, q), F[9], E[9], mean[COMPONENTS] = {0.0}, change[COMPONENTS];
-    double share = 0.0;
-    for (int k = 0; k < material->prony_terms; k++) {
-        share += material->prony[2 * k];
-    }
-    stress_matrix(body->dim, body->F + q, body->point_count, F);
-    green_lagrange(F, E);
-    for (int c = 0; c < COMPONENTS; c++) {
-        for (int k = 0; k < material->prony_terms; k++) {
-            double *h = &history[TERMS + COMPONENTS * k + c], now = term(step, history, k, c, S[c]);
-            mean[c] += 0.5 * (*h + now);
-            *h = now;
+    double W =
+        body->weight[q] * (material_isochoric_energy(material, F) + stress_coupling_energy(body, q, F, J));
+    (void)context;
+    W += body->smoothed ? stress_variance_energy(body, q) : 0.0;
+    body->prony.history[(rows_of(body) - 1) * body->point_count + q] =
+        (1.0 - step_of(material, INFINITY).factor) * W;
+}
+
+/* The state of a block evaluated last becomes its history. The work of the terms is that of their mean. */
+static void accept_block(const struct body *body, int64_t b)
+{
+    const struct prony *prony = &body->prony;
+    const struct block *block = &body->blocks[b];
+    int64_t components = prony_components(body), row = body->point_count;
+    double *work = prony->history + (rows_of(body) - 1) * row + block->first_point;
+    prony_rows X, x;
+    force_prony_state(body, b, X, x);
+    for (int64_t c = 0; c < components; c++) {
+        for (int64_t i = 0; i < block->point_count; i++) {
+            double *before = prony->history + c * row + block->first_point + i, mean = 0.0;
+            double *strain = before + (prony->terms + 1) * components * row;
+            const struct prony_step *step = &prony->steps[body->material[block->first_point + i]];
+            for (int k = 0; k < prony->terms; k++) {
+                double *h = before + (k + 1) * components * row;
+                double now = step->keep[k] * *h + step->add[k] * (X[c][i] - *before);
+                mean += 0.5 * (*h + now);
+                *h = now;
+            }
+            work[i] += count_of(c) * mean * (x[c][i] - *strain);
+            *strain = x[c][i];
+            *before = X[c][i];
         }
-        change[c] = E[place[c]] - history[STRAIN + c];
-        history[STRAIN + c] = E[place[c]];
-        history[STRESS + c] = S[c];
     }
-    history[WORK] +=
-        body->prony.step > 0.0 ? contract(mean, change) : share * material_isochoric_energy(material, F);
 }
 
 void body_accept(struct body *body)
 {
-    if (body->prony.terms == 0 || body->prony.accepted) {
+    struct prony *prony = &body->prony;
+    if (prony->terms == 0 || prony->accepted) {
         return;
     }
 #pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (int64_t q = body->share.begin_point; q < body->share.end_point; q++) {
-        if (body->materials[body->material[q]].prony_terms > 0) {
-            accept_point(body, q);
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        if (body->blocks[b].relaxes) {
+            accept_block(body, b);
+            set_block_rest(body, &body->blocks[b]);
+            if (!(prony->step > 0.0)) {
+                body_visit(body, b, b + 1, accept_jump, NULL);
+            }
         }
     }
-    body->prony.accepted = true;
+    prony->rest_step = prony->step;
+    prony->accepted = true;
 }
 
 void body_collect_history(struct body *body)
 {
-    const struct prony *prony = &body->prony;
-    if (prony->terms > 0) {
-        ranks_gather(body->share.ranks, prony->history, (size_t)prony_row(prony) * sizeof(double),
-                     body->share.point_first);
+    for (int r = 0; body->prony.terms > 0 && r < rows_of(body); r++) {
+        double *row = body->prony.history + r * body->point_count;
+        ranks_gather(body->share.ranks, row, sizeof *row, body->share.point_first);
     }
 }
 
 enum status prony_state(struct body *body, const struct state *state, struct error *error)
 {
     struct prony *prony = &body->prony;
-    const struct state_value values[] = {
-        {"history", STATE_NUMBERS, prony->history, body->point_count * prony_row(prony)},
-        {"step", STATE_NUMBERS, &prony->step, 1},
-        {"accepted", STATE_FLAGS, &prony->accepted, 1}};
     if (prony->terms == 0) {
         return STATUS_OK;
     }
+    const struct state_value values[] = {
+        {"history", STATE_NUMBERS, prony->history, body->point_count * rows_of(body)},
+        {"step", STATE_NUMBERS, &prony->step, 1},
+        {"accepted", STATE_FLAGS, &prony->accepted, 1}};
     RETURN_IF_ERROR(state_visit(state, "prony", values, 3, error));
     set_steps(body, prony->step);
+    prony->rest_step = NAN;
     return STATUS_OK;
 }

@@ -1,9 +1,15 @@
 /* Time: quasi-linear viscoelasticity by Prony series, equation (11a) of lib/README.md.
  *
- * Convolved is the isochoric second Piola-Kirchhoff stress S of a point (Simo 1987; Taylor et al. 2009). In a
- * step of dt, each term goes from h to exp(-dt/tau) h + g b (S - S_before), b = (1 - exp(-dt/tau)) tau / dt,
- * which is exact where S is linear in time. So the stress is a multiple of S plus a constant: it derives from
- * an energy, and each evaluation takes a trial of it. A state that is accepted becomes the history. */
+ * Convolved is, as X, what works along the objective strains E = (F^T F - I) / 2, J / det F, and F^T s_e of
+ * the offsets s_e = m_e - (v_i + v_j) / 2 in a smoothed cell: the second Piola-Kirchhoff stress S of the
+ * isochoric energy, of c in the coupling (11b) and of the variance (10), which is s . V s / 2; c g' of (11b);
+ * and V F^-1 s_e (Simo 1987; Taylor et al. 2009). In a step of dt, each term goes from h to exp(-dt/tau) h +
+ * g b (X - X_before), b = (1 - exp(-dt/tau)) tau / dt, which is exact where X is linear in time. So what acts
+ * is a multiple of X plus a constant: it derives from an energy,
+ *
+ *   factor (W_iso + W_c + W_v) + rest_S : E + rest_J J / det F + sum_e s_e . F rest_e,
+ *
+ * and each evaluation takes a trial of it. A state that is accepted becomes the history. */
 #pragma once
 
 #include "base/state.h"
@@ -11,7 +17,15 @@
 
 struct body;
 
-/* Of a material in a step: exp(-dt/tau), g b, and what multiplies S, 1 - sum g + sum g b. */
+/* Components of X, weighted by the volume, J (2D: J/m): S, of (11b) by J, and of the offsets, J/m, edge by
+ * edge. */
+enum { PRONY_RATIO = 6, PRONY_OFFSETS = 7, PRONY_MOST = PRONY_OFFSETS + 18 };
+
+/* The places of S, and the component at a place. */
+static const int tensor_row[] = {0, 1, 2, 0, 1, 0}, tensor_column[] = {0, 1, 2, 1, 2, 2};
+static const int tensor_component[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+/* Of a material in a step: exp(-dt/tau), g b, and what multiplies X, 1 - sum g + sum g b. */
 struct prony_step {
     double keep[PRONY_MOST_TERMS], add[PRONY_MOST_TERMS], factor;
 };
@@ -21,27 +35,37 @@ struct prony {
     double step;   /* s; 0: a jump */
     bool accepted; /* the last state has been accepted, and no step begun since: as a jump from there */
     struct prony_step *steps; /* of each material in such a step, and behind them in a jump */
-    double *history;   /* point_count rows of prony_row: S, E = (F^T F - I) / 2, the work of the terms per
-                          volume, Pa, and each term h; 6 components of a tensor */
-    double *stress;    /* point_count * 6: S at the last evaluation; */
+    double *history;   /* rows of point_count: X, each term h, the strains, and the work of the terms, J (2D:
+                          J/m) */
+    double *rest;      /* as X: the constants, */
+    double rest_step;  /* in a step of this length; nan: none yet */
+    double *stress;    /* PRONY_OFFSETS rows: X but for (10) at the last evaluation */
     double dissipated; /* by the terms, at the last call of body_energy, J (2D: J/m) */
 };
 
-/* Numbers of a point in the history. */
-int prony_row(const struct prony *prony);
+/* Components of X at a point. */
+int prony_components(const struct body *body);
+
+/* Of each material in the present step. */
+const struct prony_step *prony_steps(const struct body *body);
 
 /* Once the materials and points of a body are known. */
 MUST_CHECK enum status prony_build(struct body *body, struct error *error);
 void prony_free(struct prony *prony);
 
-/* Of point q: from P = dW_iso/dF to the stress at the end of the step. */
-void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9]);
+/* Before own points are evaluated; and before all points are. */
+void prony_prepare(struct body *body);
+void prony_prepare_all(struct body *body);
 
-/* Of point q: the stored energy at the end of the step, per volume, Pa, where that of the law but for its
- * volumetric part is W. A term stores W |h|^2 / (g |S|^2), which is g W before it relaxes, 0 at last, and at
- * small strain |h|^2 / (4 mu g). *dissipated: the work of the terms up to the last accepted state, less what
- * they store. */
-double prony_energy(const struct body *body, int64_t q, const double F[9], double W, double *dissipated);
+/* Of a viscoelastic point q: from the derivatives of W_iso + W_c by F and J / det F to those at the end of
+ * the step. */
+void prony_stress(const struct body *body, int64_t q, const double F[9], double P[9], double *by_ratio);
+
+/* Of a viscoelastic point q: the stored energy, J (2D: J/m), where that of the law but for its volumetric
+ * part is W, with W_v of the variance. A term of the last accepted state stores W |h|^2 / (g |X|^2), the norm
+ * being that of W at small strain; which is g W before it relaxes, and 0 at last. *dissipated grows by the
+ * work of the terms up to that state, less what they store. */
+double prony_energy(const struct body *body, int64_t q, double W, double W_v, double *dissipated);
 
 /* Visit the histories, see base/state.h. */
 MUST_CHECK enum status prony_state(struct body *body, const struct state *state, struct error *error);

@@ -47,23 +47,89 @@ double stress_active_energy(const struct body *body, int64_t point, const double
     return 0.5 * T * square;
 }
 
-/* From the stress of the law but for its volumetric part to what has relaxed, and T F a (x) a. */
-static void relax_and_activate(const struct body *body, int64_t q, const double F[9], double P[9])
+/* Add T F a (x) a. */
+static void activate(const struct body *body, int64_t q, const double F[9], double P[9])
 {
     const struct material *material = &body->materials[body->material[q]];
     double T = active_stress(body, material);
-    prony_stress(body, q, F, P);
     for (int i = 0; i < 3 && fabs(T) > 0.0; i++) {
         add_scaled(3, T * vector_dot(3, F + 3 * i, material->fibre), material->fibre, P + 3 * i);
     }
 }
 
+/* The energy (11b) of a cell of volume ratio J, W being W_iso(F), and its derivatives: by W_iso, by I1', and
+ * by det F and J. */
+struct coupling {
+    double energy, of_isochoric, of_square, of_determinant, of_volume;
+};
+
+static struct coupling couple(const struct material *material, const double F[9], double J)
+{
+    double mu = material->shear_modulus, D = determinant(F), apart = J / D - 1.0;
+    double I1 = 3.0 + 2.0 * neo_hookean_energy(1.0, F),
+           part = 1.0 / sqrt(1.0 + COUPLING_CURVE * apart * apart);
+    double c = COUPLING_OF_ENERGY * material_isochoric_energy(material, F) + mu * (1.0 - 3.0 / I1);
+    double g = -apart * part, by_volume = -c * part * part * part / D;
+    return (struct coupling){c * g, COUPLING_OF_ENERGY * g, 3.0 * mu / (I1 * I1) * g,
+                             -by_volume * (apart + 1.0), by_volume};
+}
+
+/* The stress of the coupling along F, if P is that of W_iso. */
+static void coupling_stress(const struct coupling *coupling, const double F[9], const double P[9],
+                            double stress[9])
+{
+    double of_square[9], C[9];
+    neo_hookean_stress(2.0, F, of_square);
+    cofactor(F, C);
+    for (int k = 0; k < 9; k++) {
+        stress[k] = coupling->of_isochoric * P[k] + coupling->of_square * of_square[k] +
+                    coupling->of_determinant * C[k];
+    }
+}
+
+/* From the stress of W_iso and of c to what has relaxed; the coupling then has what has relaxed of c g'. */
+static void relax(const struct body *body, int64_t q, const double F[9], double J, double P[9],
+                  struct coupling *coupling)
+{
+    double D = determinant(F), by_ratio = coupling->of_volume * D, of_c[9];
+    struct coupling c = *coupling;
+    c.of_determinant = 0.0;
+    coupling_stress(&c, F, P, of_c);
+    for (int k = 0; k < 9; k++) {
+        P[k] += of_c[k];
+    }
+    prony_stress(body, q, F, P, &by_ratio);
+    *coupling = (struct coupling){.of_determinant = -by_ratio * J / (D * D), .of_volume = by_ratio / D};
+}
+
+/* Of W_iso and the coupling of a point, relaxed, and active stress: the derivatives by F, the coupling's
+ * apart, and, as the value, that by J. */
+static double inner_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9],
+                           double coupled[9])
+{
+    const struct material *material = &body->materials[body->material[q]];
+    bool is_coupled = body->smoothed && material_is_isochoric(material);
+    struct coupling coupling = {0};
+    memset(coupled, 0, 9 * sizeof *coupled);
+    material_isochoric_stress(material, F, P);
+    if (is_coupled) {
+        coupling = couple(material, F, J);
+    }
+    if (material->prony_terms > 0) {
+        relax(body, q, F, J, P, &coupling);
+    }
+    if (is_coupled) {
+        coupling_stress(&coupling, F, P, coupled);
+    }
+    activate(body, q, F, P);
+    return coupling.of_volume;
+}
+
 /* P at a point: the isochoric part, and the volumetric part along the cofactor of F. */
 static void point_stress(const struct body *body, int64_t q, const double F[9], double J, double P[9])
 {
-    double C[9];
-    material_isochoric_stress(&body->materials[body->material[q]], F, P);
-    relax_and_activate(body, q, F, P);
+    double C[9], coupled[9];
+    (void)inner_stress(body, q, F, J, P, coupled);
     cofactor(F, C);
     double pressure = point_pressure(body, q, J);
     for (int k = 0; k < 9; k++) {
@@ -139,57 +205,20 @@ static void cofactor_along(const double H[9], const double D[9], double along[9]
     }
 }
 
-/* The energy (11b) of a cell of volume ratio J, W being W_iso(F), and its derivatives: by W_iso, by I1', and
- * by det F and J. */
-struct coupling {
-    double energy, of_isochoric, of_square, of_determinant, of_volume;
-};
-
-static struct coupling couple(const struct material *material, const double F[9], double J)
-{
-    double mu = material->shear_modulus, D = determinant(F), apart = J / D - 1.0;
-    double I1 = 3.0 + 2.0 * neo_hookean_energy(1.0, F),
-           part = 1.0 / sqrt(1.0 + COUPLING_CURVE * apart * apart);
-    double c = COUPLING_OF_ENERGY * material_isochoric_energy(material, F) + mu * (1.0 - 3.0 / I1);
-    double g = -apart * part, by_volume = -c * part * part * part / D;
-    return (struct coupling){c * g, COUPLING_OF_ENERGY * g, 3.0 * mu / (I1 * I1) * g,
-                             -by_volume * (apart + 1.0), by_volume};
-}
-
 double stress_coupling_energy(const struct body *body, int64_t point, const double F[9], double J)
 {
     const struct material *material = &body->materials[body->material[point]];
     return body->smoothed && material_is_isochoric(material) ? couple(material, F, J).energy : 0.0;
 }
 
-/* The stress of the coupling along F, if P is that of W_iso. */
-static void coupling_stress(const struct coupling *coupling, const double F[9], const double P[9],
-                            double stress[9])
-{
-    double of_square[9], C[9];
-    neo_hookean_stress(2.0, F, of_square);
-    cofactor(F, C);
-    for (int k = 0; k < 9; k++) {
-        stress[k] = coupling->of_isochoric * P[k] + coupling->of_square * of_square[k] +
-                    coupling->of_determinant * C[k];
-    }
-}
-
 static void cell_stress(const struct body *body, int64_t q, double P[9], double T[9])
 {
-    const struct material *material = &body->materials[body->material[q]];
-    double F[9], H[9], C[9], D[9], along[9], coupled[9] = {0.0};
+    double F[9], H[9], C[9], D[9], along[9], coupled[9];
     stress_matrix(body->dim, body->F + q, body->point_count, F);
     stress_matrix(body->dim, body->cells.interpolant + q, body->point_count, H);
     vector_subtract(9, H, F, D);
     double pressure = point_pressure(body, q, body->J[q]);
-    material_isochoric_stress(material, F, P);
-    if (material_is_isochoric(material)) {
-        struct coupling coupling = couple(material, F, body->J[q]);
-        coupling_stress(&coupling, F, P, coupled);
-        pressure += coupling.of_volume;
-    }
-    relax_and_activate(body, q, F, P);
+    pressure += inner_stress(body, q, F, body->J[q], P, coupled);
     cofactor(H, C);
     cofactor_along(H, D, along);
     for (int k = 0; k < 9; k++) {
@@ -225,6 +254,7 @@ static void put_stress(const struct body *body, int64_t q, const double F[9], do
 void body_stress(struct body *body, double *stress)
 {
     body_share_collect(body);
+    prony_prepare_all(body);
     body_visit(body, 0, body->block_count, put_stress, stress);
 }
 
