@@ -17,8 +17,8 @@ static int64_t points_of_block(int dim)
     return dim == 2 ? 64 : BLOCK_MOST_POINTS;
 }
 
-/* The law of a point, which with active stress, that has no kernel of its own, or with viscosity counts as
- * another one. */
+/* The law of a point, which with active stress or viscosity counts as another one: its kernel is another, or
+ * that of any law. */
 static int model_of(const struct body_input *input, int64_t point)
 {
     const struct material *material = &input->materials[input->material[point]];
@@ -93,8 +93,9 @@ static enum status cut_blocks(const struct body_input *input, struct body *body,
         struct block *block = &body->blocks[body->block_count++];
         int model = model_of(input, body->order[q]);
         block->first_point = q;
-        block->neo_hookean = model % (2 * law_count) == MATERIAL_NEO_HOOKEAN;
         block->relaxes = model >= 2 * law_count;
+        block->neo_hookean = model == MATERIAL_NEO_HOOKEAN ||
+                             (body->smoothed && model == MATERIAL_NEO_HOOKEAN + 2 * law_count);
         while (q < body->point_count && model_of(input, body->order[q]) == model) {
             int64_t next = smoothed_cells_group_end(body, q);
             if (next - block->first_point > most) {

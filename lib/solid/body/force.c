@@ -187,7 +187,7 @@ struct deformation body_own_force(struct body *body, const double *u, double *fo
 {
     struct deformation deformation = {.least_jacobian = INFINITY};
     int64_t worst = 0;
-    prony_prepare(body);
+    prony_prepare(body, false);
     evaluate(body, u, force);
     for (int64_t b = 0; b < body->block_count && !isnan(deformation.least_jacobian); b++) {
         if (!(body->blocks[b].least_jacobian >= deformation.least_jacobian)) { /* NaN counts as the least */

@@ -55,7 +55,7 @@ ALL_SETS void force_point_gradients(struct body *body, int64_t b)
 
 ALL_SETS void force_point_neo_hookean(const struct body *body, int64_t b, block_rows P)
 {
-    FOR_KIND(body, b, kernel_neo_hookean(body, &body->blocks[b], DIM, RELAXES, P));
+    FOR_DIM(body->dim, kernel_neo_hookean(body, &body->blocks[b], DIM, P));
 }
 
 ALL_SETS void force_point_forces(struct body *body, int64_t b, const block_rows P)

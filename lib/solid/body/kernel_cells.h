@@ -70,6 +70,16 @@ KERNEL_INLINE void cell_forces(const lanes P[3], const lanes T[3], int dim, cons
     }
 }
 
+/* Rows of a block's cells into an array over all cells. */
+KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block, int count,
+                             const block_rows from, double *rows)
+{
+    for (int k = 0; k < count; k++) {
+        memcpy(rows + k * body->point_count + block->first_point, from[k],
+               (size_t)block->point_count * sizeof *from[k]);
+    }
+}
+
 /* The mean over a face on the boundary is that of its own row, in place of that of the interpolant: a mean
  * that is larger by d changes F by -dim d (x) grad N_k, k the opposite vertex. change: by how much, of each
  * cell. */
@@ -208,6 +218,38 @@ KERNEL_INLINE void couple_volumes(const lanes *J, const lanes *volume, const lan
     *pressure -= c;
 }
 
+/* Viscoelastic cells, at i and q: put S of a stress a F + b C, and by_ratio. They become what has relaxed of
+ * them, and `added` F times the rest. */
+KERNEL_INLINE void relax(const struct body *body, int64_t q, int64_t i, int dim, const lanes F[9],
+                         const lanes C[9], const lanes *J, struct lanes_isochoric *isochoric, lanes *by_ratio,
+                         lanes added[9], block_rows stress)
+{
+    lanes factor, rest[PRONY_OFFSETS], along = isochoric->along_cofactor / *J;
+    for (int c = 0; c < PRONY_RATIO; c++) {
+        int k = tensor_row[c], l = tensor_column[c];
+        lanes S = c == 2 && dim == 2 ? *J * *J : (lanes){0.0};
+        for (int m = 0; m < dim && k < dim && l < dim; m++) {
+            S += C[m * dim + k] * C[m * dim + l];
+        }
+        S = along * S + (k == l ? 1.0 : 0.0) * isochoric->along_gradient;
+        STORE(stress[c] + i, S);
+    }
+    STORE(stress[PRONY_RATIO] + i, *by_ratio);
+    for (int c = 0; c < PRONY_OFFSETS; c++) {
+        LOAD(rest[c], body->prony.rest + c * body->point_count + q);
+    }
+    load_factors(body, q, &factor);
+    isochoric->along_gradient *= factor;
+    isochoric->along_cofactor *= factor;
+    *by_ratio = factor * *by_ratio + rest[PRONY_RATIO];
+    for (int k = 0; k < dim * dim; k++) {
+        added[k] = F[k / dim * dim] * rest[tensor_component[0][k % dim]];
+        for (int m = 1; m < dim; m++) {
+            added[k] += F[k / dim * dim + m] * rest[tensor_component[m][k % dim]];
+        }
+    }
+}
+
 /* dE/dF in P and dE/dF_h in T of w (W_iso(F) + c g + p J), p constant: see smoothed_cells.h. */
 KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct block *block, int dim,
                                            bool relaxes, block_rows P, block_rows T)
@@ -287,12 +329,9 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
                 LOAD(interpolant[b], T[a * dim + b] + i);
             }
             cell_forces(mean, interpolant, dim, grad_N, on_edge, on_vertex);
-            add_variance_forces((const double(*)[BLOCK_MOST_POINTS])edges,
-                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, V, on_edge,
+            add_variance_forces(body, q, (const double(*)[BLOCK_MOST_POINTS])edges,
+                                (const double(*)[BLOCK_MOST_POINTS])vertices, i, dim, a, relaxes, V, on_edge,
                                 on_vertex);
-            if (relaxes) {
-                add_rest_forces(body, q, dim, a, on_edge, on_vertex);
-            }
             for (int e = 0; e < CELL_EDGES(dim); e++) {
                 STORE(at_edges[e * dim + a] + i, on_edge[e]);
             }

@@ -25,15 +25,6 @@ KERNEL_INLINE void load_moduli(const struct body *body, int64_t q, lanes *shear,
     }
 }
 
-/* The factors of viscoelastic points from q on. */
-KERNEL_INLINE void load_factors(const struct body *body, int64_t q, lanes *factor)
-{
-    const struct prony_step *steps = prony_steps(body);
-    for (int i = 0; i < LANES; i++) {
-        (*factor)[i] = steps[body->material[q + i]].factor;
-    }
-}
-
 /* Cofactor J F^-T; in two dimensions that of the part in the plane. */
 KERNEL_INLINE void lanes_cofactor(const lanes F[9], int dim, lanes C[9])
 {
@@ -155,57 +146,14 @@ KERNEL_INLINE void neo_hookean_isochoric(const lanes F[9], const lanes *J, const
     isochoric->along_cofactor = scale * I1 * (-1.0 / 3.0) * (root * root * root);
 }
 
-/* Rows of a block into an array over all points. */
-KERNEL_INLINE void keep_rows(const struct body *body, const struct block *block, int count,
-                             const block_rows from, double *rows)
-{
-    for (int k = 0; k < count; k++) {
-        memcpy(rows + k * body->point_count + block->first_point, from[k],
-               (size_t)block->point_count * sizeof *from[k]);
-    }
-}
-
-/* Viscoelastic points, at i and q: put S of a stress a F + b C, and by_ratio. They become what has relaxed of
- * them, and `added` F times the rest. */
-KERNEL_INLINE void relax(const struct body *body, int64_t q, int64_t i, int dim, const lanes F[9],
-                         const lanes C[9], const lanes *J, struct lanes_isochoric *isochoric, lanes *by_ratio,
-                         lanes added[9], block_rows stress)
-{
-    lanes factor, rest[PRONY_OFFSETS], along = isochoric->along_cofactor / *J;
-    for (int c = 0; c < PRONY_RATIO; c++) {
-        int k = tensor_row[c], l = tensor_column[c];
-        lanes S = c == 2 && dim == 2 ? *J * *J : (lanes){0.0};
-        for (int m = 0; m < dim && k < dim && l < dim; m++) {
-            S += C[m * dim + k] * C[m * dim + l];
-        }
-        S = along * S + (k == l ? 1.0 : 0.0) * isochoric->along_gradient;
-        STORE(stress[c] + i, S);
-    }
-    STORE(stress[PRONY_RATIO] + i, *by_ratio);
-    for (int c = 0; c < PRONY_OFFSETS; c++) {
-        LOAD(rest[c], body->prony.rest + c * body->point_count + q);
-    }
-    load_factors(body, q, &factor);
-    isochoric->along_gradient *= factor;
-    isochoric->along_cofactor *= factor;
-    *by_ratio = factor * *by_ratio + rest[PRONY_RATIO];
-    for (int k = 0; k < dim * dim; k++) {
-        added[k] = F[k / dim * dim] * rest[tensor_component[0][k % dim]];
-        for (int m = 1; m < dim; m++) {
-            added[k] += F[k / dim * dim + m] * rest[tensor_component[m][k % dim]];
-        }
-    }
-}
-
 /* P = mu J^(-2/3) (F - I1/3 F^-T) + p J F^-T, times the weight. */
 KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct block *block, int dim,
-                                      bool relaxes, block_rows P)
+                                      block_rows P)
 {
     double weighted_pressure[BLOCK_MOST_POINTS];
-    block_rows stress;
     kernel_pressures(body, block, body->J + block->first_point, dim, weighted_pressure);
     for (int64_t i = 0; i < block->point_count; i += LANES) {
-        lanes F[9], C[9], added[9] = {{0.0}}, J, weight, shear, bulk, pressure;
+        lanes F[9], C[9], J, weight, shear, bulk, pressure;
         struct lanes_isochoric isochoric;
         int64_t q = block->first_point + i;
         load_matrix(body->F + q, body->point_count, dim, F);
@@ -216,20 +164,10 @@ KERNEL_INLINE void kernel_neo_hookean(const struct body *body, const struct bloc
         LOAD(pressure, weighted_pressure + i);
         shear *= weight;
         neo_hookean_isochoric(F, &J, &shear, dim, &isochoric);
-        if (relaxes) {
-            lanes none = {0.0};
-            relax(body, q, i, dim, F, C, &J, &isochoric, &none, added, stress);
-        }
         pressure += isochoric.along_cofactor;
         for (int k = 0; k < dim * dim; k++) {
-            lanes total = isochoric.along_gradient * F[k] + pressure * C[k];
-            if (relaxes) {
-                total += added[k];
-            }
-            STORE(P[k] + i, total);
+            lanes stress = isochoric.along_gradient * F[k] + pressure * C[k];
+            STORE(P[k] + i, stress);
         }
-    }
-    if (relaxes) {
-        keep_rows(body, block, PRONY_OFFSETS, (const double(*)[BLOCK_MOST_POINTS])stress, body->prony.stress);
     }
 }

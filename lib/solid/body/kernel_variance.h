@@ -77,6 +77,15 @@ KERNEL_INLINE void variance_matrix(int dim, const lanes grad_N[12], const lanes 
     }
 }
 
+/* The factors of viscoelastic cells from q on. */
+KERNEL_INLINE void load_factors(const struct body *body, int64_t q, lanes *factor)
+{
+    const struct prony_step *steps = prony_steps(body);
+    for (int i = 0; i < LANES; i++) {
+        (*factor)[i] = steps[body->material[q + i]].factor;
+    }
+}
+
 /* V in the cells from q on, times what makes s . V s / 2 the energy of s_e = m_e - (v_i + v_j) / 2. */
 KERNEL_INLINE void load_variance_matrix(const struct body *body, int64_t q, int dim, const lanes grad_N[12],
                                         bool relaxes, lanes V[6][6])
@@ -106,39 +115,24 @@ KERNEL_INLINE void load_offsets(const block_edges edges, const block_vertices ve
     }
 }
 
-/* Add the forces of component a of the energy s . V s / 2. */
-KERNEL_INLINE void add_variance_forces(const block_edges edges, const block_vertices vertices, int64_t i,
-                                       int dim, int a, lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
+/* Add the forces of component a of the energy s . V s / 2 and, of viscoelastic cells, of s_e . F rest_e
+ * (prony.h);
+ */
+KERNEL_INLINE void add_variance_forces(const struct body *body, int64_t q, const block_edges edges,
+                                       const block_vertices vertices, int64_t i, int dim, int a, bool relaxes,
+                                       lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
 {
-    lanes offset[6];
+    lanes offset[6], F, rest;
     load_offsets(edges, vertices, i, dim, a, offset);
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         lanes force = V[e][0] * offset[0];
         for (int f = 1; f < CELL_EDGES(dim); f++) {
             force += V[e][f] * offset[f];
         }
-        on_edge[e] += force;
-        force *= 0.5;
-        on_vertex[cell_edge_ends[e][0]] -= force;
-        on_vertex[cell_edge_ends[e][1]] -= force;
-    }
-}
-
-/* Of viscoelastic cells, from q on, the rest's forces on component a of s_e, s_e . F rest_e being its energy;
- */
-KERNEL_INLINE void add_rest_forces(const struct body *body, int64_t q, int dim, int a, lanes on_edge[6],
-                                   lanes on_vertex[4])
-{
-    const double *rest = body->prony.rest + PRONY_OFFSETS * body->point_count + q;
-    lanes F[3];
-    for (int b = 0; b < dim; b++) {
-        LOAD(F[b], body->F + (a * dim + b) * body->point_count + q);
-    }
-    for (int e = 0; e < CELL_EDGES(dim); e++) {
-        lanes force = {0.0}, of_edge;
-        for (int b = 0; b < dim; b++, rest += body->point_count) {
-            LOAD(of_edge, rest);
-            force += F[b] * of_edge;
+        for (int b = 0; b < dim && relaxes; b++) {
+            LOAD(F, body->F + (a * dim + b) * body->point_count + q);
+            LOAD(rest, body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
+            force += F * rest;
         }
         on_edge[e] += force;
         force *= 0.5;
@@ -147,7 +141,7 @@ KERNEL_INLINE void add_rest_forces(const struct body *body, int64_t q, int dim, 
     }
 }
 
-/* and its stress on F. */
+/* and the stress of the latter on F. */
 KERNEL_INLINE void add_rest_stresses(const struct body *body, const struct block *block, int dim,
                                      const block_edges edges, const block_vertices vertices, block_rows P)
 {

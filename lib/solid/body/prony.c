@@ -101,30 +101,20 @@ static void set_block_rest(const struct body *body, const struct block *block)
     }
 }
 
-/* The same of some blocks. */
-static void set_rest(struct body *body, int64_t first, int64_t last)
+void prony_prepare(struct body *body, bool all)
 {
-    body->prony.rest_step = body->prony.accepted ? 0.0 : body->prony.step;
+    struct prony *prony = &body->prony;
+    const struct body_share *share = &body->share;
+    double step = prony->accepted ? 0.0 : prony->step;
+    if (prony->terms == 0 || (!all && prony->rest_step == step)) {
+        return;
+    }
+    prony->rest_step = step;
 #pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (int64_t b = first; b < last; b++) {
+    for (int64_t b = all ? 0 : share->begin_block; b < (all ? body->block_count : share->end_block); b++) {
         if (body->blocks[b].relaxes) {
             set_block_rest(body, &body->blocks[b]);
         }
-    }
-}
-
-void prony_prepare(struct body *body)
-{
-    struct prony *prony = &body->prony;
-    if (prony->terms > 0 && prony->rest_step != (prony->accepted ? 0.0 : prony->step)) {
-        set_rest(body, body->share.begin_block, body->share.end_block);
-    }
-}
-
-void prony_prepare_all(struct body *body)
-{
-    if (body->prony.terms > 0) {
-        set_rest(body, 0, body->block_count);
     }
 }
 

@@ -53,9 +53,8 @@ const struct prony_step *prony_steps(const struct body *body);
 MUST_CHECK enum status prony_build(struct body *body, struct error *error);
 void prony_free(struct prony *prony);
 
-/* Before own points are evaluated; and before all points are. */
-void prony_prepare(struct body *body);
-void prony_prepare_all(struct body *body);
+/* Before own points are evaluated, or all. */
+void prony_prepare(struct body *body, bool all);
 
 /* Of a viscoelastic point q: from the derivatives of W_iso + W_c by F and J / det F to those at the end of
  * the step. */

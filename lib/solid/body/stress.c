@@ -254,7 +254,7 @@ static void put_stress(const struct body *body, int64_t q, const double F[9], do
 void body_stress(struct body *body, double *stress)
 {
     body_share_collect(body);
-    prony_prepare_all(body);
+    prony_prepare(body, true);
     body_visit(body, 0, body->block_count, put_stress, stress);
 }
 
