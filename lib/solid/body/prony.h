@@ -17,8 +17,8 @@
 
 struct body;
 
-/* Components of X, weighted by the volume, J (2D: J/m): S, of (11b) by J, and of the offsets, J/m, edge by
- * edge. */
+/* Components of X, weighted by the volume: S and c g', J (2D: J/m), and of the offsets, edge by edge, N (2D:
+ * N/m). */
 enum { PRONY_RATIO = 6, PRONY_OFFSETS = 7, PRONY_MOST = PRONY_OFFSETS + 18 };
 
 /* The places of S, and the component at a place. */
