@@ -311,8 +311,8 @@ KERNEL_INLINE void kernel_cell_forces(struct body *body, const struct block *blo
     block_edges edges, at_edges;
     block_vertices vertices, at_vertices;
     read_cells(body, block, dim, edges, vertices);
-    if (relaxes) {
-        add_rest_stresses(body, block, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
+    for (int64_t i = 0; i < block->point_count && relaxes; i += LANES) {
+        add_rest_stresses(body, block->first_point + i, i, dim, (const double(*)[BLOCK_MOST_POINTS])edges,
                           (const double(*)[BLOCK_MOST_POINTS])vertices, P);
     }
     if (body->cells.group != NULL) {

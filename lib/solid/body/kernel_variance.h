@@ -141,24 +141,22 @@ KERNEL_INLINE void add_variance_forces(const struct body *body, int64_t q, const
     }
 }
 
-/* and the stress of the latter on F. */
-KERNEL_INLINE void add_rest_stresses(const struct body *body, const struct block *block, int dim,
+/* and the stress of the latter on F, in the cells at i and q. */
+KERNEL_INLINE void add_rest_stresses(const struct body *body, int64_t q, int64_t i, int dim,
                                      const block_edges edges, const block_vertices vertices, block_rows P)
 {
-    const double *rest = body->prony.rest + PRONY_OFFSETS * body->point_count + block->first_point;
-    for (int64_t i = 0; i < block->point_count; i += LANES) {
-        for (int a = 0; a < dim; a++) {
-            lanes offset[6];
-            load_offsets(edges, vertices, i, dim, a, offset);
-            for (int b = 0; b < dim; b++) {
-                lanes stress, of_edge;
-                LOAD(stress, P[a * dim + b] + i);
-                for (int e = 0; e < CELL_EDGES(dim); e++) {
-                    LOAD(of_edge, rest + (e * dim + b) * body->point_count + i);
-                    stress += offset[e] * of_edge;
-                }
-                STORE(P[a * dim + b] + i, stress);
+    const double *rest = body->prony.rest + PRONY_OFFSETS * body->point_count + q;
+    for (int a = 0; a < dim; a++) {
+        lanes offset[6];
+        load_offsets(edges, vertices, i, dim, a, offset);
+        for (int b = 0; b < dim; b++) {
+            lanes stress, of_edge;
+            LOAD(stress, P[a * dim + b] + i);
+            for (int e = 0; e < CELL_EDGES(dim); e++) {
+                LOAD(of_edge, rest + (e * dim + b) * body->point_count);
+                stress += offset[e] * of_edge;
             }
+            STORE(P[a * dim + b] + i, stress);
         }
     }
 }
