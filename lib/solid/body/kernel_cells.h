@@ -221,16 +221,17 @@ KERNEL_INLINE void couple_volumes(const lanes *J, const lanes *volume, const lan
 /* Viscoelastic cells, at i and q: put S of a stress a F + b C, and by_ratio. They become what has relaxed of
  * them, and `added` F times the rest. */
 KERNEL_INLINE void relax(const struct body *body, int64_t q, int64_t i, int dim, const lanes F[9],
-                         const lanes C[9], const lanes *J, struct lanes_isochoric *isochoric, lanes *by_ratio,
-                         lanes added[9], block_rows stress)
+                         const lanes C[9], const lanes *inverse, struct lanes_isochoric *isochoric,
+                         lanes *by_ratio, lanes added[9], block_rows stress)
 {
-    lanes factor, rest[PRONY_OFFSETS], along = isochoric->along_cofactor / *J;
+    lanes factor, rest[PRONY_OFFSETS], along = isochoric->along_cofactor * *inverse;
     for (int c = 0; c < PRONY_RATIO; c++) {
         int k = tensor_row[c], l = tensor_column[c];
-        lanes S = c == 2 && dim == 2 ? *J * *J : (lanes){0.0};
+        lanes S = {0.0};
         for (int m = 0; m < dim && k < dim && l < dim; m++) {
             S += C[m * dim + k] * C[m * dim + l];
         }
+        S = c == 2 && dim == 2 ? 1.0 / (*inverse * *inverse) : S;
         S = along * S + (k == l ? 1.0 : 0.0) * isochoric->along_gradient;
         STORE(stress[c] + i, S);
     }
@@ -274,11 +275,11 @@ KERNEL_INLINE void kernel_cell_neo_hookean(const struct body *body, const struct
         lanes elastic = pressure;
         couple_volumes(&J, &volume, &shear, &isochoric, &pressure);
         if (relaxes) {
-            lanes ratio = volume / J, by_ratio = (pressure - elastic) * J;
-            isochoric.along_cofactor += by_ratio * ratio / J;
-            relax(body, q, i, dim, F, C, &J, &isochoric, &by_ratio, added, S);
-            isochoric.along_cofactor -= by_ratio * ratio / J;
-            pressure = elastic + by_ratio / J;
+            lanes inverse = 1.0 / J, ratio = volume * inverse * inverse, by_ratio = (pressure - elastic) * J;
+            isochoric.along_cofactor += by_ratio * ratio;
+            relax(body, q, i, dim, F, C, &inverse, &isochoric, &by_ratio, added, S);
+            isochoric.along_cofactor -= by_ratio * ratio;
+            pressure = elastic + by_ratio * inverse;
         }
         for (int k = 0; k < dim * dim; k++) {
             D[k] = H[k] - F[k];

@@ -122,17 +122,19 @@ KERNEL_INLINE void add_variance_forces(const struct body *body, int64_t q, const
                                        const block_vertices vertices, int64_t i, int dim, int a, bool relaxes,
                                        lanes V[6][6], lanes on_edge[6], lanes on_vertex[4])
 {
-    lanes offset[6], F, rest;
+    lanes offset[6], F[3], rest;
     load_offsets(edges, vertices, i, dim, a, offset);
+    for (int b = 0; b < dim && relaxes; b++) {
+        LOAD(F[b], body->F + (a * dim + b) * body->point_count + q);
+    }
     for (int e = 0; e < CELL_EDGES(dim); e++) {
         lanes force = V[e][0] * offset[0];
         for (int f = 1; f < CELL_EDGES(dim); f++) {
             force += V[e][f] * offset[f];
         }
         for (int b = 0; b < dim && relaxes; b++) {
-            LOAD(F, body->F + (a * dim + b) * body->point_count + q);
             LOAD(rest, body->prony.rest + (PRONY_OFFSETS + e * dim + b) * body->point_count + q);
-            force += F * rest;
+            force += F[b] * rest;
         }
         on_edge[e] += force;
         force *= 0.5;
