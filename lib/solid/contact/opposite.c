@@ -224,26 +224,38 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
            point_behind * point_behind > least2;
 }
 
-/* Admit facets that face the point. Those of another body do so from a right angle on: a face that goes round
- * the corner of one body is in front of the other, and what turns to the limit does not press. For the
- * others, bound the motion before they can: to change the cosine of its angle by c, a facet must turn by more
- * than c, which moves one of its corners by more than a third of its width times c. */
+/* Whether facet f faces the point: from a right angle on if it is of another body, so that one which goes
+ * round a corner of it begins to press without a jump, or if the point pressed at the last step, so that it
+ * does not go in and out at the limit. *beyond: by how much its cosine lacks that, negative if it faces the
+ * point. */
+static bool faces(const struct search *search, int64_t f, double *beyond)
+{
+    const struct opposite *opposite = search->opposite;
+    const struct seeker *seeker = search->seeker;
+    bool early = opposite->part[f] != seeker->part || seeker->last_u == NULL;
+    int dim = opposite->surface.dim;
+    double cosine = vector_dot(dim, opposite->surface.normal + f * dim, seeker->normal);
+    *beyond = cosine + (early ? 0.0 : SAME_DIRECTION);
+    return *beyond < 0.0;
+}
+
+/* Admit facets that are not turned away from the point. For those that do not face it, bound the motion
+ * before they can: to change the cosine of its angle by c, a facet must turn by more than c, which moves one
+ * of its corners by more than a third of its width times c. */
 static bool considers(void *context, int64_t f)
 {
     struct search *search = context;
     const struct opposite *opposite = search->opposite;
+    const struct seeker *seeker = search->seeker;
     int dim = opposite->surface.dim;
-    double cosine = vector_dot(dim, opposite->surface.normal + f * dim, search->seeker->normal);
-    double limit = opposite->part[f] == search->seeker->part ? -SAME_DIRECTION : 0.0;
-    if (cosine < limit) {
-        return !through_body(opposite, search->seeker, f);
+    double beyond, width = fmin(opposite->width[f], seeker->width);
+    if (through_body(opposite, seeker, f)) {
+        return false;
     }
-    double own = search->seeker->width, width = opposite->width[f] < own ? opposite->width[f] : own;
-    double bound = width / 3.0 * (cosine - limit);
-    if (bound < search->free_way && !through_body(opposite, search->seeker, f)) {
-        search->free_way = bound;
+    if (!faces(search, f, &beyond)) {
+        search->free_way = fmin(search->free_way, width / 3.0 * beyond);
     }
-    return false;
+    return vector_dot(dim, opposite->surface.normal + f * dim, seeker->normal) < 0.0;
 }
 
 /* Whether facet f and the point's have a corner in common. */
@@ -291,20 +303,21 @@ static bool admits(void *context, int64_t f, const double *away)
             !was_behind(search->opposite, seeker, f));
 }
 
-/* Whether the closest place is on a ridge beyond which a facet does not face the point. */
-static bool ends_there(struct search *search, const struct rigid_contact *closest)
+/* Whether the closest facet faces the point, and, where the closest place is on a ridge, those beyond it. */
+static bool all_face(const struct search *search, const struct rigid_contact *closest)
 {
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
-    double free_way = search->free_way;
-    bool ends = false;
+    double ignored;
+    bool all = faces(search, closest->facet, &ignored);
     for (int k = 0; k < dim; k++) {
         int64_t beyond = opposite->across[closest->facet * dim + k];
-        ends = ends || (closest->weight[(k + dim - 1) % dim] == 0.0 && beyond >= 0 &&
-                        !considers(search, beyond / dim));
+        if (closest->weight[(k + dim - 1) % dim] == 0.0 && beyond >= 0) {
+            all = all && faces(search, beyond / dim, &ignored) &&
+                  !through_body(opposite, search->seeker, beyond / dim);
+        }
     }
-    search->free_way = free_way;
-    return ends;
+    return all;
 }
 
 struct rigid_contact opposite_closest(const struct opposite *opposite, const struct seeker *seeker,
@@ -314,7 +327,7 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
     struct rigid_filter filter = {considers, admits, &search};
     struct rigid_contact closest = rigid_closest_among(&opposite->surface, seeker->x, reach, &filter);
     closest.found = closest.found && closest.gap > -seeker->depth;
-    if (closest.found && closest.gap < 0.0 && closest.on_edge && ends_there(&search, &closest)) {
+    if (closest.found && closest.gap < 0.0 && !all_face(&search, &closest)) {
         closest.gap = closest.distance;
         for (int c = 0; c < opposite->surface.dim; c++) {
             closest.normal[c] = -closest.normal[c];

@@ -3,14 +3,14 @@
  *
  * Their corners are at X_a + sum_j Phi_aj u_j with the values of boundary_corners_build, so that the surface
  * is continuous, and follows the field by the boundary's own quadrature. The closest point of it to a contact
- * point is sought among the facets that face the point: their normals are opposed, by more than a right angle
- * (of facets of one body by more than 120 degrees), and the point is behind them by no more than it may be.
+ * point is sought among the facets that are not turned away from it. It counts if the facets there face the
+ * point: their normals are opposed, by more than a right angle, of facets of one body that do not press yet
+ * by more than 120 degrees. The point is behind them by no more than it may be. Where the nearest facet does
+ * not face the point, the sign of the distance to others says nothing, and the point is in front.
+ *
  * Facets that face it through the body are excluded by the reference state: facets of the same body that were
  * near there, each behind the other. A facet that shares a corner with the point's own facet is always near,
- * whether the point has penetrated it or not. It counts only if the point came from its front.
- *
- * Where the closest place of these is on a ridge and the facet beyond it does not face the point, that facet
- * is nearer to the point. Then the ridge's pseudo-normal says nothing, and the point is not behind it. */
+ * whether the point has penetrated it or not. It counts only if the point came from its front. */
 #pragma once
 
 #include "approx/shape/boundary.h"
