@@ -93,8 +93,9 @@ MUST_CHECK enum status contact_allocate(struct contact *contact, double stiffnes
 double contact_width(const struct contact *contact, int64_t p);
 double contact_most_depth(const struct contact *contact, int64_t p);
 
-/* Between facets of the body: by how much of its width a step of the parameters moves a point past what was
- * opposite it at the last evaluation, or may, where nothing was: the largest. 0 with a rigid surface. */
+/* Between facets of the body: how far a step of the parameters moves a point past what was opposite it at the
+ * last evaluation, or may, where nothing was, by the larger of its width and the mean width: the largest. 0
+ * with a rigid surface. */
 double contact_passes(const struct contact *contact, const double *step);
 
 /* Depths of point p below this count as zero, m. */

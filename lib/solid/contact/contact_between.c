@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A facet is opposite to a point within this distance, by the point's width; told_widths for gaps that are
+/* A facet is opposite to a point within this distance, by its size; told_widths for gaps that are
  * reported. In 2D the mass of a relaxation counts every point that has an opposite facet. */
 static const double reach_widths_2d = 1.0, reach_widths_3d = 0.5, told_widths = 10.0;
 enum { FACETS_FOR_THREAD = 300 }; /* see chunks_of */
@@ -97,6 +97,12 @@ static double held_way(const struct contact *contact, int64_t p)
     return held > 0.0 ? held / contact->stiffness[p] : 0.0; /* the stiffness is 0 while building */
 }
 
+/* The length by which reach and depth of point p are measured, m: small facets do not miss large ones. */
+static double size_of(const struct contact *contact, int64_t p)
+{
+    return fmax(contact_width(contact, p), contact->between->mean_width);
+}
+
 /* The opposite place closest to y_p; normal: of the facet of point p. */
 static struct rigid_contact find_place(const struct contact *contact, int64_t p, const double *normal,
                                        double reach, double *free_way)
@@ -107,7 +113,7 @@ static struct rigid_contact find_place(const struct contact *contact, int64_t p,
                             .rest_normal = contact->points->normal + p * contact->dim,
                             .normal = normal,
                             .width = contact_width(contact, p),
-                            .depth = contact_most_depth(contact, p) + held_way(contact, p),
+                            .depth = CONTACT_MOST_DEPTH * size_of(contact, p) + held_way(contact, p),
                             .corner = contact->points->node + p - p % between->per_facet,
                             .average = average_of_boundary(contact->points, p),
                             .last_u = contact->checked_distance[p] < 0.0 ? NULL : between->before,
@@ -121,7 +127,7 @@ static struct rigid_contact find_place(const struct contact *contact, int64_t p,
 /* How far a search looks, m. */
 static double reach_of(const struct contact *contact, int64_t p)
 {
-    return (contact->dim == 2 ? reach_widths_2d : reach_widths_3d) * contact_width(contact, p);
+    return (contact->dim == 2 ? reach_widths_2d : reach_widths_3d) * size_of(contact, p);
 }
 
 /* Search for what is opposite point p. */
@@ -152,13 +158,16 @@ static void search(struct contact *contact, int64_t p, const double *normal, boo
     }
 }
 
-/* Whether an opposite facet may have come near enough to point p for a pressure, or may have turned towards
- * it. */
-static bool may_touch(const struct contact *contact, int64_t p)
+/* The relative motion of point p and opposite facets from the last evaluation until one may be near enough
+ * for a pressure, or may have turned towards it, m. */
+static double free_way(const struct contact *contact, int64_t p)
 {
     const struct contact_between *between = contact->between;
-    double free_way = fmin(contact->checked_distance[p], between->checked_free[p]);
-    return !(between->way + between->moved < between->checked_way[p] + free_way - held_way(contact, p));
+    if (contact->view[p].searched) {
+        return fmin(contact->view[p].distance, between->view[p].free_way);
+    }
+    return fmin(contact->checked_distance[p], between->checked_free[p]) -
+           (between->way + between->moved - between->checked_way[p]) - held_way(contact, p);
 }
 
 /* Search for the facets opposite the points of facet f that are marked `searched`; the gaps of the others are
@@ -204,7 +213,8 @@ void contact_between_measure(struct contact *contact, const double *u, bool all)
     memcpy(between->now, u, (size_t)between->values * sizeof *u);
     for (int64_t p = 0; p < contact->count; p++) {
         struct contact_view *view = &contact->view[p];
-        view->searched = all || may_touch(contact, p);
+        view->searched = false;
+        view->searched = all || !(free_way(contact, p) > 0.0);
         view->turned = false;
         any = any || view->searched;
         between->view[p].facet = -1;
@@ -302,7 +312,7 @@ double contact_passes(const struct contact *contact, const double *step)
             add_scaled(dim, -here->weight[k], corner, past);
         }
         double way = vector_length(dim, past) + (here->facet < 0 ? longest : 0.0);
-        most = fmax(most, way / contact_width(contact, p));
+        most = fmax(most, (way - fmax(0.0, free_way(contact, p))) / size_of(contact, p));
     }
     return most;
 }
@@ -382,6 +392,9 @@ enum status contact_between_build(const struct boundary_averages *points,
     }
     for (int64_t v = 0; v < between->opposite.rows.count; v++) {
         between->opposite.stiffness[v] = stiffness;
+    }
+    for (int64_t p = 0; p < contact->count; p++) {
+        between->mean_width += contact_width(contact, p) / (double)contact->count;
     }
     memcpy(contact->rest, points->position, (size_t)(contact->count * dim) * sizeof *contact->rest);
     *any = begin(contact, far);

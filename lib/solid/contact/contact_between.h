@@ -30,14 +30,15 @@ struct contact_between {
     struct opposite opposite;
     int per_facet; /* points of each facet, facet by facet */
     int sign;      /* of the total force: 1 that on the points, -1 that on the opposite facets, 0 their sum */
-    int64_t values;  /* length of u */
-    double leverage; /* largest relative motion of a point and an opposite place, by the largest motion of a
-                        parameter */
-    int32_t *part;   /* points: the body of each */
-    double *begin;   /* points: the gap at rest where it is negative, else 0, m */
-                     /* The state. */
-    double *before;  /* values: u of the last accepted step, m */
-    double way;      /* sum over all steps of the bounds of the relative motion, m */
+    int64_t values;    /* length of u */
+    double leverage;   /* largest relative motion of a point and an opposite place, by the largest motion of a
+                          parameter */
+    double mean_width; /* of the facets that have points, m */
+    int32_t *part;     /* points: the body of each */
+    double *begin;     /* points: the gap at rest where it is negative, else 0, m */
+                       /* The state. */
+    double *before;    /* values: u of the last accepted step, m */
+    double way;        /* sum over all steps of the bounds of the relative motion, m */
     double *checked_way;  /* points: `way` at the last search, m */
     double *checked_free; /* points: relative motion from there until other facets may face the point, m */
     int64_t *taken_facet; /* points: facet of contact_between_take + 1; 0: none */
