@@ -11,7 +11,8 @@
 
 /* Depths below this share of a point's width count as zero, and differences of unit normals. */
 static const double round_off = 1e-6;
-/* Modulus of the penalty by the largest multiplier: its least value, and its value after stiffening. */
+/* The penalty of a point times its width, beside p^2 / mu with the multiplier p there, by the largest
+ * multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
 
@@ -126,17 +127,22 @@ void contact_set_stiffness(struct contact *contact, double modulus)
     contact_between_stiffen(contact, modulus);
 }
 
-bool contact_stiffen(struct contact *contact)
+bool contact_stiffen(struct contact *contact, double shear)
 {
+    bool stiffer = false;
     double largest = 0.0;
-    for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-        largest = fmax(largest, vector_length(contact->dim, contact->multiplier + a * contact->dim));
+    for (int64_t p = 0; p < contact->count; p++) {
+        largest = fmax(largest, vector_length(contact->dim, contact->held + p * contact->dim));
     }
-    if (contact->modulus == 0.0 || contact->modulus >= least_modulus * largest) {
-        return false;
+    for (int64_t p = 0; p < contact->count && contact->modulus > 0.0; p++) {
+        double held = vector_length(contact->dim, contact->held + p * contact->dim);
+        double least = (least_modulus * largest + held * held / shear) / contact_width(contact, p);
+        if (contact->stiffness[p] < least) {
+            contact->stiffness[p] = most_modulus / least_modulus * least;
+            stiffer = true;
+        }
     }
-    contact_set_stiffness(contact, most_modulus * largest);
-    return true;
+    return stiffer;
 }
 
 void contact_free(struct contact *contact)
@@ -160,7 +166,7 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
         {"part", STATE_NUMBERS, &contact->part, 1},
         {"behind", STATE_FLAGS, contact->behind, count},
         {"deepest", STATE_NUMBERS, &contact->deepest, 1},
-        {"modulus", STATE_NUMBERS, &contact->modulus, 1},
+        {"stiffness", STATE_NUMBERS, contact->stiffness, count},
         {"checked_x", STATE_NUMBERS, contact->checked_x, count * dim},
         {"checked_distance", STATE_NUMBERS, contact->checked_distance, count},
         {"checked_normal", STATE_NUMBERS, contact->checked_normal, count * dim},
@@ -168,9 +174,6 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     RETURN_IF_ERROR(state_visit(state, prefix, values, sizeof values / sizeof *values, error));
     RETURN_IF_ERROR(contact_between_state(contact, prefix, state, error));
     RETURN_IF_ERROR(friction_state(contact, prefix, state, error));
-    if (contact->modulus > 0.0) {
-        contact_set_stiffness(contact, contact->modulus);
-    }
     contact_spread_multipliers(contact); /* `held` follows from the state that was read */
     return STATUS_OK;
 }

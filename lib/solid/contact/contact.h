@@ -52,7 +52,7 @@ struct contact {
     struct rigid_place place;                 /* placement of the surface: see contact_move */
     int32_t section;                          /* the caller's label */
     double *stiffness;                        /* count: k_p, Pa/m, > 0 */
-    double modulus;                           /* k_p by the width there, Pa; 0: k_p is stated */
+    double modulus;                           /* k_p by the width there at first, Pa; 0: k_p is stated */
     double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
@@ -109,9 +109,10 @@ void contact_point_force(const struct contact *contact, int64_t p, double force[
 /* k_p = modulus / width of the facets there: the stiffness of a layer of cells. */
 void contact_set_stiffness(struct contact *contact, double modulus);
 
-/* Increase the penalty modulus if it is too small for the largest multiplier: under a pressure that is not
- * small against the modulus, the boundary buckles between its nodes. Returns whether it was increased. */
-bool contact_stiffen(struct contact *contact);
+/* Increase the penalty of points where it is too small for the multiplier p there: a boundary of shear
+ * modulus `shear` mu (Pa) under p, which acts at a distance of p / k, buckles between its nodes where k times
+ * their distance is about p^2 / mu. Returns whether any was increased. */
+bool contact_stiffen(struct contact *contact, double shear);
 
 /* Visit the state of a contact; the names begin with `prefix`. */
 MUST_CHECK enum status contact_state(struct contact *contact, const char *prefix, const struct state *state,

@@ -86,8 +86,12 @@ void system_augment_contacts(struct solid_system *system, bool steady)
 bool system_stiffen(struct solid_system *system)
 {
     bool stiffer = system_stiffen_penalties(system);
+    double shear = INFINITY;
+    for (int64_t m = 0; m < system->body.material_count; m++) {
+        shear = fmin(shear, system->body.materials[m].shear_modulus);
+    }
     for (int64_t c = 0; c < system->contact_count; c++) {
-        stiffer = contact_stiffen(&system->contacts[c]) || stiffer;
+        stiffer = contact_stiffen(&system->contacts[c], shear) || stiffer;
     }
     return stiffer;
 }
