@@ -346,8 +346,8 @@ TEST(skipping)
             contact_accept(&pair->contact);
             contact_accept(&always->contact);
             if (step % 40 == 39) {
-                contact_augment(&pair->contact, false);
-                contact_augment(&always->contact, false);
+                contact_augment(&pair->contact);
+                contact_augment(&always->contact);
             }
             for (int64_t p = 0; p < pair->contact.count; p++) {
                 skipped += !pair->contact.view[p].searched;

@@ -151,7 +151,7 @@ TEST(multipliers_of_nodes)
     GOOD(contact_build(&points.averages, &averages, points.X, 2, &wall, 100.0, &contact, &error));
     contact_force(&contact, u, force);
     NEAR_TO(contact_miss(&contact), 0.05, 1e-15);
-    contact_augment(&contact, false);
+    contact_augment(&contact);
     for (int a = 0; a < AVERAGES; a++) {
         NEAR_TO(contact.multiplier[2 * a], 0.0, 1e-13);
         NEAR_TO(contact.multiplier[2 * a + 1], -5.0, 1e-13);
@@ -168,7 +168,7 @@ TEST(multipliers_of_nodes)
     NEAR_TO(contact.pressure[6], 7.0, 1e-13);
     NEAR_TO(contact.pressure[7], 0.0, 1e-13);
     NEAR_TO(force[1], -2.5, 1e-13);
-    contact_augment(&contact, false);
+    contact_augment(&contact);
     NEAR_TO(contact.multiplier[1], -5.0, 1e-13);
     /* Node 3: points 4 to 7 with shares 1/8, 3/8, 3/8, 1/8 press 5, 5, 7, 0, where 5 was held. */
     NEAR_TO(contact.multiplier[7], -5.0 - 0.375 * 2.0 + 0.125 * 5.0, 1e-13);

@@ -85,7 +85,6 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
     RETURN_IF_ERROR(NEW_ARRAY(&contact->stiffness, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->rest, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->multiplier, contact_nodes(contact)->count * dim, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&contact->change, contact_nodes(contact)->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->behind, count, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_x, count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&contact->checked_distance, count, error));
@@ -102,7 +101,6 @@ enum status contact_allocate(struct contact *contact, double stiffness, struct e
     for (int64_t i = 0; i < count * dim; i++) {
         contact->checked_x[i] = INFINITY; /* forces a search in the first evaluation */
     }
-    contact->part = 1.0;
     return STATUS_OK;
 }
 
@@ -150,9 +148,9 @@ void contact_free(struct contact *contact)
     rigid_free(&contact->surface);
     contact_between_free(contact);
     friction_free(contact);
-    FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->change, contact->behind,
-             contact->checked_x, contact->checked_distance, contact->checked_normal, contact->held,
-             contact->gap, contact->pressure, contact->normal, contact->view);
+    FREE_ALL(contact->stiffness, contact->rest, contact->multiplier, contact->behind, contact->checked_x,
+             contact->checked_distance, contact->checked_normal, contact->held, contact->gap,
+             contact->pressure, contact->normal, contact->view);
     *contact = (struct contact){0};
 }
 
@@ -162,8 +160,6 @@ enum status contact_state(struct contact *contact, const char *prefix, const str
     int64_t count = contact->count, dim = contact->dim;
     const struct state_value values[] = {
         {"multiplier", STATE_NUMBERS, contact->multiplier, contact_nodes(contact)->count * dim},
-        {"change", STATE_NUMBERS, contact->change, contact_nodes(contact)->count * dim},
-        {"part", STATE_NUMBERS, &contact->part, 1},
         {"behind", STATE_FLAGS, contact->behind, count},
         {"deepest", STATE_NUMBERS, &contact->deepest, 1},
         {"stiffness", STATE_NUMBERS, contact->stiffness, count},

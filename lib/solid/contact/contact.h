@@ -56,12 +56,10 @@ struct contact {
     double *rest;                             /* count * dim: x_p at u = 0, so raised, m */
     /* The state, all that a checkpoint holds. The search is repeated for a point only when it may have moved
      * from checked_x by the surface's distance there. */
-    double *multiplier; /* dim for each contact node: lambda_a, Pa, in the surface's frame */
-    double *change;     /* the same size: the change by (20) at the last augmentation, Pa; 0: not known */
-    double part;        /* the share of this change that was made */
-    double deepest;     /* largest t_p / k_p at accepted steps, m; 0: no point has pressed */
-    bool *behind;       /* count: reached the back of the surface without going through it */
-    double *checked_x;  /* count * dim: y_p at the last search, m */
+    double *multiplier;       /* dim for each contact node: lambda_a, Pa, in the surface's frame */
+    double deepest;           /* largest t_p / k_p at accepted steps, m; 0: no point has pressed */
+    bool *behind;             /* count: reached the back of the surface without going through it */
+    double *checked_x;        /* count * dim: y_p at the last search, m */
     double *checked_distance; /* count: distance of the surface then, m; negative: minus the penetration */
     double *checked_normal;   /* count * dim: of the surface there, in its frame */
     double *held;             /* count * dim: sum_a N_a(p) lambda_a, Pa; follows from the multipliers */
@@ -132,9 +130,8 @@ void contact_measure(struct contact *contact, const double *u, bool all);
 /* Accept the step that was evaluated last: the searches of that evaluation become the state. */
 void contact_accept(struct contact *contact);
 
-/* Augment by the last evaluation, equation (20). With `steady` the last augmentation was at the same load:
- * the length of the step then follows from the two changes, equation (20b) (Irons and Tuck 1969). */
-void contact_augment(struct contact *contact, bool steady);
+/* Augment by the last evaluation, equation (20). */
+void contact_augment(struct contact *contact);
 
 /* held_p at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);

@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Least share of an augmentation that is made. The largest is its inverse, where consecutive changes form a
- * geometric sequence. */
-static const double least_part = 1.0 / 16.0;
-
 void contact_spread_multipliers(struct contact *contact)
 {
     const struct boundary_averages *averages = contact->averages;
@@ -114,66 +110,12 @@ static double augmented(const struct contact *contact, int64_t a, double next[3]
     return compliance;
 }
 
-/* The next augmentation is not compared with the last one. */
-static void forget_change(struct contact *contact)
+void contact_augment(struct contact *contact)
 {
-    size_t values = (size_t)(contact_nodes(contact)->count * contact->dim);
-    contact->part = 1.0;
-    memset(contact->change, 0, values * sizeof *contact->change);
-}
-
-/* Set contact->change to the change of the multipliers by the last evaluation. Returns the share of it to
- * make, equation (20b): w d . (d - d') / |d - d'|^2 with the change d before, of which the share w was made,
- * and d' now. For a geometric sequence this leads to its limit. */
-static double take_change(struct contact *contact)
-{
-    const struct boundary_averages *nodes = contact_nodes(contact);
-    double before2 = 0.0, both = 0.0, now2 = 0.0, next[3];
-    for (int64_t a = 0; a < nodes->count; a++) {
-        (void)augmented(contact, a, next);
-        for (int c = 0; c < contact->dim; c++) {
-            double *change = &contact->change[a * contact->dim + c], before = *change;
-            *change = next[c] - contact->multiplier[a * contact->dim + c];
-            before2 += nodes->area[a] * before * before;
-            both += nodes->area[a] * before * *change;
-            now2 += nodes->area[a] * *change * *change;
-        }
-    }
-    if (!(before2 > 0.0)) {
-        return contact->part;
-    }
-    double apart2 = before2 - 2.0 * both + now2, most = 1.0;
-    if (both > GEOMETRIC_SEQUENCE * before2) { /* no limit is in sight */
-        return fmax(least_part, 0.5 * contact->part);
-    }
-    if (both > GEOMETRIC_SEQUENCE * sqrt(before2 * now2)) {
-        most = 1.0 / least_part;
-    }
-    double part = contact->part * (before2 - both) / apart2;
-    return fmin(most, fmax(least_part, part));
-}
-
-void contact_augment(struct contact *contact, bool steady)
-{
-    int dim = contact->dim;
-    if (!steady) {
-        forget_change(contact);
-    }
-    double part = take_change(contact);
     for (int64_t a = 0; a < contact_nodes(contact)->count; a++) {
-        double *multiplier = contact->multiplier + a * dim, next[3], along = 0.0;
-        for (int c = 0; c < dim; c++) {
-            double change = contact->change[a * dim + c];
-            next[c] = multiplier[c] + part * change;
-            along += next[c] * (multiplier[c] + change);
-        }
-        for (int c = 0; c < dim; c++) { /* more than the whole change may make it a tension */
-            multiplier[c] = part <= 1.0 || along > 0.0 ? next[c] : 0.0;
-        }
-    }
-    contact->part = part;
-    if (part > 1.0) {
-        forget_change(contact); /* the next change does not continue the sequence */
+        double next[3];
+        (void)augmented(contact, a, next);
+        memcpy(contact->multiplier + a * contact->dim, next, (size_t)contact->dim * sizeof *next);
     }
     contact_spread_multipliers(contact);
 }

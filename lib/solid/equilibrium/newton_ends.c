@@ -39,7 +39,7 @@ void newton_augment(struct newton *n)
             body_augment(&n->system->body, n->corrections > 1, most_lack(n), n->report->move / n->body_size);
     }
     if (contacts) {
-        system_augment_contacts(n->system, false);
+        system_augment_contacts(n->system);
     }
     bool stiffer = system_stiffen(n->system);
     if (stiffer || pressures || n->system->contact_count > 0) {

@@ -186,7 +186,7 @@ bool newton_solve_model(struct newton *n, double share, double radius)
         mark = k == 0 ? now : mark;
         if (n->system->contact_count > 0 && now < inner_left * inner_left * mark && augmentations > 0) {
             augmentations--;
-            system_augment_contacts(n->system, false);
+            system_augment_contacts(n->system);
             touch(n, 0.0);
             now = mark = scale_gradient(n);
         }

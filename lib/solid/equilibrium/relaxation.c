@@ -171,7 +171,7 @@ static void augment(struct relaxation *r)
                                          r->report->move / r->body_size);
     }
     if (r->system->contact_count > 0 && r->augmentations < most_augmentations) {
-        system_augment_contacts(r->system, held);
+        system_augment_contacts(r->system);
         r->augmentations += r->held_steps > 0;
     }
     r->augmented_step = r->report->steps;

@@ -137,7 +137,7 @@ double system_friction_work(const struct solid_system *system);
 void system_free_contacts(struct solid_system *system);
 
 /* contact_augment of all contacts, the largest contact_miss, and the sum of contact_missing_work. */
-void system_augment_contacts(struct solid_system *system, bool steady);
+void system_augment_contacts(struct solid_system *system);
 double system_contact_miss(const struct solid_system *system);
 double system_missing_work(const struct solid_system *system);
 

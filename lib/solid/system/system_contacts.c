@@ -76,10 +76,10 @@ double system_friction_work(const struct solid_system *system)
     return work;
 }
 
-void system_augment_contacts(struct solid_system *system, bool steady)
+void system_augment_contacts(struct solid_system *system)
 {
     for (int64_t c = 0; c < system->contact_count; c++) {
-        contact_augment(&system->contacts[c], steady);
+        contact_augment(&system->contacts[c]);
     }
 }
 
