@@ -189,13 +189,13 @@ void run_put(const struct run *run, const char *name, int64_t rows, int64_t cols
              double *values);
 
 /* The state of the sections to write: the final one (FRAME_NONE), or a frame. */
-struct moment {
+struct instant {
     int64_t frame;
     double time;
 };
 
 /* Add the field of parameters u at the nodes, and these. */
-void run_put_field(const struct run *run, const struct moment *moment, const double *u);
+void run_put_field(const struct run *run, const struct instant *instant, const double *u);
 
 /* Append a row, the time and values[count], which are freed, to the table over frames in section `name`. */
 void run_append_row(const struct run *run, const char *name, double time, double *values, int64_t count,
@@ -203,7 +203,7 @@ void run_append_row(const struct run *run, const char *name, double time, double
 
 /* Add the sections reactions and moments, if requested, of the system's last evaluation, at u: a row for each
  * condition; for a frame, a row of reactions.frames and moments.frames. */
-void run_put_forces(struct run *run, const struct moment *moment);
+void run_put_forces(struct run *run, const struct instant *instant);
 
 /* Add parameters.radius, by which other tools evaluate the field from its parameters (stages.h). */
 void run_put_supports(const struct run *run);

@@ -14,7 +14,7 @@ struct totals {
     int dim, moment_count; /* components of a force, of a moment */
     const double *about;   /* dim: the point of the moments, m */
     double *force;         /* rows * dim, N (2D: N/m) */
-    double *moment;        /* rows * moment_count, N m (2D: N) */
+    double *moment;       /* rows * moment_count, N m (2D: N) */
 };
 
 /* Add a force on an average. It acts at the average of the deformed positions, as the weights have the sum 1
@@ -127,21 +127,21 @@ static char *attributes_of_rows(const struct run *run, const char *unit, const c
 }
 
 /* Put section `name`, or a row of `name_of_frames`; takes values[rows * components]. */
-static void put_vectors(const struct run *run, const struct moment *moment, const char *name,
+static void put_vectors(const struct run *run, const struct instant *instant, const char *name,
                         const char *name_of_frames, const char *unit, const char *more,
                         const char *components, int64_t rows, double *values)
 {
-    bool in_one_row = moment->frame != FRAME_NONE;
+    bool in_one_row = instant->frame != FRAME_NONE;
     int64_t each = (int64_t)strlen(components);
     SCRATCH char *attributes = attributes_of_rows(run, unit, more, components, rows, in_one_row);
     if (in_one_row) {
-        run_append_row(run, name_of_frames, moment->time, values, rows * each, attributes);
+        run_append_row(run, name_of_frames, instant->time, values, rows * each, attributes);
     } else {
         run_put(run, name, rows, each, attributes, values);
     }
 }
 
-void run_put_forces(struct run *run, const struct moment *moment)
+void run_put_forces(struct run *run, const struct instant *instant)
 {
     const struct scene *scene = run->scene;
     const struct scene_output *output = &scene->output;
@@ -157,7 +157,7 @@ void run_put_forces(struct run *run, const struct moment *moment)
     add_conditions(run, &totals);
     add_contacts(run, &totals);
     if (output->reactions) {
-        put_vectors(run, moment, "reactions", "reactions.frames", is_plane ? "N/m" : "N", "",
+        put_vectors(run, instant, "reactions", "reactions.frames", is_plane ? "N/m" : "N", "",
                     is_plane ? "xy" : "xyz", rows, totals.force);
     } else {
         free(totals.force);
@@ -168,10 +168,10 @@ void run_put_forces(struct run *run, const struct moment *moment)
             text_append(more, sizeof more, ",%.12g", output->about[2]);
         }
         text_append(more, sizeof more, "%s",
-                    moment->frame != FRAME_NONE ? ""
-                    : is_plane                  ? " cols=z"
-                                                : " cols=x,y,z");
-        put_vectors(run, moment, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
+                    instant->frame != FRAME_NONE ? ""
+                    : is_plane                   ? " cols=z"
+                                                 : " cols=x,y,z");
+        put_vectors(run, instant, "moments", "moments.frames", is_plane ? "N" : "N*m", more,
                     is_plane ? "z" : "xyz", rows, totals.moment);
     } else {
         free(totals.moment);

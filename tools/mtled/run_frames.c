@@ -242,7 +242,7 @@ void run_frames_stop(struct run *run, const char *reason)
     }
     signal(SIGPIPE, SIG_IGN); /* exit with our own status */
     if (run->last_good >= 0.0) {
-        run_put_field(run, &(struct moment){frames->next, run->last_good}, run->u);
+        run_put_field(run, &(struct instant){frames->next, run->last_good}, run->u);
     }
     if (put_sections(run, true, &ignored) == STATUS_OK &&
         stream_writer_end(&frames->writer, reason, &ignored) == STATUS_OK) {

@@ -11,20 +11,20 @@
 #include <string.h>
 
 /* Add section `name` of a state. */
-static void put(const struct run *run, const struct moment *moment, const char *name, int64_t rows,
+static void put(const struct run *run, const struct instant *instant, const char *name, int64_t rows,
                 int64_t cols, const char *attributes, double *values)
 {
     char full[64], timed[192];
-    if (moment->frame == FRAME_NONE) {
+    if (instant->frame == FRAME_NONE) {
         run_put(run, name, rows, cols, attributes, values);
         return;
     }
-    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)moment->frame);
-    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, moment->time);
+    snprintf(full, sizeof full, "%s.frame.%lld", name, (long long)instant->frame);
+    snprintf(timed, sizeof timed, "%s time=%.12g", attributes, instant->time);
     run_put(run, full, rows, cols, timed, values);
 }
 
-void run_put_field(const struct run *run, const struct moment *moment, const double *u)
+void run_put_field(const struct run *run, const struct instant *instant, const double *u)
 {
     int dim = run->scene->dim;
     int64_t nodes = run->model->system.node_count;
@@ -32,8 +32,8 @@ void run_put_field(const struct run *run, const struct moment *moment, const dou
     double *field = run_new_values(run, nodes * dim), *parameters = run_new_values(run, nodes * dim);
     assembly_nodal_field(&run->model->assembly, u, field);
     memcpy(parameters, u, (size_t)(nodes * dim) * sizeof *u);
-    put(run, moment, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
-    put(run, moment, "parameters", nodes, dim, vector, parameters);
+    put(run, instant, "u", nodes, dim, vector_attributes(dim, "m", vector), field);
+    put(run, instant, "parameters", nodes, dim, vector, parameters);
 }
 
 void run_put_supports(const struct run *run)
@@ -55,7 +55,7 @@ void run_put_supports(const struct run *run)
 void run_put_frame(void *context, int64_t number, double time, const double *u)
 {
     struct run *run = context;
-    run_put_field(run, &(struct moment){number, time}, u);
+    run_put_field(run, &(struct instant){number, time}, u);
     run_folds_check(run, u, time, true);
     run_frames_write(run, number);
 }
@@ -96,7 +96,7 @@ static void green_lagrange_strain(const double F[9], double strain[9])
 }
 
 /* Put the symmetric components of tensors[points * 9] as section `name`. */
-static void put_tensors(const struct run *run, const struct moment *moment, const char *name,
+static void put_tensors(const struct run *run, const struct instant *instant, const char *name,
                         const char *kind, const double *tensors)
 {
     static const int order[2][6] = {{0, 4, 8, 1}, {0, 4, 8, 1, 2, 5}};
@@ -109,11 +109,11 @@ static void put_tensors(const struct run *run, const struct moment *moment, cons
         values[i] = tensors[9 * (i / count) + order[dim - 2][i % count]];
     }
     snprintf(attributes, sizeof attributes, "%s cols=%s", kind, cols[dim - 2]);
-    put(run, moment, name, points, count, attributes, values);
+    put(run, instant, name, points, count, attributes, values);
 }
 
 /* Put the deformed directions F a of the fibres, 0 where there are none. */
-static void put_fibres(const struct run *run, const struct moment *moment, const double *F)
+static void put_fibres(const struct run *run, const struct instant *instant, const double *F)
 {
     const struct material_list *list = &run->model->assembly.materials;
     int dim = run->scene->dim;
@@ -123,12 +123,12 @@ static void put_fibres(const struct run *run, const struct moment *moment, const
         const double *fibre = list->items[list->of_point[i / dim]].fibre;
         values[i] = fibre != NULL ? vector_dot(dim, F + i / dim * 9 + i % dim * 3, fibre) : 0.0;
     }
-    put(run, moment, "fibre", points, dim, "unit=1", values);
+    put(run, instant, "fibre", points, dim, "unit=1", values);
 }
 
 /* Put the requested fields at the integration points: Cauchy stress, Green-Lagrange strain, pressure, volume
  * ratio. */
-static void put_point_fields(struct run *run, const struct moment *moment)
+static void put_point_fields(struct run *run, const struct instant *instant)
 {
     struct body *body = &run->model->system.body;
     const struct scene_output *output = &run->scene->output;
@@ -136,7 +136,7 @@ static void put_point_fields(struct run *run, const struct moment *moment)
     if (output->volume_ratio) {
         double *ratio = run_new_values(run, points);
         body_volume_ratio(body, ratio);
-        put(run, moment, "volume_ratio", points, 1, "unit=1", ratio);
+        put(run, instant, "volume_ratio", points, 1, "unit=1", ratio);
     }
     if (!output->stress && !output->strain && !output->pressure && !output->fibre) {
         return;
@@ -146,7 +146,7 @@ static void put_point_fields(struct run *run, const struct moment *moment)
     body_gradient(body, F);
     body_stress(body, P);
     if (output->fibre) {
-        put_fibres(run, moment, F);
+        put_fibres(run, instant, F);
     }
     for (int64_t q = 0; q < points; q++) {
         double *f = F + 9 * q, *p = P + 9 * q, stress[9], strain[9];
@@ -157,14 +157,14 @@ static void put_point_fields(struct run *run, const struct moment *moment)
         pressure[q] = (0.0 - stress[0] - stress[4] - stress[8]) / 3.0;
     }
     if (output->stress) {
-        put_tensors(run, moment, "stress", "unit=Pa measure=cauchy", P);
+        put_tensors(run, instant, "stress", "unit=Pa measure=cauchy", P);
     }
     if (output->strain) {
-        put_tensors(run, moment, "strain", "unit=1 measure=green-lagrange", F);
+        put_tensors(run, instant, "strain", "unit=1 measure=green-lagrange", F);
     }
     FREE_ALL(F, P);
     if (output->pressure) {
-        put(run, moment, "pressure", points, 1, "unit=Pa", pressure);
+        put(run, instant, "pressure", points, 1, "unit=Pa", pressure);
     } else {
         free(pressure);
     }
@@ -187,7 +187,7 @@ void run_append_row(const struct run *run, const char *name, double time, double
 }
 
 /* Put place, gap, and nominal and true pressure of every contact node of every contact. */
-static void put_gaps(const struct run *run, const struct moment *moment)
+static void put_gaps(const struct run *run, const struct instant *instant)
 {
     const struct solid_system *system = &run->model->system;
     const struct assembly *assembly = &run->model->assembly;
@@ -221,7 +221,7 @@ static void put_gaps(const struct run *run, const struct moment *moment)
             }
         }
     }
-    put(run, moment, "gaps", rows, cols,
+    put(run, instant, "gaps", rows, cols,
         friction   ? dim == 2 ? "unit=m,m,m,Pa,Pa,Pa,Pa,1 "
                                 "cols=x,y,gap,pressure,true_pressure,friction.x,friction.y,slips"
                               : "unit=m,m,m,m,Pa,Pa,Pa,Pa,Pa,1 "
@@ -232,7 +232,7 @@ static void put_gaps(const struct run *run, const struct moment *moment)
 }
 
 /* Put the energies of the equilibrium. The work of loads during a relaxation has no meaning. */
-static void put_energy(struct run *run, const struct moment *moment)
+static void put_energy(struct run *run, const struct instant *instant)
 {
     struct solid_system *system = &run->model->system;
     bool is_plane = run->scene->dim == 2;
@@ -243,7 +243,7 @@ static void put_energy(struct run *run, const struct moment *moment)
     double *values = run_new_values(run, count);
     values[0] = energy_internal(system, run->u);
     values[1] = energy_contact(system);
-    bool is_frame = moment->frame != FRAME_NONE;
+    bool is_frame = instant->frame != FRAME_NONE;
     if (in_steps) {
         values[2] = system->body.prony.dissipated + system_friction_work(system);
     }
@@ -253,23 +253,23 @@ static void put_energy(struct run *run, const struct moment *moment)
                        : "1,",
              unit, unit, more, in_steps ? unit : "", is_frame ? "time," : "", in_steps ? ",dissipated" : "");
     if (is_frame) {
-        run_append_row(run, "energy.frames", moment->time, values, count, attributes);
+        run_append_row(run, "energy.frames", instant->time, values, count, attributes);
     } else {
         run_put(run, "energy", 1, count, attributes, values);
     }
 }
 
 /* Put the requested output besides u, for the state run->u at which the system was evaluated last. */
-static void put_state(struct run *run, const struct moment *moment)
+static void put_state(struct run *run, const struct instant *instant)
 {
     const struct scene_output *output = &run->scene->output;
-    put_point_fields(run, moment);
-    run_put_forces(run, moment);
+    put_point_fields(run, instant);
+    run_put_forces(run, instant);
     if (output->energy && run->scene->analysis == SCENE_QUASI_STATIC) {
-        put_energy(run, moment);
+        put_energy(run, instant);
     }
     if (output->gaps && run->model->system.contact_count > 0) {
-        put_gaps(run, moment);
+        put_gaps(run, instant);
     }
 }
 
@@ -277,13 +277,13 @@ void run_put_equilibrium(void *context, int64_t number, double time, const doubl
 {
     struct run *run = context;
     const double duration = run->scene->duration;
-    const struct moment moment = {number, duration > 0.0 ? time * duration : time};
-    run_put_field(run, &moment, u);
+    const struct instant now = {number, duration > 0.0 ? time * duration : time};
+    run_put_field(run, &now, u);
     run_folds_check(run, u, time, true);
     run_stability_check(run, time);
     run_stability_elliptic(run, time, false);
     run_contacts_penetrate(run, field_largest(run->model->system.node_count, run->scene->dim, u), 0.0, false);
-    put_state(run, &moment);
+    put_state(run, &now);
     run_frames_write(run, number);
 }
 
@@ -294,6 +294,6 @@ void run_put_results(struct run *run)
     /* Evaluate F, stresses and gaps at the final state. */
     (void)system_residual(&model->system, run->u, scratch);
     system_measure_contacts(&model->system, run->u, true);
-    put_state(run, &(struct moment){.frame = FRAME_NONE});
-    run_put_field(run, &(struct moment){.frame = FRAME_NONE}, run->u);
+    put_state(run, &(struct instant){.frame = FRAME_NONE});
+    run_put_field(run, &(struct instant){.frame = FRAME_NONE}, run->u);
 }

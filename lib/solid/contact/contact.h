@@ -5,7 +5,7 @@
  * without nodal averages each point has a multiplier of its own, and may itself be a boundary average. With
  * the penalty k_p and P(y), the position in front of the surface that is closest to y,
  *
- *     held_p = sum_a N_a(p) lambda_a,   y_p = x_p - held_p / k_p,   t_p = k_p (P(y_p) - y_p).
+ *     lambda_p = sum_a N_a(p) lambda_a,   y_p = x_p - lambda_p / k_p,   t_p = k_p (P(y_p) - y_p).
  *
  * The force on the parameters, Phi_pj A_p t_p, is minus the gradient of contact_energy. The gap of a node is
  * the mean gap of the points in the support of its hat function, weighted by it. Augmentations make it vanish
@@ -133,7 +133,7 @@ void contact_accept(struct contact *contact);
 /* Augment by the last evaluation, equation (20). */
 void contact_augment(struct contact *contact);
 
-/* held_p at the points, from the multipliers. */
+/* lambda_p at the points, from the multipliers. */
 void contact_spread_multipliers(struct contact *contact);
 
 /* Penetration or opening of contact nodes that the multipliers do not yet hold, at the last evaluation, m:
@@ -160,8 +160,8 @@ struct contact_node {
 };
 struct contact_node contact_node(const struct contact *contact, int64_t a);
 
-/* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |held_p|^2) / (2 k_p), and of friction, J
- * (2D: J/m). */
+/* Energy of the penalty at the last evaluation, sum A_p (|t_p|^2 - |lambda_p|^2) / (2 k_p), and of friction,
+ * J (2D: J/m). */
 double contact_energy(const struct contact *contact);
 
 /* total[dim] = total force on the body at the last evaluation, N (2D: N/m). Between facets of the body it is

@@ -1,13 +1,13 @@
 /* Contact of points with facets of the body itself (opposite.h) in place of a rigid surface: two bodies, two
- * lips, or a boundary that touches itself. Equation (20a) of lib/README.md.
+ * faces of a slit, or a boundary that touches itself. Equation (20a) of lib/README.md.
  *
- * Let q be the place of the opposite facets closest to y_p = x_p - held_p / k_p, M_b the weights of the
+ * Let q be the place of the opposite facets closest to y_p = x_p - lambda_p / k_p, M_b the weights of the
  * corners there, n the normal and g_p the gap of y_p. The traction
  *
  *     t_p = max(0, - k_p g_p) n
  *
  * acts on the point, and - M_b t_p on the corners. These are minus the gradient of the energy (contact.h), so
- * their sum is zero. They have a moment where held_p is not along n, since the line of t_p goes through y_p
+ * their sum is zero. They have a moment where lambda_p is not along n, since the line of t_p goes through y_p
  * and q. In a crease of the opposite facets t_p does not jump where the closest facet changes. Points are not
  * raised from the chords of a curved boundary. A point that starts behind a facet, as a chord may, has its
  * gap measured from there.

@@ -340,7 +340,7 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
 bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f)
 {
     /* Decided by the component of the normals at rest along a fixed, generic direction, so that all facets of
-     * a lip have the same role; by the facets' numbers where these are equal. */
+     * a face of a slit have the same role; by the facets' numbers where these are equal. */
     static const double direction[3] = {0.5377, 0.6180, 0.5734};
     int dim = opposite->surface.dim;
     double own = vector_dot(dim, direction, rest_normal),

@@ -63,7 +63,7 @@ enum { NEWTON_MOST_ITERATIONS = 500 }; /* of conjugate gradients */
 /* By the largest Rayleigh quotient, about 1: a smaller one is within the round-off of differences of forces.
  */
 #define NEWTON_LEAST_TOLD 1e-6
-/* Corrections at a load in which the multipliers of contacts advance; what contacts then still give way by is
+/* Corrections at a load in which the multipliers of contacts advance; the penetration that is left is
  * judged. */
 enum { NEWTON_MOST_AUGMENTATIONS = 24 };
 

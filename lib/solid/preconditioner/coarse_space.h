@@ -6,7 +6,7 @@
  * so that time and memory of the shares do not grow with the number of centres.
  *
  * The distance is the Euclidean one, or half the length of the shortest path from neighbour to neighbour
- * where that is more, so that the two lips of a slit are far from each other. */
+ * where that is more, so that the two faces of a slit are far from each other. */
 #pragma once
 
 #include "approx/shape/shape.h"
