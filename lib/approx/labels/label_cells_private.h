@@ -87,22 +87,6 @@ MUST_CHECK enum status sizes_wish(const struct label_cells_options *options, int
                                   const int64_t count[3], const double low[3], double edge,
                                   const bool *inside, uint8_t *wish, double *unsized, struct error *error);
 
-/* Directions of a search, along the axes and between them, and one of length zero: their number; and
- * direction[dim] with its length. */
-static inline int label_cells_directions(int dim)
-{
-    return dim == 2 ? 9 : 27;
-}
-
-static inline double label_cells_direction(int dim, int number, double direction[3])
-{
-    static const int power[3] = {1, 3, 9};
-    for (int d = 0; d < 3; d++) {
-        direction[d] = d < dim ? number / power[d] % 3 - 1 : 0;
-    }
-    return vector_length(dim, direction);
-}
-
 /* The cells at each node, and the labels that meet there. */
 enum { LABEL_CELLS_MOST_LABELS = 8 };
 struct label_cells_star {
@@ -163,6 +147,10 @@ MUST_CHECK enum status label_cells_cut_apart(struct label_cells_keeping *keeping
  * brought nearer. */
 #define LABEL_CELLS_NEAR (0.9 * LABEL_CELLS_MOST_ASTRAY)
 
+/* The score below which cells are improved, and that moves of nodes of interfaces leave. In the end, nodes
+ * that are far from their interface are moved towards it as long as the bounds hold: a score of 1. */
+#define LABEL_CELLS_GOOD 1.25
+
 /* Sweeps of each kind that move nodes. */
 enum { LABEL_CELLS_SWEEPS = 6 };
 
@@ -170,48 +158,39 @@ enum { LABEL_CELLS_SWEEPS = 6 };
  * inverted, no wall of the body passes through another one. */
 struct shaping {
     const struct labels *labels;
+    double voxel;     /* of labels, m */
     const bool *keep; /* labels->count: labels of the body */
     const struct label_cells_kept *kept;
     struct label_cells *mesh;
     struct label_cells_star star;
+    double *place; /* node_count * dim: of the nodes on interfaces, */
+    double *off;   /* node_count: and how far they are from there, m; infinity: there is none near */
 };
 
-/* The poorest score of the cells at a node, or one below `least`, and the score of a cell: at least 1 if its
- * angles are within the bounds and its quality (approx/cells/quality.h) is not poor, negative if it is
+/* The score of a cell: at least 1 if its angles are within the bounds and its quality
+ * (approx/cells/quality.h) is not poor; its volume over the product of its edges at one corner if it is
  * inverted. Cells around the body must only not be inverted. */
-double star_score(const struct shaping *shaping, int64_t node, double least);
 double shaping_score(const struct shaping *shaping, int64_t cell);
 
-/* Move a node to `target`, where the cells at it alone would score less than before and than `least`, by also
- * moving the nodes around it. Nodes on interfaces stay on them; nodes with others at the same place are not
- * moved. Returns false, with all nodes unchanged, if that does not help. */
-bool star_make_room(const struct shaping *shaping, double least, int64_t node, const double target[]);
-
-/* Move x onto the interface of the labels; false if there is none near. */
-bool interface_project(const struct labels *labels, int count, const uint16_t label[], double x[]);
-
-/* Move x to the place of a node: on the boundary to the surface of the body, elsewhere to the place where all
- * labels of the node meet. False if there is none near. */
-bool node_project(const struct shaping *shaping, int64_t node, double x[]);
-
-/* The label beyond an interface: one label, or any that is kept, or any that is not. */
-struct interface_beyond {
-    int32_t label; /* -1: any with keep[] == kept */
-    const bool *keep;
-    bool kept;
-};
-
-/* Distance of a place from the interface to the labels `beyond`, m: 0 within these; infinity if there is none
- * within six voxels. */
-double interface_distance(const struct labels *labels, const double x[],
-                          const struct interface_beyond *beyond);
-
-/* Gradient of a cell's volume with respect to the position of its corner k. */
-void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
+/* Move a node towards `target` as far as no cell at it scores less than before and than `least`. around: also
+ * move the nodes around it, those on interfaces on these, and those with others at the same place not.
+ * Returns whether it is at the target. */
+bool star_move(const struct shaping *shaping, int64_t node, const double target[], double least, bool around);
 
 /* Move the nodes of cells that score less than `least` until they score more. Nodes of interfaces stay on
  * these. */
 void label_cells_repair(const struct shaping *shaping, double least);
+
+/* Move x to the place of a node: where all its labels meet, if that is wanted and they do; on the boundary to
+ * the surface of the body; elsewhere to the nearest interface of its labels. Where Newton's method finds none
+ * near it is searched for within `reach`, m. Returns the distance; infinity if there is none. */
+double node_place(const struct shaping *shaping, int64_t node, bool meeting, double reach, double x[]);
+
+/* Largest distance of a search for an interface, voxels. */
+#define LABEL_CELLS_REACH 6.0
+
+/* Gradient of a cell's volume with respect to the position of its corner k. */
+void label_cells_gradient(const struct label_cells *mesh, int64_t cell, int k, double gradient[3]);
 
 /* Name the step that begins, for options->begin. */
 void label_cells_begin(const struct label_cells_options *options, const char *step);
@@ -225,8 +204,4 @@ MUST_CHECK enum status label_cells_improve(const struct labels *labels,
 
 /* Correct the volumes of labels by small moves of interfaces: they become those of their voxels minus what is
  * dropped. Nodes with apart[] do not move. */
-MUST_CHECK enum status label_cells_volumes(const struct shaping *shaping,
-                                           const struct label_cells_options *options, struct error *error);
-
-/* Move a node towards `target` as far as its cells allow. */
-void star_move(const struct shaping *shaping, int64_t node, const double target[]);
+MUST_CHECK enum status label_cells_volumes(const struct shaping *shaping, struct error *error);

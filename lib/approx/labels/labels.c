@@ -170,31 +170,24 @@ double label_share(const struct label_mix *mix, int32_t label)
     return 0;
 }
 
-int32_t labels_at(const struct labels *labels, const double x[])
-{
-    struct label_mix mix;
-    int best = 0;
-    labels_mix(labels, x, &mix);
-    for (int i = 1; i < mix.count; i++) {
-        if (mix.share[i] > mix.share[best] ||
-            (mix.share[i] == mix.share[best] && mix.label[i] < mix.label[best])) {
-            best = i;
-        }
-    }
-    return mix.label[best];
-}
-
 int32_t label_largest(const struct label_mix *mix, const bool *keep, bool kept)
 {
     int best = -1;
     for (int i = 0; i < mix->count; i++) {
         bool larger = best < 0 || mix->share[i] > mix->share[best] ||
                       (mix->share[i] == mix->share[best] && mix->label[i] < mix->label[best]);
-        if (keep[mix->label[i]] == kept && mix->share[i] > 0 && larger) {
+        if ((keep == NULL || keep[mix->label[i]] == kept) && mix->share[i] > 0 && larger) {
             best = i;
         }
     }
     return best >= 0 ? mix->label[best] : -1;
+}
+
+int32_t labels_at(const struct labels *labels, const double x[])
+{
+    struct label_mix mix;
+    labels_mix(labels, x, &mix);
+    return label_largest(&mix, NULL, false);
 }
 
 double labels_difference(const struct labels *labels, const double x[], int32_t a, int32_t b,

@@ -43,8 +43,8 @@ double label_share(const struct label_mix *mix, int32_t label);
 /* The label with the largest share at a point; of equal shares the lowest label. */
 int32_t labels_at(const struct labels *labels, const double x[]);
 
-/* The label with the largest share in a mix among those with keep[label] == kept; -1 if all these shares are
- * zero. */
+/* The label with the largest share in a mix among those with keep[label] == kept (NULL: all); -1 if all these
+ * shares are zero. */
 int32_t label_largest(const struct label_mix *mix, const bool *keep, bool kept);
 
 /* Share of label a minus that of b at a point, and its gradient[dim], 1/m. */
