@@ -61,7 +61,8 @@ int64_t lattice_edge(const struct lattice *lattice, int32_t p, int32_t q)
     return -1;
 }
 
-bool same_side(const struct lattice *lattice, int32_t a, int32_t b)
+/* Whether there is no interface between two labels: they are the same, or both are left out. */
+static bool same_side(const struct lattice *lattice, int32_t a, int32_t b)
 {
     return a == b || (!lattice->keep[a] && !lattice->keep[b]);
 }
@@ -78,25 +79,37 @@ static double difference(const struct lattice *lattice, const struct label_mix *
     return label_share(mix, a) - label_share(mix, b);
 }
 
-/* The fraction of the way from p to q at which this difference ceases to be positive (`strictly`), or becomes
- * negative. */
-static double change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b,
-                     bool strictly)
+/* The fraction of an edge at which this difference ceases to be positive (`strictly`), or becomes negative;
+ * *after: its value there. */
+static double change(const struct lattice *lattice, int64_t edge, bool strictly, double *after)
 {
+    const int32_t *end = lattice->end + 2 * edge;
+    const double *p = lattice->x + (int64_t)end[0] * lattice->dim;
+    const double *q = lattice->x + (int64_t)end[1] * lattice->dim;
     double low = 0, high = 1;
+    *after = -1;
     for (int step = 0; step < 16; step++) {
         double t = (low + high) / 2, x[3];
         struct label_mix mix;
         vector_between(lattice->dim, p, q, t, x);
         labels_mix(lattice->labels, x, &mix);
-        double value = difference(lattice, &mix, a, b);
+        double value = difference(lattice, &mix, lattice->label[end[0]], lattice->label[end[1]]);
         if (strictly ? value > 0 : value >= 0) {
             low = t;
         } else {
             high = t;
+            *after = value;
         }
     }
     return (low + high) / 2;
+}
+
+/* The fraction of an edge at which the interface lies. If a third label lies between the two, both shares are
+ * 0 over an interval: its middle. */
+static double cut_of(const struct lattice *lattice, int64_t edge)
+{
+    double after, first = change(lattice, edge, true, &after);
+    return after < 0 ? first : (first + change(lattice, edge, false, &after)) / 2;
 }
 
 static double near_end(const struct lattice *lattice, int64_t edge)
@@ -112,20 +125,6 @@ static double length_of(const struct lattice *lattice, int64_t edge)
     const int32_t *end = lattice->end + 2 * edge;
     return vector_distance(lattice->dim, lattice->x + (int64_t)end[1] * lattice->dim,
                            lattice->x + (int64_t)end[0] * lattice->dim);
-}
-
-double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a, int32_t b)
-{
-    /* If a third label lies between the two, both shares are 0 over an interval: take its middle. */
-    return (change(lattice, p, q, a, b, true) + change(lattice, p, q, a, b, false)) / 2;
-}
-
-static double cut_of(const struct lattice *lattice, int64_t edge)
-{
-    const int32_t *end = lattice->end + 2 * edge;
-    return lattice_change(lattice, lattice->x + (int64_t)end[0] * lattice->dim,
-                          lattice->x + (int64_t)end[1] * lattice->dim, lattice->label[end[0]],
-                          lattice->label[end[1]]);
 }
 
 /* A point was moved onto an interface: the edges that end there are no longer cut, except those to a third

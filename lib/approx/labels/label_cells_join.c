@@ -7,32 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Number the groups of cells at a node that are connected by faces at it; returns the number of groups.
- */
+/* Number the groups of cells at a node that are connected by faces at it; returns the number of groups. */
 static int32_t find_groups(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                            int64_t node)
 {
-    int corners = keeping->cells.dim + 1;
     int32_t count = 0;
     for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        int64_t depth = 0;
-        if (!keeping->wanted[star->cell[i]] || keeping->group[star->cell[i]] >= 0) {
-            continue;
+        if (keeping->wanted[star->cell[i]] && keeping->group[star->cell[i]] < 0) {
+            label_cells_flood(keeping, star->cell[i], count++, node);
         }
-        keeping->stack[depth++] = star->cell[i];
-        keeping->group[star->cell[i]] = count;
-        while (depth > 0) {
-            int64_t cell = keeping->stack[--depth];
-            for (int k = 0; k < corners; k++) {
-                int32_t next = keeping->across[cell * corners + k];
-                bool at_node = keeping->cells.node[cell * corners + k] != node;
-                if (at_node && next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
-                    keeping->group[next] = count;
-                    keeping->stack[depth++] = next;
-                }
-            }
-        }
-        count++;
     }
     return count;
 }
@@ -265,54 +248,52 @@ void label_cells_join(struct label_cells_keeping *keeping, const struct label_ce
 
 /* ---- cutting apart ---- */
 
-/* Give the cells of each body at a node, except the first, a node of their own at the same place. Returns the
- * number of bodies; without `fresh` they are only counted. */
-static int32_t part_bodies(struct label_cells_keeping *keeping, const struct label_cells_star *star,
-                           int64_t node, bool fresh)
+/* Room for nodes. */
+struct room {
+    int64_t x, apart;
+};
+
+/* Give the cells of a body at a node a node of their own at the same place. */
+static enum status part_body(struct label_cells_keeping *keeping, const struct label_cells_star *star,
+                             int64_t node, int32_t body, struct room *room, struct error *error)
 {
     struct label_cells *mesh = keeping->mesh;
     int dim = mesh->dim, corners = dim + 1;
-    int32_t count = 0;
-    for (int64_t i = star->ptr[node]; i < star->ptr[node + 1]; i++) {
-        int32_t body = keeping->group[star->cell[i]];
-        bool seen = !keeping->wanted[star->cell[i]];
-        for (int64_t j = star->ptr[node]; j < i && !seen; j++) {
-            seen = keeping->wanted[star->cell[j]] && keeping->group[star->cell[j]] == body;
+    int64_t fresh = mesh->node_count++;
+    RETURN_IF_ERROR(GROW_ARRAY(&mesh->x, (fresh + 1) * dim, &room->x, error));
+    RETURN_IF_ERROR(GROW_ARRAY(&keeping->apart, fresh + 1, &room->apart, error));
+    memcpy(mesh->x + fresh * dim, mesh->x + node * dim, (size_t)dim * sizeof(double));
+    keeping->apart[node] = keeping->apart[fresh] = true;
+    for (int64_t j = star->ptr[node]; j < star->ptr[node + 1]; j++) {
+        int32_t *corner = mesh->cell + (int64_t)star->cell[j] * corners;
+        for (int k = 0; k < corners && keeping->group[star->cell[j]] == body; k++) {
+            corner[k] = corner[k] == node ? (int32_t)fresh : corner[k];
         }
-        if (seen || count++ == 0 || !fresh) {
-            continue;
-        }
-        memcpy(mesh->x + mesh->node_count * dim, mesh->x + node * dim, (size_t)dim * sizeof(double));
-        keeping->apart[node] = keeping->apart[mesh->node_count] = true;
-        for (int64_t j = i; j < star->ptr[node + 1]; j++) {
-            int32_t *corner = mesh->cell + (int64_t)star->cell[j] * corners;
-            for (int k = 0; k < corners && keeping->group[star->cell[j]] == body; k++) {
-                corner[k] = corner[k] == node ? (int32_t)mesh->node_count : corner[k];
-            }
-        }
-        mesh->node_count++;
     }
-    return count;
+    return STATUS_OK;
 }
 
 enum status label_cells_cut_apart(struct label_cells_keeping *keeping, const struct label_cells_star *star,
                                   struct error *error)
 {
     struct label_cells *mesh = keeping->mesh;
-    int64_t nodes = mesh->node_count, fresh = 0;
-    double *x = NULL;
+    int64_t nodes = mesh->node_count;
+    struct room room = {nodes * mesh->dim, nodes};
+    RETURN_IF_ERROR(NEW_ARRAY(&keeping->apart, nodes, error));
     for (int64_t n = 0; n < nodes; n++) {
-        int32_t count = part_bodies(keeping, star, n, false);
-        fresh += count > 1 ? count - 1 : 0;
-        mesh->pinched += count > 1;
-    }
-    RETURN_IF_ERROR(NEW_ARRAY(&keeping->apart, nodes + fresh, error));
-    RETURN_IF_ERROR(NEW_ARRAY(&x, (nodes + fresh) * mesh->dim, error));
-    memcpy(x, mesh->x, (size_t)(nodes * mesh->dim) * sizeof *x);
-    free(mesh->x);
-    mesh->x = x;
-    for (int64_t n = 0; n < nodes && fresh > 0; n++) {
-        part_bodies(keeping, star, n, true);
+        int32_t first = -1;
+        for (int64_t i = star->ptr[n]; i < star->ptr[n + 1]; i++) {
+            int32_t body = keeping->group[star->cell[i]];
+            bool at_node = false;
+            for (int k = 0; k <= mesh->dim; k++) {
+                at_node = at_node || mesh->cell[(int64_t)star->cell[i] * (mesh->dim + 1) + k] == n;
+            }
+            first = first < 0 ? body : first;
+            if (at_node && body >= 0 && body != first) {
+                RETURN_IF_ERROR(part_body(keeping, star, n, body, &room, error));
+            }
+        }
+        mesh->pinched += keeping->apart[n];
     }
     keeping->cells.node_count = mesh->node_count;
     keeping->cells.x = mesh->x;

@@ -3,6 +3,7 @@
 #include "base/lists.h"
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- stars ---- */
@@ -110,28 +111,23 @@ enum status label_cells_drop(const bool *wanted, struct label_cells *mesh, struc
     return label_cells_compact(mesh, error);
 }
 
-/* Number the connected body of wanted cells that contains a cell. Returns its volume; *count: its cells. */
-static double fill_body(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t *count)
+int64_t label_cells_flood(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t node)
 {
     int corners = keeping->cells.dim + 1;
-    int64_t depth = 0;
-    double volume = 0;
-    *count = 0;
-    keeping->stack[depth++] = (int32_t)first;
+    int64_t count = 0;
+    keeping->stack[count++] = (int32_t)first;
     keeping->group[first] = number;
-    while (depth > 0) {
-        int64_t cell = keeping->stack[--depth];
-        volume += cell_volume(&keeping->cells, cell);
-        ++*count;
-        for (int k = 0; k < corners; k++) {
-            int32_t next = keeping->across[cell * corners + k];
+    for (int64_t i = 0; i < count; i++) {
+        int64_t face = (int64_t)keeping->stack[i] * corners;
+        for (int64_t end = face + corners; face < end; face++) {
+            int32_t next = keeping->cells.node[face] != node ? keeping->across[face] : -1;
             if (next >= 0 && keeping->wanted[next] && keeping->group[next] < 0) {
                 keeping->group[next] = number;
-                keeping->stack[depth++] = next;
+                keeping->stack[count++] = next;
             }
         }
     }
-    return volume;
+    return count;
 }
 
 /* Leave out connected bodies around a single point of the lattice, or all but the largest body. */
@@ -141,21 +137,20 @@ static void keep_bodies(struct label_cells_keeping *keeping, bool largest_only)
     int32_t number = 0, largest = -1;
     double most = 0;
     for (int64_t c = 0; c < keeping->cells.count; c++) {
-        int64_t count;
+        double volume = 0;
         if (!keeping->wanted[c] || keeping->group[c] >= 0) {
             continue;
         }
-        double volume = fill_body(keeping, c, number, &count);
-        if (volume > most) {
-            most = volume;
-            largest = number;
-        }
+        int64_t count = label_cells_flood(keeping, c, number, -1);
         bool speck = count <= (keeping->cells.dim == 3 ? 24 : 6);
+        for (int64_t i = 0; i < count; i++) {
+            volume += cell_volume(&keeping->cells, keeping->stack[i]);
+            keeping->wanted[keeping->stack[i]] = !speck;
+        }
         mesh->specks += speck;
         mesh->speck_volume += speck ? volume : 0;
-        for (int64_t d = c; d < keeping->cells.count && speck; d++) {
-            keeping->wanted[d] = keeping->wanted[d] && keeping->group[d] != number;
-        }
+        largest = volume > most ? number : largest;
+        most = fmax(most, volume);
         number++;
     }
     for (int64_t c = 0; c < keeping->cells.count && largest_only; c++) {
@@ -178,7 +173,7 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
     TRY(NEW_ARRAY(&keeping.across, count * (dim + 1), error));
     TRY(NEW_ARRAY(&keeping.wanted, count, error));
     TRY(NEW_ARRAY(&keeping.group, count, error));
-    TRY(NEW_ARRAY(&keeping.stack, count + 1, error));
+    TRY(NEW_ARRAY(&keeping.stack, count, error));
     TRY(NEW_ARRAY(&keeping.from, count, error));
     TRY(cells_across(&keeping.cells, keeping.across, error));
     TRY(star_make(mesh, NULL, &star, error));
@@ -195,9 +190,8 @@ enum status label_cells_keep(const struct labels *labels, const struct label_cel
     label_cells_join(&keeping, &star);
     memset(keeping.group, -1, (size_t)count * sizeof *keeping.group);
     for (int64_t c = 0; c < count; c++) {
-        int64_t cells;
         if (keeping.wanted[c] && keeping.group[c] < 0) {
-            fill_body(&keeping, c, bodies++, &cells);
+            label_cells_flood(&keeping, c, bodies++, -1);
         }
     }
     TRY(label_cells_cut_apart(&keeping, &star, error));

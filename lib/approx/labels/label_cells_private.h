@@ -33,13 +33,6 @@ MUST_CHECK enum status lattice_make(const struct labels *labels, const struct la
                                     struct lattice *lattice, struct error *error);
 void lattice_free(struct lattice *lattice);
 
-/* Whether there is no interface between two labels: they are the same, or both are left out. */
-bool same_side(const struct lattice *lattice, int32_t a, int32_t b);
-
-/* The fraction of the way from p, of label a, to q, of label b, at which the interface lies. */
-double lattice_change(const struct lattice *lattice, const double p[], const double q[], int32_t a,
-                      int32_t b);
-
 /* Locate the cuts of edges, and move points near a cut onto it. */
 MUST_CHECK enum status lattice_cut(struct lattice *lattice, struct error *error);
 
@@ -130,9 +123,13 @@ struct label_cells_keeping {
     const bool *between;
     int32_t *group; /* cell_count: -1 between calls, or the connected body of a cell */
     bool *apart;    /* nodes: whether there are others at the same place */
-    int32_t *stack; /* cell_count + 1 */
+    int32_t *stack; /* cell_count */
     int32_t *from;  /* cell_count */
 };
+
+/* Number the wanted cells without a group that are connected with the first; only by faces at `node`, unless
+ * that is -1. Returns how many, which stack[] lists. */
+int64_t label_cells_flood(struct label_cells_keeping *keeping, int64_t first, int32_t number, int64_t node);
 
 /* Resolve places where parts share only a node or an edge (non-manifold boundary): add cells all of whose
  * nodes lie on interfaces so that the parts share faces, or remove such cells. No node leaves its
