@@ -163,17 +163,16 @@ static enum status add_triangles(struct points *points)
     return STATUS_OK;
 }
 
-/* Mark the finest cubes that contain an interface of a label of fine[] (NULL: of any). */
-static void find_wanted(const struct points *points, const bool *fine, const int64_t cubes[3], bool *wanted)
+/* Wish for the finest cubes that contain an interface of a label of fine[] (NULL: of any) their level. */
+static void find_fine(const struct points *points, const bool *fine, const int64_t cubes[3], uint8_t *wish)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t c = 0; c < cubes[0] * cubes[1] * cubes[2]; c++) {
         const int32_t at[3] = {(int32_t)(c % cubes[0]), (int32_t)(c / cubes[0] % cubes[1]),
                                (int32_t)(c / cubes[0] / cubes[1])};
-        bool mixed = false, named = fine == NULL;
         const int32_t centre[3] = {2 * at[0] + 1, 2 * at[1] + 1, 2 * at[2] + 1};
         uint16_t first = points->label[point_at(points, centre)];
-        named = named || fine[first];
+        bool mixed = false, named = fine == NULL || fine[first];
         for (int k = 0; k < 8; k++) {
             const int32_t corner[3] = {2 * (at[0] + (k & 1)), 2 * (at[1] + (k >> 1 & 1)),
                                        2 * (at[2] + (k >> 2))};
@@ -181,43 +180,22 @@ static void find_wanted(const struct points *points, const bool *fine, const int
             mixed = mixed || label != first;
             named = named || fine[label];
         }
-        wanted[c] = mixed && named;
-    }
-}
-
-/* Mark the finest cubes whose centres lie in the body. */
-static void find_inside(const struct points *points, const int64_t cubes[3], bool *inside)
-{
-#pragma omp parallel for schedule(static)
-    for (int64_t c = 0; c < cubes[0] * cubes[1] * cubes[2]; c++) {
-        const int32_t centre[3] = {(int32_t)(2 * (c % cubes[0]) + 1),
-                                   (int32_t)(2 * (c / cubes[0] % cubes[1]) + 1),
-                                   (int32_t)(2 * (c / cubes[0] / cubes[1]) + 1)};
-        inside[c] = points->lattice->keep[points->label[point_at(points, centre)]];
+        wish[c] = mixed && named ? OCTREE_WISH(points->fine, true) : 0;
     }
 }
 
 static enum status add_tetrahedra(struct points *points, const struct label_cells_options *options)
 {
-    SCRATCH bool *marked = NULL;
     SCRATCH uint8_t *wish = NULL;
     FREED_BY(octree_free) struct octree octree = {0};
     const int64_t cubes[3] = {points->count[0] - 1, points->count[1] - 1, points->count[2] - 1};
-    int64_t total = cubes[0] * cubes[1] * cubes[2];
-    RETURN_IF_ERROR(NEW_ARRAY(&marked, total, points->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&wish, total, points->error));
+    RETURN_IF_ERROR(NEW_ARRAY(&wish, cubes[0] * cubes[1] * cubes[2], points->error));
     if (points->fine > 0) {
-        find_wanted(points, options->fine, cubes, marked);
-        for (int64_t c = 0; c < total; c++) {
-            wish[c] = marked[c] ? OCTREE_WISH(points->fine, true) : 0;
-        }
+        find_fine(points, options->fine, cubes, wish);
     }
     if (options->size != NULL) {
-        const double first[3] = {points->low[0] + points->spacing / 2, points->low[1] + points->spacing / 2,
-                                 points->low[2] + points->spacing / 2};
-        find_inside(points, cubes, marked);
-        RETURN_IF_ERROR(sizes_wish(options, points->levels, cubes, first, points->spacing, marked, wish,
-                                   &points->lattice->unsized, points->error));
+        RETURN_IF_ERROR(sizes_wish(points->lattice->labels, options, points->levels, cubes, points->low,
+                                   points->spacing, wish, &points->lattice->unsized, points->error));
     }
     RETURN_IF_ERROR(octree_make(points->levels, cubes, wish, &octree, points->error));
     points->marking = true;

@@ -2,7 +2,6 @@
 #include "approx/cells/raster.h"
 #include "approx/labels/label_cells.h"
 #include "base/memory.h"
-#include "base/vector.h"
 
 /* The grid of the labels; for a slice without the axis across it. */
 struct grid {
@@ -21,26 +20,6 @@ static struct grid grid_of(const struct labels *labels)
         }
     }
     return grid;
-}
-
-/* 1 where the map from the world to the grid preserves orientation, else -1. */
-static int sign_of(const struct labels *labels, const struct grid *grid)
-{
-    double edge[3][3] = {{0}}, origin[3] = {0}, voxel[2][3];
-    int dim = labels->dim;
-    for (int d = 0; d < dim; d++) {
-        double unit[3] = {0};
-        unit[d] = 1;
-        labels_to_voxel(labels, origin, voxel[0]);
-        labels_to_voxel(labels, unit, voxel[1]);
-        for (int e = 0; e < dim; e++) {
-            edge[d][e] = voxel[1][grid->axis[e]] - voxel[0][grid->axis[e]];
-        }
-    }
-    if (dim == 2) {
-        edge[2][2] = 1;
-    }
-    return determinant3(edge[0], edge[1], edge[2]) > 0 ? 1 : -1;
 }
 
 /* Whether a cell of the label contains a voxel or one that touches it. For a label that is not kept: whether
@@ -80,7 +59,8 @@ static enum status own_voxels(const struct labels *labels, const struct label_ce
         }
     }
     struct cells cells = {dim, mesh->node_count, x, mesh->cell_count, mesh->cell};
-    raster_cells(&cells, sign_of(labels, grid), grid->size, owner, &doubly);
+    raster_cells(&cells, mesh->cell_count > 0 && cell_volume(&cells, 0) < 0 ? -1 : 1, grid->size, owner,
+                 &doubly);
     return STATUS_OK;
 }
 

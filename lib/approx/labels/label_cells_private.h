@@ -73,12 +73,11 @@ MUST_CHECK enum status octree_cells(const struct octree *octree, octree_visitor 
 int size_level(double spacing, double size);
 
 /* Raise wish[] of the finest cubes to the levels that the sizes need. There are count[3] cubes of this edge,
- * the centre of the first at low[3], m. Cubes outside of the cells with sizes keep their wish. inside[cubes]:
- * whether the centre lies in the body. *unsized: the share of these outside of the cells with sizes;
- * STATUS_INPUT if it is 1. */
-MUST_CHECK enum status sizes_wish(const struct label_cells_options *options, int levels,
-                                  const int64_t count[3], const double low[3], double edge,
-                                  const bool *inside, uint8_t *wish, double *unsized, struct error *error);
+ * the first from low[3], m. Cubes outside of the cells with sizes keep their wish. *unsized: the share of the
+ * cubes in the body outside of the cells with sizes; STATUS_INPUT if it is 1. */
+MUST_CHECK enum status sizes_wish(const struct labels *labels, const struct label_cells_options *options,
+                                  int levels, const int64_t count[3], const double low[3], double edge,
+                                  uint8_t *wish, double *unsized, struct error *error);
 
 /* The cells at each node, and the labels that meet there. */
 enum { LABEL_CELLS_MOST_LABELS = 8 };

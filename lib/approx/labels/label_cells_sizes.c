@@ -30,16 +30,16 @@ static double size_at(const struct cells *cells, const double *size, int64_t cel
     return fmin(fmax(value, least), most);
 }
 
-enum status sizes_wish(const struct label_cells_options *options, int levels, const int64_t count[3],
-                       const double low[3], double edge, const bool *inside, uint8_t *wish, double *unsized,
-                       struct error *error)
+enum status sizes_wish(const struct labels *labels, const struct label_cells_options *options, int levels,
+                       const int64_t count[3], const double low[3], double edge, uint8_t *wish,
+                       double *unsized, struct error *error)
 {
     struct cells scaled = *options->sized;
     int64_t total = count[0] * count[1] * count[2], doubly = 0, within = 0, beyond = 0;
     NEW_SCRATCH(double, x, 3 * scaled.node_count, error);
     NEW_SCRATCH(int32_t, owner, total, error);
     for (int64_t i = 0; i < 3 * scaled.node_count; i++) {
-        x[i] = (options->sized->x[i] - low[i % 3]) / edge;
+        x[i] = (options->sized->x[i] - low[i % 3]) / edge - 0.5;
     }
     scaled.x = x;
     raster_cells(&scaled, 1, count, owner, &doubly);
@@ -47,8 +47,11 @@ enum status sizes_wish(const struct label_cells_options *options, int levels, co
     for (int64_t c = 0; c < total; c++) {
         const int64_t cube[3] = {c % count[0], c / count[0] % count[1], c / count[0] / count[1]};
         const double at[3] = {(double)cube[0], (double)cube[1], (double)cube[2]};
-        within += inside[c];
-        beyond += inside[c] && owner[c] < 0;
+        const double centre[3] = {low[0] + edge * (at[0] + 0.5), low[1] + edge * (at[1] + 0.5),
+                                  low[2] + edge * (at[2] + 0.5)};
+        bool inside = options->keep[labels_at(labels, centre)];
+        within += inside;
+        beyond += inside && owner[c] < 0;
         if (owner[c] >= 0) {
             int level = size_level(options->spacing, size_at(&scaled, options->size, owner[c], at));
             uint8_t wanted = OCTREE_WISH(level < levels - 1 ? level : levels - 1, false);
