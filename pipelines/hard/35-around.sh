@@ -63,10 +63,7 @@ normal = 0
 reactions = yes
 END
 relax "$work/coated.scene" "$work/coated.mts" "$work/u.dat"
-# By the strain in the middle, away from the ends.
-strain=$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") | awk '
-    ($1 - 0.05)^2 < 0.025^2 { n++; x += $1; u += $4; xx += $1 * $1; xu += $1 * $4 } END { printf "%.12g\n", (xu - x * u / n) / (xx - x * x / n) }')
-row 35 'membrane: a coated bar, E A + E_m t p, N' "$(calc "$(reaction "$work/u.dat" b 1) / ($strain)")" 2 coated
+row 35 'membrane: a coated bar, E A + E_m t p, N' "$(calc "$(reaction "$work/u.dat" b 1) / 1e-4")" 2 coated
 
 cat > "$work/ring.geo" << 'END'
 Point(1)={0,0,0}; Point(2)={50,0,0}; Point(3)={-50,0,0}; Point(4)={100,0,0}; Point(5)={-100,0,0};
@@ -94,7 +91,7 @@ row 35 "membrane: a coated ring under inner pressure, radius outside, displaceme
     awk 'BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b^2 * 1.3 / 3000; c = 1 + k * 0.4 * b; B = c * 0.03 / (c / a^2 - 1 / b^2 + k / b); A = B / a^2 - 0.03 }
         { r = sqrt($1^2 + $2^2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)); n++ } END { printf "%.12g\n", sum / n }')" 1 around
 
-gmsh -3 -nt 1 -v 0 -setnumber h 0.01 "$(dirname "$0")/../../examples/hard/octant.geo" -o "$work/ball.msh" > /dev/null
+gmsh -3 -nt 1 -v 0 -setnumber h 0.008 "$(dirname "$0")/../../examples/hard/octant.geo" -o "$work/ball.msh" > /dev/null
 nodes -u m "$work/ball.msh" 2> /dev/null | tag -f 'outer=all without planes without inner' 2> /dev/null | shapefn > "$work/ball.mts" 2> /dev/null
 youngs=3000 nu=0.3 scene "$work/ball.scene" << 'END'
 [membrane skin]

@@ -133,8 +133,8 @@ enum status assembly_build(struct assembly *input, struct solid_system *system, 
     system->body.load_factors = (const double *const *)&system->factor;
     RETURN_IF_ERROR(assembly_add_loads(input, system, error));
     RETURN_IF_ERROR(assembly_add_conditions(input, system, note, error));
-    RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_supports(input, system, error));
+    RETURN_IF_ERROR(assembly_add_points(input, system, error));
     RETURN_IF_ERROR(assembly_add_contacts(input, system, error));
     return system_share_penalties(system, error);
 }

@@ -95,7 +95,7 @@ static enum status add_membrane(const struct assembly *input, const struct membr
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->membranes, system->membrane_count + 1, error));
     struct membrane *added = &system->membranes[system->membrane_count++];
     return fail_in(error,
-                   membrane_build(&input->face_table, &section->facets, section->thickness,
+                   membrane_build(&input->face_table, &section->facets, &system->rows, section->thickness,
                                   section->youngs_modulus, section->poisson_ratio, added, error),
                    "%s", section->where);
 }

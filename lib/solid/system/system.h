@@ -71,7 +71,7 @@ struct solid_system {
      * the targets, so that a linear field stays exact. */
     struct constraint_rows penalties;
     struct constraint_nodes penalty_nodes; /* their transpose; with several processes for own nodes */
-    int64_t spring_count;      /* the last penalties are springs of measured points, then those of supports:
+    int64_t spring_count;      /* the last penalties are springs of supports, then those of measured points:
                                   they are not of a condition that is met exactly as well */
     double *penalty_stiffness; /* penalties.count, N/m (2D: N/m2) */
     double *penalty_unit;    /* penalties.count: stiffness by modulus, m (2D: 1); 0: it stays as it is */
