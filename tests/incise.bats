@@ -75,6 +75,14 @@ size_of() {
     done
     incise -s across.tsv body.mts | incise -v -s down.tsv 2> said | mts check | grep -q '4 connected bodies'
     grep -q ' 0 nodes on the edge.*pieces: 4, ' said
+    # in 2D half-lines from a point, each drawn away from it or towards it
+    cloud -d 2 -k jittered --jitter 0.15 -n 31 --box 0,0.1,0,0.1 > plate.mts
+    for ways in '1 1 1 1' '0 1 1 1' '1 0 1 0' '0 1 0 1'; do
+        awk -v ways="$ways" 'BEGIN { split(ways, out); split("1 1 1 -1 -1 -1 -1 1", to); p = ".0481 .0527"
+            for (i = 1; i <= 4; i++) { q = to[2 * i - 1] " " to[2 * i]; print out[i] ? p "\n" q "\n" : q "\n" p "\n" } }' > rays.tsv
+        incise -v -s rays.tsv -o cut.mts plate.mts 2> said
+        grep -q ' 0 nodes on the edge.*pieces: 4, ' said
+    done
 }
 
 @test "a slit in plane strain opens by 4 (1 - nu^2) sigma a / E in its middle, within 2 %" {

@@ -5,7 +5,7 @@
 #include "solid/rigid/rigid.h"
 
 /* A part of a blade that does not branch: facets joined across the edges (2D: points) of two facets; where
- * more meet, across that of the straightest pairs. */
+ * more meet, in 3D across that of the straightest pairs. */
 struct sheet {
     struct rigid_surface surface;
     int64_t border_count; /* edges (2D: end points) where it ends; 0: closed */
