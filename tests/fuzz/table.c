@@ -63,7 +63,7 @@ static void try_curve(const struct table *table)
 {
     FREED_BY(curve_free) struct load_curve curve = {0};
     struct error error = {""};
-    if (is_accepted(curve_tabulate(&curve, table->rows, table->values, 1.0, &error), &error)) {
+    if (is_accepted(curve_tabulate(&curve, table->rows, table->values, 1.0, true, &error), &error)) {
         for (int i = -1; i <= 11; i++) {
             (void)curve_value(&curve, i * 0.1);
             (void)curve_rate(&curve, i * 0.1);

@@ -17,7 +17,7 @@ TEST(held_outside)
 {
     static const double points[] = {-1, 5, 0, 1, 2, 3, 3, 9};
     FREED_BY(curve_free) struct load_curve table = {0};
-    GOOD(curve_tabulate(&table, 4, points, 2, &error));
+    GOOD(curve_tabulate(&table, 4, points, 2, true, &error));
     for (int kind = CURVE_SMOOTH; kind <= CURVE_TABLE; kind++) {
         struct load_curve curve = kind < CURVE_TABLE ? curve_of_kind((enum curve_kind)kind) : table;
         NEAR_TO(curve_value(&curve, -.5), curve_value(&curve, 0), 0);
@@ -34,7 +34,7 @@ TEST(tabulated)
 {
     static const double points[] = {0, 0, .2, 0, .3, 1, .5, 1, 1.2, -.5, 2, -.5, 4, 7};
     FREED_BY(curve_free) struct load_curve curve = {0};
-    GOOD(curve_tabulate(&curve, 7, points, 4, &error));
+    GOOD(curve_tabulate(&curve, 7, points, 4, true, &error));
     for (int i = 0; i < 7; i++) {
         NEAR_TO(curve_value(&curve, points[2 * i] / 4), points[2 * i + 1], 1e-14);
     }
@@ -48,6 +48,10 @@ TEST(tabulated)
         }
     }
     rate_is_derivative(&curve);
+    curve_free(&curve);
+    GOOD(curve_tabulate(&curve, 7, points, 4, false, &error)); /* straight lines */
+    NEAR_TO(curve_value(&curve, .25 / 4), .5, 1e-14);
+    NEAR_TO(curve_value(&curve, .75), 3.25, 1e-14);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -23,7 +23,7 @@ enum status model_add_curve(struct model *model, const struct scene_label *label
                                                     : 1.0;
         RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
                                 "%s: curve: not smooth, linear or step, and as a file", label->where));
-        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, error),
+        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, input->in_time, error),
                                 "%s: curve %s", label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;

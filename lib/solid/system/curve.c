@@ -39,9 +39,9 @@ static enum status check_points(int64_t count, const double *points, double end,
 
 /* The caller has checked the points, so only memory can fail: with GSL's default error handler that
  * ends the program, see base/status.h. */
-static gsl_interp *make_spline(const struct load_curve *curve)
+static gsl_interp *make_spline(const struct load_curve *curve, bool smooth)
 {
-    const gsl_interp_type *type = curve->count > 2 ? gsl_interp_steffen : gsl_interp_linear;
+    const gsl_interp_type *type = smooth && curve->count > 2 ? gsl_interp_steffen : gsl_interp_linear;
     gsl_interp *spline = gsl_interp_alloc(type, (size_t)curve->count);
     if (spline != NULL && gsl_interp_init(spline, curve->time, curve->factor, (size_t)curve->count) != 0) {
         gsl_interp_free(spline);
@@ -51,7 +51,7 @@ static gsl_interp *make_spline(const struct load_curve *curve)
 }
 
 enum status curve_tabulate(struct load_curve *curve, int64_t count, const double *points, double end,
-                           struct error *error)
+                           bool smooth, struct error *error)
 {
     *curve = (struct load_curve){.kind = CURVE_TABLE, .end = end, .count = count};
     RETURN_IF_ERROR(check_points(count, points, end, error));
@@ -61,7 +61,7 @@ enum status curve_tabulate(struct load_curve *curve, int64_t count, const double
         curve->time[i] = points[2 * i];
         curve->factor[i] = points[2 * i + 1];
     }
-    curve->spline = make_spline(curve);
+    curve->spline = make_spline(curve, smooth);
     if (curve->spline == NULL) {
         return fail_memory(error, "load curve");
     }

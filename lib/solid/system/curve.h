@@ -18,14 +18,14 @@ struct load_curve {
 /* A curve of a kind without table; curve_free is allowed but not needed. */
 struct load_curve curve_of_kind(enum curve_kind kind);
 
-/* A curve through `count` points (time, factor), rows of 2 in `points`, which are copied: Steffen's piecewise
- * cubic (Astron. Astrophys. 239, 1990), which is smooth, interpolates, and never overshoots between two
- * points; a line for 2 points. `end` > 0 is the time of s = 1: the scene's end_time, or 1 in a quasi-static
+/* A curve through `count` points (time, factor), rows of 2 in `points`, which are copied: straight lines; or,
+ * if `smooth`, as corners are impacts in dynamics, Steffen's piecewise cubic (Astron. Astrophys. 239, 1990),
+ * which never overshoots between two points, and is a line for 2 points. `end` > 0 is the time of s = 1: the scene's end_time, or 1 in a quasi-static
  * scene. STATUS_INPUT, with a message `row N: ...` counting from 1, for fewer than two points, values that
  * are not finite, times that do not increase, a first time after 0, and a last time before `end`.
  * STATUS_SYSTEM: memory. */
 MUST_CHECK enum status curve_tabulate(struct load_curve *curve, int64_t count, const double *points,
-                                      double end, struct error *error);
+                                      double end, bool smooth, struct error *error);
 
 /* The factor at s, and its derivative by s. Outside of [0, 1] the factor keeps its value at the end.
  * Thread-safe. */

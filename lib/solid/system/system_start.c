@@ -11,7 +11,7 @@ static enum status hold_curves(struct solid_system *system, struct error *error)
         double end = curve_value(&system->curves[i], 1.0);
         const double held[] = {0.0, end, 1.0, end};
         curve_free(&system->curves[i]);
-        RETURN_IF_ERROR(curve_tabulate(&system->curves[i], 2, held, 1.0, error));
+        RETURN_IF_ERROR(curve_tabulate(&system->curves[i], 2, held, 1.0, false, error));
     }
     return STATUS_OK;
 }
@@ -23,7 +23,7 @@ static enum status add_falling_curve(struct solid_system *system, struct error *
     int64_t added = system->curve_count;
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->factor, added + 1, error));
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->curves, added + 1, error));
-    RETURN_IF_ERROR(curve_tabulate(&system->curves[added], 2, falling, 1.0, error));
+    RETURN_IF_ERROR(curve_tabulate(&system->curves[added], 2, falling, 1.0, false, error));
     system->curve_count++;
     return STATUS_OK;
 }
