@@ -41,7 +41,7 @@ faulty() {
     run ! grep "no cell" said # but a midside node
     # lines of second order: end, middle, end
     printf '%s\n' '*NODE' 1,0,0 2,1,0 3,1,1 4,0,1 5,.5,0 6,1,.5 7,.5,1 8,0,.5 '*ELEMENT,TYPE=CPE8,ELSET=b' 1,1,2,3,4,5,6,7,8 \
-        '*ELEMENT,TYPE=T2D3,ELSET=low' 2,1,5,2 > line
+        '*ELEMENT,TYPE=t2d3,ELSET=low' 2,1,5,2 > line
     [ "$(names line)" = "b low" ]
     [ "$(mts print facets body.mts)" = "0 1" ]
     names - < "$corpus/inp/solid" | grep -q Low

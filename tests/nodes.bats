@@ -56,6 +56,9 @@ volumes() {
     grep -q "nodes: group 'diagonal': facets between two cells, made a set of nodes: 1" notes
     grep -q "nodes: 100 % of the boundary is on parts that are thin for their cells: where the worst is, 0.01 m thick at (" notes
     [ "$(wc -l < notes)" -eq 3 ]
+    { printf '$Comments\nby hand\n$EndComments\n'; sed 's/^$MeshFormat/& /' square.msh; } | nodes -u cm -t 2> notes | diff <(bare square.mts) <(bare)
+    sed -e '1i$Comments\nof no format\n$EndComments' -e '/^$MeshFormat/,/^$End/d' square.msh > none.msh
+    refused 2 'comes before $MeshFormat' nodes -u cm none.msh
 }
 
 @test "the brain section has 702 nodes and 1247 triangles, in every format" {

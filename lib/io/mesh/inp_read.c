@@ -176,7 +176,8 @@ static int find_type(const char *name, bool *is_shell)
                  {"SFM3D", 2, true}, {"R3D", 2, true},  {"DS", 2, true},    {"T3D", 1, false},
                  {"T2D", 1, false},  {"R2D", 1, false}};
     size_t begin = strcspn(name, "0123456789");
-    begin += begin > 0 && name[begin] != '\0' && strchr("32", name[begin]) != NULL && name[begin + 1] == 'D'
+    begin += begin > 0 && name[begin] != '\0' && strchr("32", name[begin]) != NULL &&
+                     toupper((unsigned char)name[begin + 1]) == 'D'
                  ? 2
                  : 0;
     int nodes = atoi(name + begin);

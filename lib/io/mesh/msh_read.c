@@ -20,7 +20,8 @@ static bool is_end_of_line(char c)
 
 static bool is_mesh(const char *bytes, size_t size)
 {
-    return size >= MAGIC_SIZE && memcmp(bytes, "$MeshFormat", 11) == 0 && is_end_of_line(bytes[11]);
+    return size >= MAGIC_SIZE &&
+           (memcmp(bytes, "$MeshFormat", 11) == 0 || memcmp(bytes, "$Comments", 9) == 0);
 }
 
 /* MSH 1 has no $MeshFormat. */
@@ -135,6 +136,9 @@ static void read_content(struct msh_reader *r)
         if (strcmp(r->section, needed[i].name) == 0) {
             if (r->has[needed[i].section]) {
                 msh_fail(r, "stands twice in the file");
+            }
+            if (needed[i].section != MSH_FORMAT && !r->has[MSH_FORMAT]) {
+                msh_fail(r, "comes before $MeshFormat");
             }
             msh_skip_line(r);
             needed[i].read(r);
