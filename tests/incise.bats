@@ -75,6 +75,11 @@ size_of() {
     done
     incise -s across.tsv body.mts | incise -v -s down.tsv 2> said | mts check | grep -q '4 connected bodies'
     grep -q ' 0 nodes on the edge.*pieces: 4, ' said
+    # three half-planes from a line, of which two face one way round it, one the other
+    awk 'BEGIN { split("90 210 330", at); for (i = 1; i <= 3; i++) { a = at[i] / 57.29578; p = ".0481 .0527"; q = .0481 + cos(a) " " .0527 + sin(a)
+        print i < 2 ? p " -1 " q " -1 " q " 1\n" p " -1 " q " 1 " p " 1" : p " -1 " q " 1 " q " -1\n" p " -1 " p " 1 " q " 1" } }' > three.tsv
+    cloud -d 3 -k jittered --jitter 0.14 -n 11 --box 0,0.1,0,0.1,0,0.1 | incise -v -s three.tsv -o cut.mts 2> said
+    grep -q ' 0 nodes on the edge.*pieces: 3, ' said
     # in 2D half-lines from a point, each drawn away from it or towards it
     cloud -d 2 -k jittered --jitter 0.15 -n 31 --box 0,0.1,0,0.1 > plate.mts
     for ways in '1 1 1 1' '0 1 1 1' '1 0 1 0' '0 1 0 1'; do

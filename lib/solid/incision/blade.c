@@ -48,32 +48,8 @@ static enum status check_crossings(int dim, int64_t count, const double *corners
     return STATUS_OK;
 }
 
-/* Join the facets that meet at one edge: two, or of more the straightest pairs. */
-static void join_straight(const struct rigid_surface *surface, const struct ridge *ridge, int64_t count,
-                          int32_t *first)
-{
-    for (bool found = count > 1; found;) {
-        int32_t pair[2] = {-1, -1};
-        double best = count == 2 ? -2.0 : SAME_DIRECTION;
-        for (int64_t i = 0; i < count * count; i++) {
-            const struct ridge *a = &ridge[i / count], *b = &ridge[i % count];
-            double straight = vector_dot(3, surface->normal + (int64_t)a->facet * 3,
-                                         surface->normal + (int64_t)b->facet * 3);
-            bool taken = set_first(first, a->facet) == set_first(first, b->facet);
-            if (a->upward != b->upward && !taken && straight > best) {
-                best = straight;
-                pair[0] = a->facet;
-                pair[1] = b->facet;
-            }
-        }
-        found = pair[0] >= 0 && count > 2;
-        if (pair[0] >= 0) {
-            set_join(first, pair[0], pair[1]);
-        }
-    }
-}
-
-/* Join the facets of curves of which one ends where one begins, and no other does either. */
+/* Join the facets of curves of which one ends where one begins, and no other does either. Where more meet, a
+ * sheet with a corner would be cut off within a cell, and the others end beside it. */
 static enum status join_curves(int64_t count, const double *corners, int32_t *first, struct error *error)
 {
     struct box all = box_of(2, count * 2, corners);
@@ -116,7 +92,9 @@ static enum status find_sheets(int dim, int64_t count, const double *corners, in
     ridges_list(3, count, whole.facet, ridges);
     for (int64_t i = 0, end; i < count * 3; i = end) {
         end = ridges_end(count * 3, ridges, i);
-        join_straight(&whole, ridges + i, end - i, first);
+        if (end - i == 2 && ridges[i].upward != ridges[i + 1].upward) {
+            set_join(first, ridges[i].facet, ridges[i + 1].facet);
+        }
     }
     return STATUS_OK;
 }

@@ -4,8 +4,8 @@
 #include "base/status.h"
 #include "solid/rigid/rigid.h"
 
-/* A part of a blade that does not branch: facets joined across the edges (2D: points) of two facets; where
- * more meet, in 3D across that of the straightest pairs. */
+/* A part of a blade that does not branch: facets joined across the edges (2D: points) of two facets, not
+ * where more meet. */
 struct sheet {
     struct rigid_surface surface;
     int64_t border_count; /* edges (2D: end points) where it ends; 0: closed */
