@@ -118,12 +118,11 @@ static enum status check_pressure(const struct place *place, struct scene *scene
 static enum status check_support(const struct place *place, struct scene *scene)
 {
     const struct support_condition *support = &scene->supports[scene->support_count - 1].condition;
-    if (!(support->normal > 0.0 || support->tangential > 0.0)) {
+    bool in_time = scene->analysis == SCENE_DYNAMIC;
+    if (!(support->normal > 0.0 || support->tangential > 0.0 || (in_time && support->damping > 0.0))) {
         return place_fail(place, NULL, "normal and tangential: both are 0: give a stiffness in Pa/m");
     }
-    return scene->analysis == SCENE_DYNAMIC
-               ? STATUS_OK
-               : place_forbid(place, "damping", "a quasi-static scene has no velocities");
+    return in_time ? STATUS_OK : place_forbid(place, "damping", "a quasi-static scene has no velocities");
 }
 
 static enum status check_membrane(const struct place *place, struct scene *scene)
