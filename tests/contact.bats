@@ -83,6 +83,19 @@ lid() {
     [[ "$(cat said)" == 'mtled: lid.scene: contacts penetrate by '*' m, not '*' m, most [contact lid]: a larger stiffness, with shorter steps, or a finer cloud there helps' ]]
 }
 
+@test "a block that walls enclose, at a pressure of 20 shear moduli: the closed form" {
+    cloud -d 2 -k jittered -n 9 --jitter 0.15 --seed 3 --box 0,0.1,0,0.1 | shapefn > square.mts 2> note
+    printf '%s\n' '0.1 -1' '0.1 1' > x.tsv
+    printf '%s\n' '1 0.1' '-1 0.1' > y.tsv
+    { block quasi-static | sed "s/^nu = .*/nu = 0.4999/"
+        printf '[displacement x]\nfacets = xmin\nnormal = 0\n[displacement y]\nfacets = ymin\nnormal = 0\n[output]\nreactions = yes\n'
+        printf '[contact x]\nfacets = xmax\nrigid = x.tsv\nunit = m\nside = left\ntranslation = -0.0002, 0\ncurve = smooth\n'
+        printf '[contact y]\nfacets = ymax\nrigid = y.tsv\nunit = m\nside = left\ntranslation = 0, -0.0002\ncurve = smooth\n'; } > square.scene
+    mtled square.scene square.mts 2> note > u.dat
+    # the law's stress at stretches of .998, .998, 1
+    rows reactions u.dat | awk 'NR == 1 { d = $1 / 1994.1378 - 1; print; exit !(d * d < 2e-3 ^ 2) }'
+}
+
 @test "an asterisk is the whole boundary, of a mesh without names as well: a disc rests in a groove" {
     printf 'SetFactory("OpenCASCADE");\nDisk(1) = {0, 0, 0, 50};\nMesh.MeshSizeMin = 10;\nMesh.MeshSizeMax = 10;\n' > disc.geo
     gmsh -v 1 -2 disc.geo -o disc.msh

@@ -11,7 +11,7 @@
 
 /* Depths below this share of a point's width count as zero, and differences of unit normals. */
 static const double round_off = 1e-6;
-/* The penalty of a point times its width, beside p^2 / mu with the multiplier p there, by the largest
+/* The penalty of a point times its width, beside 2 p^2 / mu with the multiplier p there, by the largest
  * multiplier: its least value, and its value after stiffening. */
 static const double least_modulus = 10.0, most_modulus = 15.0;
 enum { POINTS_FOR_THREAD = 1000 }; /* see chunks_of */
@@ -134,7 +134,7 @@ bool contact_stiffen(struct contact *contact, double shear)
     }
     for (int64_t p = 0; p < contact->count && contact->modulus > 0.0; p++) {
         double held = vector_length(contact->dim, contact->held + p * contact->dim);
-        double least = (least_modulus * largest + held * held / shear) / contact_width(contact, p);
+        double least = (least_modulus * largest + 2.0 * held * held / shear) / contact_width(contact, p);
         if (contact->stiffness[p] < least) {
             contact->stiffness[p] = most_modulus / least_modulus * least;
             stiffer = true;
