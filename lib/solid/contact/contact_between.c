@@ -53,16 +53,6 @@ void contact_between_stiffen(struct contact *contact, double modulus)
     }
 }
 
-double contact_between_sign(const struct contact *contact)
-{
-    return contact->between == NULL ? 1.0 : (double)contact->between->sign;
-}
-
-bool contact_between_led(const struct contact *contact, int64_t p)
-{
-    return contact->between != NULL && contact->between->view[p].led;
-}
-
 /* Place the points of facet f at parameters u. */
 static void place_facet(struct contact *contact, int64_t f, const double *u)
 {

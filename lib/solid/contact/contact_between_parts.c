@@ -7,6 +7,16 @@
 #include <math.h>
 #include <string.h>
 
+double contact_between_sign(const struct contact *contact)
+{
+    return contact->between == NULL ? 1.0 : (double)contact->between->sign;
+}
+
+bool contact_between_led(const struct contact *contact, int64_t p)
+{
+    return contact->between != NULL && contact->between->view[p].led;
+}
+
 void contact_between_take(struct contact *contact)
 {
     struct contact_between *between = contact->between;
