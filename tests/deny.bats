@@ -161,5 +161,7 @@ denied() {
     sample --vector --outside 0 -o along.mts axes.nii cube.mts 2> note
     sed 's/^E = .*/model = guccione\nC = 2000\nbf = 1\nbt = 1\nbfs = 1/' cube.scene > fibres.scene
     denied mtled fibres.scene along.mts
+    printf '.04 -1 -1 .04 2 -1 .04 0 3\n' > across.tsv
+    denied incise -s across.tsv along.mts
     denied fibres --from zmin,60 --to zmax,-60 --axis 1,0,0 cube.mts
 }

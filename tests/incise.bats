@@ -46,6 +46,13 @@ size_of() {
     rows facets cut.txt > facets
     paste <(rows facets.set cut.txt) facets | awk -v front=6 '$1 >= front { print $2; print $3; print $4 }' | sort -nu > lips
     rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = (-.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012)) / 1.6185; if (d * d > 1e-6) { print; exit 1 } n++ } END { exit !(n > 60) }' lips -
+    # parts of a cell have its fibre
+    fibres --from zmin,60 --to zmax,-60 --axis 1,0,0 -o turned.mts body.mts 2> note
+    incise -s blade.stl -n knife turned.mts > turned_cut.mts
+    [ -z "$(comm -13 <(mts print points.fibre turned.mts | sort -u) <(mts print points.fibre turned_cut.mts | sort -u))" ]
+    paste <(mts print points.x turned_cut.mts) <(mts print points.fibre turned_cut.mts) | awk -v cells="$(mts print cells turned_cut.mts | wc -l)" '
+        { d = (atan2($5, $4) - (60 - 2400 * $3 - 90) / 57.29578) / 3.14159265; d -= int(d + (d < 0 ? -.5 : .5)); sum += d < 0 ? -d : d }
+        END { print sum / NR * 180; exit !(NR == cells && sum / NR * 180 < 2) }'
     # most lie on it exactly
     [ "$(rows nodes.x cut.txt | awk 'NR == FNR { lip[$1]; next } (FNR - 1) in lip { d = -.14 * ($1 - .03) - .8 * ($2 - .01) + 1.4 * ($3 - .012); n++; on += d * d < 1e-20 } END { print (on > .8 * n) }' lips -)" = 1 ]
     # the same input, the same bytes, with any number of threads

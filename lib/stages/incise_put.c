@@ -4,6 +4,7 @@
 #include "approx/cells/quality.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "stages/stages.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -215,6 +216,48 @@ static void report_result(struct cut_body *whole)
     }
 }
 
+/* ---- fibres ---- */
+
+/* fibre[cells * cols] = those of the old cells of which the cells are parts; NULL: the stream has none. */
+static enum status take_fibres(const struct cut_body *whole, const struct stream *stream, double **fibre,
+                               struct error *error)
+{
+    const struct division *body = &whole->body;
+    const struct section *of_point, *cell;
+    if (stream_find(stream, "points.fibre") == NULL || stream_find(stream, "points.cell") == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stream_view(stream, "points.fibre", &of_point, error));
+    RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
+    const double *value = of_point->data;
+    const int32_t *owner = cell->data;
+    int64_t cols = of_point->cols;
+    NEW_SCRATCH(int64_t, first, whole->cells.count, error);
+    for (int64_t p = cell->rows; p-- > 0;) {
+        first[owner[p]] = p;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(fibre, body->cell_count * cols, error));
+    for (int64_t c = 0; c < body->cell_count; c++) {
+        memcpy(*fibre + c * cols, value + first[body->of_cell[c]] * cols, (size_t)cols * sizeof *value);
+    }
+    return STATUS_OK;
+}
+
+/* Put them at the points of smoothed cells. */
+static enum status put_fibres(struct stream *stream, int dim, int64_t cell_count, double **fibre,
+                              struct error *error)
+{
+    const struct ipoints_options options = {.smoothed = true};
+    char attributes[64];
+    int64_t unresolved;
+    if (*fibre == NULL) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(stage_ipoints(stream, &options, &unresolved, error));
+    return stream_put(stream, "points.fibre", TYPE_F8, cell_count, dim,
+                      vector_attributes(dim, "1", attributes), array_take(fibre), true, error);
+}
+
 /* Remove what later stages have made, of frames as well. */
 static void remove_later(struct stream *stream)
 {
@@ -231,6 +274,7 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
 {
     struct division *body = &whole->body;
     int64_t nodes = body->node_count;
+    SCRATCH double *fibre = NULL;
     NEW_SCRATCH(bool, edge, nodes, error);
     NEW_SCRATCH(int32_t, kept_as, nodes, error);
     RETURN_IF_ERROR(mark_edge(whole, edge, error));
@@ -241,11 +285,12 @@ enum status cut_body_put(struct cut_body *whole, const bool *kept, struct stream
         whole->report->edge += edge[n] && kept_as[n] >= 0;
     }
     /* The old cells may be views of what is replaced, so what is made of them comes first. */
+    RETURN_IF_ERROR(take_fibres(whole, stream, &fibre, error));
     RETURN_IF_ERROR(put_sets(whole, edge, kept_as, nodes, stream, error));
     RETURN_IF_ERROR(put_regions(whole, stream, error));
     RETURN_IF_ERROR(put_facets(whole, stream, error));
     RETURN_IF_ERROR(put(stream, "cells", TYPE_I4, body->cell_count, body->dim + 1, &body->node, error));
     RETURN_IF_ERROR(put(stream, "nodes.x", TYPE_F8, body->node_count, body->dim, &body->x, error));
     remove_later(stream);
-    return STATUS_OK;
+    return put_fibres(stream, body->dim, body->cell_count, &fibre, error);
 }

@@ -1,4 +1,4 @@
-/* Contact between facets of the body, for preconditioner, and time step: dependence of gaps on the field,
+/* Contact between facets of the body, for preconditioner and time step: sign, dependence of gaps on the field,
  * bounds of the stiffness. */
 #include "solid/contact/contact_between.h"
 
