@@ -203,7 +203,7 @@ void contact_between_measure(struct contact *contact, const double *u, bool all)
     memcpy(between->now, u, (size_t)between->values * sizeof *u);
     for (int64_t p = 0; p < contact->count; p++) {
         struct contact_view *view = &contact->view[p];
-        view->searched = false;
+        view->searched = false; /* free_way is that of the last search */
         view->searched = all || !(free_way(contact, p) > 0.0);
         view->turned = false;
         any = any || view->searched;
