@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Number the sets of parent[] by decreasing size: part[item] = the number of the item's set. */
 static enum status number_parts(int64_t items, int32_t parent[], const double size[], int32_t *part,
@@ -61,6 +62,21 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
         volume[c] = cell_volume(cells, c);
     }
     return number_parts(cells->count, parent, volume, part, count, error);
+}
+
+enum status nodes_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
+{
+    int corners = cells->dim + 1;
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    NEW_SCRATCH(bool, seen, cells->node_count, error);
+    RETURN_IF_ERROR(cells_parts(cells, of_cell, count, error));
+    memset(part, -1, (size_t)cells->node_count * sizeof *part);
+    for (int64_t i = 0; i < cells->count * corners; i++) {
+        int32_t node = cells->node[i], here = of_cell[i / corners];
+        part[node] = !seen[node] || part[node] == here ? here : -1;
+        seen[node] = true;
+    }
+    return STATUS_OK;
 }
 
 /* ---- sides ---- */

@@ -22,6 +22,10 @@ int64_t ridges_end(int64_t count, const struct ridge *ridge, int64_t first);
 MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count,
                                    struct error *error);
 
+/* part[cells->node_count]: the connected body of each node; -1: of several bodies, or none. */
+MUST_CHECK enum status nodes_parts(const struct cells *cells, int32_t *part, int32_t *count,
+                                   struct error *error);
+
 /* part[boundary->count]: the side of each facet of the boundary. Facets with a common edge (2D: node) are on
  * one side if their outward normals differ by at most `degrees`; with 180, sides are the connected surfaces.
  * Facets are not joined at an edge of more than two facets. Sides are numbered from 0 by decreasing area. */

@@ -102,11 +102,48 @@ static enum status keep(const struct visibility *visibility, double widen, int32
     return STATUS_OK;
 }
 
+/* The connected body that the point is in; -1: several, or not known. */
+static int32_t own_part(const struct visibility *visibility, const struct visibility_work *work)
+{
+    int corners = visibility->cells.dim + 1;
+    int32_t part = -1;
+    for (int64_t i = 0; i < work->cell_count * corners; i++) {
+        int32_t of_node =
+            visibility
+                ->part[visibility->cells.node[(int64_t)work->cell[i / corners] * corners + i % corners]];
+        if (of_node >= 0 && part >= 0 && of_node != part) {
+            return -1;
+        }
+        part = of_node >= 0 ? of_node : part;
+    }
+    return part;
+}
+
+/* Leave the nodes of other bodies out. */
+static enum status keep_body(const struct visibility *visibility, int32_t *index, int64_t *count,
+                             struct visibility_work *work, struct error *error)
+{
+    int64_t kept = 0;
+    RETURN_IF_ERROR(work->cell_count < 0 ? visibility_locate(visibility, work->x, work, error) : STATUS_OK);
+    int32_t own = own_part(visibility, work);
+    for (int64_t i = 0; i < *count && own >= 0; i++) {
+        int32_t part = visibility->part[index[i]];
+        if (part < 0 || part == own) {
+            index[kept++] = index[i];
+        }
+    }
+    *count = own >= 0 ? kept : *count;
+    return STATUS_OK;
+}
+
 enum status visibility_filter(const struct visibility *visibility, const struct visibility_shadows *shadows,
                               double widen, int32_t *index, int64_t *count, struct visibility_work *work,
                               struct error *error)
 {
     work->around = 0;
+    if (visibility->part != NULL) {
+        RETURN_IF_ERROR(keep_body(visibility, index, count, work, error));
+    }
     RETURN_IF_ERROR(mark_hidden(visibility, shadows, widen, index, *count, work, &work->changed, error));
     if (work->changed > 0) {
         RETURN_IF_ERROR(visibility_paths(visibility, widen, index, *count, work, error));
@@ -117,7 +154,7 @@ enum status visibility_filter(const struct visibility *visibility, const struct 
 
 void visibility_free(struct visibility *visibility)
 {
-    FREE_ALL(visibility->across, visibility->star_ptr, visibility->star, visibility->facet,
+    FREE_ALL(visibility->across, visibility->part, visibility->star_ptr, visibility->star, visibility->facet,
              visibility->shadow, visibility->shadowed, visibility->corner, visibility->edge_ptr,
              visibility->edge, visibility->seen_ptr, visibility->seen, visibility->seen_length,
              visibility->hidden_ptr, visibility->hidden);

@@ -6,6 +6,7 @@
  * length of the shortest path through the body (diffraction: Organ, Fleming, Terry and Belytschko 1996). It
  * is a continuous function of the point, and so are the weights. A node is not a neighbour if every path to
  * it is longer than its support radius. Paths bend at re-entrant nodes, in 3D also within re-entrant edges.
+ * Nodes of other connected bodies are none, also where bodies touch or overlap a little.
  * Cells that share only a node are not connected by it; the node itself sees what each of these cells
  * sees. */
 #pragma once
@@ -39,6 +40,7 @@ struct visibility {
     struct cells cells;
     const struct point_grid *grid;
     int32_t *across;   /* cells_across */
+    int32_t *part;     /* node_count: see nodes_parts; NULL: there is one body */
     int64_t *star_ptr; /* node_count + 1: the cells at each node (CSR) */
     int32_t *star;
     int64_t facet_count;

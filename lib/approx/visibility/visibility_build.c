@@ -10,6 +10,7 @@
 #include "base/vector.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error)
@@ -93,8 +94,15 @@ static bool is_of_facet(int dim, const struct visibility_facet *facet, int32_t n
     return facet->node[0] == node || facet->node[1] == node || (dim == 3 && facet->node[2] == node);
 }
 
-/* List the shadows: of nodes whose supports reach a facet and that are beyond it, or on it but not nodes of
- * it. */
+/* Whether a node and a facet are of two bodies. */
+static bool are_apart(const struct visibility *visibility, const struct visibility_facet *facet, int32_t node)
+{
+    const int32_t *part = visibility->part;
+    return part != NULL && part[node] >= 0 && part[facet->node[0]] >= 0 && part[node] != part[facet->node[0]];
+}
+
+/* List the shadows: of nodes of its body whose supports reach a facet and that are beyond it, or on it but
+ * not nodes of it. */
 static enum status list_shadows(struct visibility *visibility, struct error *error)
 {
     FREED_BY(index_list_free) struct index_list near = {0};
@@ -112,6 +120,9 @@ static enum status list_shadows(struct visibility *visibility, struct error *err
             const double *x = visibility->cells.x + (int64_t)node * dim;
             double height = visibility_height_above(dim, facet, x),
                    tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
+            if (are_apart(visibility, facet, node)) {
+                continue;
+            }
             if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
                                        vector_distance(dim, facet->middle, x) <= facet->radius)) {
                 visibility->shadow[visibility->shadow_count++] = (struct visibility_shadow){(int32_t)f, node};
@@ -268,6 +279,12 @@ enum status visibility_build(const struct cells *cells, const struct point_grid 
     FREED_BY(visibility_work_free) struct visibility_work work = {0};
     RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
     visibility->grid = grid;
+    int32_t bodies;
+    RETURN_IF_ERROR(NEW_ARRAY(&visibility->part, cells->node_count, error));
+    RETURN_IF_ERROR(nodes_parts(cells, visibility->part, &bodies, error));
+    if (bodies <= 1) {
+        free(array_take(&visibility->part));
+    }
     RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
     RETURN_IF_ERROR(set_facets(&faces, visibility, error));
     RETURN_IF_ERROR(list_shadows(visibility, error));

@@ -1,5 +1,6 @@
 #include "solid/assembly/assembly.h"
 
+#include "approx/cells/parts.h"
 #include "base/memory.h"
 #include "solid/contact/contact_between.h"
 #include "solid/contact/contact_rest.h"
@@ -88,9 +89,11 @@ static enum status add_between(const struct assembly *input, const struct contac
 {
     FREED_BY(opposite_free) struct opposite opposite = {0};
     bool any;
+    int32_t bodies;
     bool itself = condition->facets.facet == condition->opposite.facet;
     NEW_SCRATCH(int32_t, part, input->cells.node_count, error);
-    RETURN_IF_ERROR(opposite_parts(&input->cells, part, error));
+    NEW_SCRATCH(double, own, points->count, error);
+    RETURN_IF_ERROR(nodes_parts(&input->cells, part, &bodies, error));
     RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
     RETURN_IF_ERROR(contact_between_build(
         points, averages, input->cells.dim, input->cells.node_count, input->face_table.per_face, &opposite,
@@ -100,6 +103,17 @@ static enum status add_between(const struct assembly *input, const struct contac
                     "%s: no facet faces another one at rest: name groups that face each other",
                     condition->where);
     }
+    if (itself) {
+        return STATUS_OK;
+    }
+    FREED_BY(boundary_averages_free) struct boundary_averages facing = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages facing_averages = {0};
+    RETURN_IF_ERROR(build_points(input, &condition->opposite, true, &facing, &facing_averages, error));
+    NEW_SCRATCH(double, other, facing.count, error);
+    const double *X = input->face_table.x;
+    RETURN_IF_ERROR(contact_rest_heights(input->cells.dim, points, averages, X, own, error));
+    RETURN_IF_ERROR(contact_rest_heights(input->cells.dim, &facing, &facing_averages, X, other, error));
+    contact_between_curve(contact, own, other);
     return STATUS_OK;
 }
 

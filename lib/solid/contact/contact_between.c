@@ -341,6 +341,33 @@ static bool begin(struct contact *contact, bool far)
     return any;
 }
 
+/* The height of the boundary at the closest place, by the heights at the points of its facet: quadratic
+ * between the corners, where it is 0. At the points the products of two weights add up to 1/6, 3D: 1/4. */
+static double height_there(const struct contact *contact, const struct rigid_contact *closest,
+                           const double *height)
+{
+    int points = contact->between->per_facet;
+    double mean = 0.0, products = 0.0;
+    for (int k = 0; k < points; k++) {
+        mean += height[closest->facet * points + k] / points;
+    }
+    for (int k = 0; k < contact->dim; k++) {
+        products += 0.5 * closest->weight[k] * (1.0 - closest->weight[k]);
+    }
+    return mean * products * (contact->dim == 2 ? 6.0 : 4.0);
+}
+
+void contact_between_curve(struct contact *contact, const double *own, const double *other)
+{
+    struct contact_between *between = contact->between;
+    for (int64_t p = 0; p < contact->count; p++) {
+        struct rigid_contact closest = find_place(contact, p, contact->points->normal + p * contact->dim,
+                                                  reach_of(contact, p), &between->view[p].free_way);
+        double height = own[p] + (closest.found ? height_there(contact, &closest, other) : 0.0);
+        between->begin[p] = closest.found ? fmin(height, closest.gap) : height;
+    }
+}
+
 static enum status allocate(struct contact *contact, int64_t values, struct error *error)
 {
     struct contact_between *between = contact->between;

@@ -8,9 +8,9 @@
  *
  * acts on the point, and - M_b t_p on the corners. These are minus the gradient of the energy (contact.h), so
  * their sum is zero. They have a moment where lambda_p is not along n, since the line of t_p goes through y_p
- * and q. In a crease of the opposite facets t_p does not jump where the closest facet changes. Points are not
- * raised from the chords of a curved boundary. A point that starts behind a facet, as a chord may, has its
- * gap measured from there.
+ * and q. In a crease of the opposite facets t_p does not jump where the closest facet changes. Where two
+ * curved boundaries face each other, gaps are those of the boundaries, not of their chords
+ * (contact_between_curve). A point that starts behind a facet has its gap measured from there.
  *
  * Where a boundary touches itself, only one of two facets that face each other has points that press
  * (opposite_leads); the points of the other are led. Augmentations leave out points that are led. */
@@ -35,7 +35,8 @@ struct contact_between {
                           parameter */
     double mean_width; /* of the facets that have points, m */
     int32_t *part;     /* points: the body of each */
-    double *begin;     /* points: the gap at rest where it is negative, else 0, m */
+    double *begin;     /* points: the gap of the facets where that of the boundaries is 0, m; less where it is
+                          less at rest */
                        /* The state. */
     double *before;    /* values: u of the last accepted step, m */
     double way;        /* sum over all steps of the bounds of the relative motion, m */
@@ -58,6 +59,10 @@ MUST_CHECK enum status contact_between_build(const struct boundary_averages *poi
                                              int64_t node_count, int per_facet, struct opposite *opposite,
                                              const int32_t *part, int sign, double stiffness, bool far,
                                              struct contact *contact, bool *any, struct error *error);
+
+/* Let gaps be those of the boundaries: own[points] and other[points of the opposite facets] are their heights
+ * above the facets (contact_rest_heights), m. */
+void contact_between_curve(struct contact *contact, const double *own, const double *other);
 
 /* Called by the functions of contact.h; these do nothing if there is a rigid surface. */
 void contact_between_free(struct contact *contact);

@@ -153,28 +153,43 @@ static void measure_heights(const struct facets *facets, struct heights *heights
     }
 }
 
-static enum status raise_points(struct contact *contact, const double *X, struct error *error)
+/* rest[points * dim] += the way from the facets' points to the boundary. */
+static enum status raise_points(int dim, const struct boundary_averages *points,
+                                const struct boundary_averages *averages, const double *X, double *rest,
+                                struct error *error)
 {
     enum status status;
-    const struct boundary_averages *averages = contact->averages;
-    int dim = contact->dim;
-    struct facets facets = {dim, contact->points, averages, X, NULL, NULL};
+    struct facets facets = {dim, points, averages, X, NULL, NULL};
     struct heights *heights = NULL;
     TRY(find_normals(&facets, error));
-    TRY(NEW_ARRAY(&heights, contact->count, error));
+    TRY(NEW_ARRAY(&heights, points->count, error));
     measure_heights(&facets, heights);
     for (int64_t a = 0; a < averages->count; a++) {
         for (int64_t s = averages->sample_ptr[a]; s < averages->sample_ptr[a + 1] && !facets.rim[a]; s++) {
             int64_t p = averages->sample_point[s];
-            double height = height_above(&facets, a, contact->points->position + p * dim);
+            double height = height_above(&facets, a, points->position + p * dim);
             double share = 0.5 * dim / heights[p].count * share_of_curve(&heights[p]);
             add_scaled(dim, share * hat_function(&facets, a, s) * height, facets.normal + a * dim,
-                       contact->rest + p * dim);
+                       rest + p * dim);
         }
     }
 done:
     FREE_ALL(facets.normal, facets.rim, heights);
     return status;
+}
+
+enum status contact_rest_heights(int dim, const struct boundary_averages *points,
+                                 const struct boundary_averages *averages, const double *X, double *height,
+                                 struct error *error)
+{
+    bool resolved;
+    NEW_SCRATCH(double, way, points->count * dim, error);
+    RETURN_IF_ERROR(contact_rest_resolved(dim, points, averages, X, &resolved, error));
+    RETURN_IF_ERROR(resolved ? raise_points(dim, points, averages, X, way, error) : STATUS_OK);
+    for (int64_t p = 0; p < points->count; p++) {
+        height[p] = vector_dot(dim, way + p * dim, points->normal + p * dim);
+    }
+    return STATUS_OK;
 }
 
 /* Raise each average to the plane through its node. */
@@ -196,7 +211,7 @@ enum status contact_rest_place(struct contact *contact, const double *X, struct 
         average_take(&average, contact->dim, X, contact->rest + p * contact->dim);
     }
     if (contact->averages != NULL) {
-        return raise_points(contact, X, error);
+        return raise_points(contact->dim, contact->points, contact->averages, X, contact->rest, error);
     }
     raise_averages(contact, X);
     return STATUS_OK;

@@ -14,6 +14,12 @@ MUST_CHECK enum status contact_rest_resolved(int dim, const struct boundary_aver
                                              const struct boundary_averages *averages, const double *X,
                                              bool *resolved, struct error *error);
 
+/* height[points]: by how much the boundary lies above the facets there, along their normals, m; zeros where
+ * they do not resolve it. Arguments as above. */
+MUST_CHECK enum status contact_rest_heights(int dim, const struct boundary_averages *points,
+                                            const struct boundary_averages *averages, const double *X,
+                                            double *height, struct error *error);
+
 /* Set contact->rest. Quadrature points are raised from the chords to the boundary. Boundary averages, which
  * lie below their nodes, are raised to the nodes. Both offsets are zero on flat facets. */
 MUST_CHECK enum status contact_rest_place(struct contact *contact, const double *X, struct error *error);

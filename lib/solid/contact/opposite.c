@@ -1,6 +1,5 @@
 #include "solid/contact/opposite.h"
 
-#include "approx/cells/parts.h"
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "solid/rigid/rigid_private.h"
@@ -12,21 +11,6 @@
  * a width: a body thicker than `near_widths` would have to be flattened to an eighth for that. */
 static const double near_widths = 4.0, behind_share = 1e-3;
 enum { VERTICES_FOR_THREAD = 500 }; /* see chunks_of */
-
-enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error)
-{
-    int corners = cells->dim + 1;
-    int32_t count;
-    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
-    NEW_SCRATCH(bool, seen, cells->node_count, error);
-    RETURN_IF_ERROR(cells_parts(cells, of_cell, &count, error));
-    for (int64_t i = 0; i < cells->count * corners; i++) {
-        int32_t node = cells->node[i], here = of_cell[i / corners];
-        part[node] = !seen[node] || part[node] == here ? here : -1;
-        seen[node] = true;
-    }
-    return STATUS_OK;
-}
 
 /* The rims, and the facet beyond each ridge. Ridges of more than two facets, where bodies meet, are no
  * rims. */
@@ -327,10 +311,12 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
     struct rigid_filter filter = {considers, admits, &search};
     struct rigid_contact closest = rigid_closest_among(&opposite->surface, seeker->x, reach, &filter);
     closest.found = closest.found && closest.gap > -seeker->depth;
-    if (closest.found && closest.gap < 0.0 && !all_face(&search, &closest)) {
-        closest.gap = closest.distance;
+    double least = fmax(0.0, -seeker->began);
+    if (closest.found && closest.gap < least && !all_face(&search, &closest)) {
+        double sign = closest.gap < 0.0 ? -1.0 : 1.0;
+        closest.gap = fmax(least, closest.distance);
         for (int c = 0; c < opposite->surface.dim; c++) {
-            closest.normal[c] = -closest.normal[c];
+            closest.normal[c] *= sign;
         }
     }
     *free_way = search.free_way;

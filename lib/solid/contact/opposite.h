@@ -62,6 +62,3 @@ struct rigid_contact opposite_closest(const struct opposite *opposite, const str
 /* Whether the points of a facet with this normal at rest press on facet f, and not the points of f on it:
  * where a boundary touches itself, each pair of facets must count once. */
 bool opposite_leads(const struct opposite *opposite, const double *rest_normal, int64_t own_facet, int64_t f);
-
-/* The body of each node; part[cells->node_count]. -1 for a node of several bodies, or none. */
-MUST_CHECK enum status opposite_parts(const struct cells *cells, int32_t *part, struct error *error);
