@@ -242,37 +242,6 @@ void contact_between_accept(struct contact *contact)
     }
 }
 
-void contact_between_react(struct contact *contact, double *force)
-{
-    int dim = contact->dim;
-    if (contact->between == NULL) {
-        return;
-    }
-    struct opposite *opposite = &contact->between->opposite;
-    memset(opposite->load, 0, (size_t)(opposite->rows.count * dim) * sizeof *opposite->load);
-    for (int64_t p = 0; p < contact->count; p++) {
-        const struct between_view *here = &contact->between->view[p];
-        double strength = contact->pressure[p] * contact->points->area[p], on_point[3];
-        for (int c = 0; c < dim; c++) {
-            on_point[c] = strength * contact->normal[p * dim + c];
-        }
-        for (int k = 0; k < dim && contact->pressure[p] > 0.0; k++) {
-            int64_t v = opposite->surface.facet[here->facet * dim + k];
-            for (int c = 0; c < dim; c++) {
-                opposite->load[v * dim + c] -= here->weight[k] * on_point[c];
-            }
-        }
-    }
-    friction_load(contact, opposite->load);
-    for (int64_t v = 0; v < opposite->rows.count; v++) {
-        struct average average = average_of_boundary(&opposite->rows, v);
-        const double *load = opposite->load + v * dim;
-        if (load[0] != 0.0 || load[1] != 0.0 || load[dim - 1] != 0.0) {
-            average_spread(&average, dim, load, force);
-        }
-    }
-}
-
 /* The longest motion in a step of a corner of the facets, m. */
 static double longest_corner(const struct opposite *opposite, int dim, const double *step)
 {

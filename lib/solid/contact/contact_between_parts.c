@@ -1,8 +1,9 @@
-/* Contact between facets of the body, for preconditioner and time step: sign, dependence of gaps on the field,
- * bounds of the stiffness. */
+/* Contact between facets of the body: forces on the opposite ones; for preconditioner and time step:
+ * dependence of gaps on the field, bounds of the stiffness. */
 #include "solid/contact/contact_between.h"
 
 #include "base/vector.h"
+#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,6 +16,37 @@ double contact_between_sign(const struct contact *contact)
 bool contact_between_led(const struct contact *contact, int64_t p)
 {
     return contact->between != NULL && contact->between->view[p].led;
+}
+
+void contact_between_react(struct contact *contact, double *force)
+{
+    int dim = contact->dim;
+    if (contact->between == NULL) {
+        return;
+    }
+    struct opposite *opposite = &contact->between->opposite;
+    memset(opposite->load, 0, (size_t)(opposite->rows.count * dim) * sizeof *opposite->load);
+    for (int64_t p = 0; p < contact->count; p++) {
+        const struct between_view *here = &contact->between->view[p];
+        double strength = contact->pressure[p] * contact->points->area[p], on_point[3];
+        for (int c = 0; c < dim; c++) {
+            on_point[c] = strength * contact->normal[p * dim + c];
+        }
+        for (int k = 0; k < dim && contact->pressure[p] > 0.0; k++) {
+            int64_t v = opposite->surface.facet[here->facet * dim + k];
+            for (int c = 0; c < dim; c++) {
+                opposite->load[v * dim + c] -= here->weight[k] * on_point[c];
+            }
+        }
+    }
+    friction_load(contact, opposite->load);
+    for (int64_t v = 0; v < opposite->rows.count; v++) {
+        struct average average = average_of_boundary(&opposite->rows, v);
+        const double *load = opposite->load + v * dim;
+        if (load[0] != 0.0 || load[1] != 0.0 || load[dim - 1] != 0.0) {
+            average_spread(&average, dim, load, force);
+        }
+    }
 }
 
 void contact_between_take(struct contact *contact)
