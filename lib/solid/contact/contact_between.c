@@ -3,7 +3,6 @@
 #include "base/chunks.h"
 #include "base/memory.h"
 #include "base/vector.h"
-#include "solid/contact/friction.h"
 
 #include <math.h>
 #include <stdlib.h>
