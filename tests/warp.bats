@@ -102,7 +102,7 @@ setup_file() {
     [ "$(wc -l < at)" = 1 ]
     nifti change "$BATS_FILE_TMPDIR/scan.nii.gz" scaled.nii scaled
     warp -o scaled.nrrd scaled.nii still.dat
-    cmp <(nifti value scaled.nii 30 31 32) <(warp -o scaled.nii scaled.nrrd still.dat && nifti value scaled.nii 30 31 32)
+    cmp <(nifti value scaled.nii 30 31 32) <(warp -o again.nii scaled.nrrd still.dat && nifti value again.nii 30 31 32)
     nifti segments "$BATS_FILE_TMPDIR/ball.nii.gz" ball.seg.nrrd 2 'Left lung' tumour > shared
     run -0 --separate-stderr warp -i nearest -o moved.seg.nrrd ball.seg.nrrd u.dat
     [[ $stderr == *"overlap in $(cat shared) voxels"* ]]
