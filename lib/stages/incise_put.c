@@ -218,7 +218,8 @@ static void report_result(struct cut_body *whole)
 
 /* ---- fibres ---- */
 
-/* fibre[cells * cols] = those of the old cells of which the cells are parts; NULL: the stream has none. */
+/* fibre[cells * cols] = those of the old cells of which the cells are parts, 0 where these have no point;
+ * NULL: the stream has none. */
 static enum status take_fibres(const struct cut_body *whole, const struct stream *stream, double **fibre,
                                struct error *error)
 {
@@ -229,16 +230,19 @@ static enum status take_fibres(const struct cut_body *whole, const struct stream
     }
     RETURN_IF_ERROR(stream_view(stream, "points.fibre", &of_point, error));
     RETURN_IF_ERROR(stream_view(stream, "points.cell", &cell, error));
+    RETURN_IF_ERROR(section_check_indices(cell, -1, whole->cells.count, "cell", "", error));
     const double *value = of_point->data;
     const int32_t *owner = cell->data;
     int64_t cols = of_point->cols;
-    NEW_SCRATCH(int64_t, first, whole->cells.count, error);
-    for (int64_t p = cell->rows; p-- > 0;) {
-        first[owner[p]] = p;
-    }
+    NEW_SCRATCH(double, of_old, whole->cells.count * cols, error);
     RETURN_IF_ERROR(NEW_ARRAY(fibre, body->cell_count * cols, error));
+    for (int64_t p = cell->rows; p-- > 0;) { /* of several points the first counts */
+        if (owner[p] >= 0) {
+            memcpy(of_old + owner[p] * cols, value + p * cols, (size_t)cols * sizeof *value);
+        }
+    }
     for (int64_t c = 0; c < body->cell_count; c++) {
-        memcpy(*fibre + c * cols, value + first[body->of_cell[c]] * cols, (size_t)cols * sizeof *value);
+        memcpy(*fibre + c * cols, of_old + body->of_cell[c] * cols, (size_t)cols * sizeof *value);
     }
     return STATUS_OK;
 }
