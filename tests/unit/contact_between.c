@@ -72,8 +72,8 @@ static struct pair *make_pair(const struct sample *sample, bool itself, bool *an
         opposite_move(&opposite, u);
     }
     GOOD(contact_between_build(&pair->points, &pair->averages, dim, 2 * pair->nodes, table.per_face,
-                               &opposite, pair->part, itself ? 0 : 1, 1e5, true, &pair->contact, any,
-                               &error));
+                               &opposite, pair->part, itself ? 0 : 1, 1e5, NULL, NULL, true,
+                               &pair->contact, any, &error));
     return pair;
 }
 

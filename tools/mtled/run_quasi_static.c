@@ -3,8 +3,6 @@
 #include "solid/equilibrium/newton.h"
 #include "solid/equilibrium/relaxation.h"
 
-#include <math.h>
-
 static const char slides[] =
     ": friction may not hold the body, which slides then: use a smaller load or a dynamic "
     "scene";
@@ -37,7 +35,7 @@ static void judge(struct run *run, const struct statics_report *report)
     }
     point_text(scene->dim, run->model->system.X + report->worst_node * scene->dim, place);
     if (report->outcome == STATICS_STALLED) {
-        run_contacts_penetrate(run, report->move, INFINITY, false); /* as where nothing can give way */
+        run_contacts_penetrate(run, report->move, 0.0, false); /* as where nothing can give way */
         const char *remedy =
             run->folds.seen                            ? "" /* it is named with the fold */
             : system_has_friction(&run->model->system) ? slides

@@ -64,12 +64,10 @@ enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count
     return number_parts(cells->count, parent, volume, part, count, error);
 }
 
-enum status nodes_parts(const struct cells *cells, int32_t *part, int32_t *count, struct error *error)
+enum status nodes_parts(const struct cells *cells, const int32_t *of_cell, int32_t *part, struct error *error)
 {
     int corners = cells->dim + 1;
-    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
     NEW_SCRATCH(bool, seen, cells->node_count, error);
-    RETURN_IF_ERROR(cells_parts(cells, of_cell, count, error));
     memset(part, -1, (size_t)cells->node_count * sizeof *part);
     for (int64_t i = 0; i < cells->count * corners; i++) {
         int32_t node = cells->node[i], here = of_cell[i / corners];

@@ -22,8 +22,9 @@ int64_t ridges_end(int64_t count, const struct ridge *ridge, int64_t first);
 MUST_CHECK enum status cells_parts(const struct cells *cells, int32_t *part, int32_t *count,
                                    struct error *error);
 
-/* part[cells->node_count]: the connected body of each node; -1: of several bodies, or none. */
-MUST_CHECK enum status nodes_parts(const struct cells *cells, int32_t *part, int32_t *count,
+/* part[cells->node_count]: the body of each node, by those of the cells, of_cell[cells->count]; -1: of
+ * several bodies, or none. */
+MUST_CHECK enum status nodes_parts(const struct cells *cells, const int32_t *of_cell, int32_t *part,
                                    struct error *error);
 
 /* part[boundary->count]: the side of each facet of the boundary. Facets with a common edge (2D: node) are on

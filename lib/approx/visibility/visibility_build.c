@@ -7,10 +7,10 @@
 #include "base/lists.h"
 #include "base/memory.h"
 #include "base/round_off.h"
+#include "base/sets.h"
 #include "base/vector.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum status pair_list_reserve(struct pair_list *pairs, int64_t more, struct error *error)
@@ -117,12 +117,12 @@ static enum status list_shadows(struct visibility *visibility, struct error *err
                                    &visibility->shadow_capacity, error));
         for (int64_t i = 0; i < near.count; i++) {
             int32_t node = near.index[i];
-            const double *x = visibility->cells.x + (int64_t)node * dim;
-            double height = visibility_height_above(dim, facet, x),
-                   tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
             if (are_apart(visibility, facet, node)) {
                 continue;
             }
+            const double *x = visibility->cells.x + (int64_t)node * dim;
+            double height = visibility_height_above(dim, facet, x),
+                   tolerance = COARSE_ROUND_OFF * visibility->grid->radius[node];
             if (height > tolerance || (height >= -tolerance && !is_of_facet(dim, facet, node) &&
                                        vector_distance(dim, facet->middle, x) <= facet->radius)) {
                 visibility->shadow[visibility->shadow_count++] = (struct visibility_shadow){(int32_t)f, node};
@@ -272,6 +272,32 @@ enum status visibility_build_cells(const struct cells *cells, struct visibility 
                         &visibility->star, error);
 }
 
+/* Set part[]: cells with a common face are of one body. */
+static enum status find_bodies(struct visibility *visibility, struct error *error)
+{
+    const struct cells *cells = &visibility->cells;
+    int corners = cells->dim + 1;
+    bool several = false;
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    for (int64_t c = 0; c < cells->count; c++) {
+        of_cell[c] = (int32_t)c;
+    }
+    for (int64_t s = 0; s < cells->count * corners; s++) {
+        if (visibility->across[s] >= 0) {
+            set_join(of_cell, (int32_t)(s / corners), visibility->across[s]);
+        }
+    }
+    for (int64_t c = 0; c < cells->count; c++) {
+        of_cell[c] = set_first(of_cell, (int32_t)c);
+        several = several || of_cell[c] != of_cell[0];
+    }
+    if (!several) {
+        return STATUS_OK;
+    }
+    RETURN_IF_ERROR(NEW_ARRAY(&visibility->part, cells->node_count, error));
+    return nodes_parts(cells, of_cell, visibility->part, error);
+}
+
 enum status visibility_build(const struct cells *cells, const struct point_grid *grid,
                              struct visibility *visibility, struct error *error)
 {
@@ -279,12 +305,7 @@ enum status visibility_build(const struct cells *cells, const struct point_grid 
     FREED_BY(visibility_work_free) struct visibility_work work = {0};
     RETURN_IF_ERROR(visibility_build_cells(cells, visibility, error));
     visibility->grid = grid;
-    int32_t bodies;
-    RETURN_IF_ERROR(NEW_ARRAY(&visibility->part, cells->node_count, error));
-    RETURN_IF_ERROR(nodes_parts(cells, visibility->part, &bodies, error));
-    if (bodies <= 1) {
-        free(array_take(&visibility->part));
-    }
+    RETURN_IF_ERROR(find_bodies(visibility, error));
     RETURN_IF_ERROR(faces_build(cells, true, &faces, error));
     RETURN_IF_ERROR(set_facets(&faces, visibility, error));
     RETURN_IF_ERROR(list_shadows(visibility, error));

@@ -81,39 +81,52 @@ static enum status build_points(const struct assembly *input, const struct facet
     return STATUS_OK;
 }
 
-/* Contact between facets of the body. */
+/* (*own)[] and (*other)[], to be freed: heights of the boundaries above the points of the condition's facets,
+ * and of those that these press on. */
+static enum status find_heights(const struct assembly *input, const struct contact_condition *condition,
+                                const struct boundary_averages *points,
+                                const struct boundary_averages *averages, double **own, double **other,
+                                struct error *error)
+{
+    int dim = input->cells.dim;
+    const double *X = input->face_table.x;
+    FREED_BY(boundary_averages_free) struct boundary_averages facing = {0};
+    FREED_BY(boundary_averages_free) struct boundary_averages facing_averages = {0};
+    RETURN_IF_ERROR(build_points(input, &condition->opposite, true, &facing, &facing_averages, error));
+    RETURN_IF_ERROR(NEW_ARRAY(own, points->count, error));
+    RETURN_IF_ERROR(NEW_ARRAY(other, facing.count, error));
+    RETURN_IF_ERROR(contact_rest_heights(dim, points, averages, X, *own, error));
+    return contact_rest_heights(dim, &facing, &facing_averages, X, *other, error);
+}
+
+/* Contact between facets of the body. A boundary that touches itself is that of its facets. */
 static enum status add_between(const struct assembly *input, const struct contact_condition *condition,
                                const struct boundary_averages *points,
                                const struct boundary_averages *averages, struct contact *contact,
                                struct error *error)
 {
     FREED_BY(opposite_free) struct opposite opposite = {0};
-    bool any;
+    SCRATCH double *own = NULL, *other = NULL;
+    const struct cells *cells = &input->cells;
+    bool any, itself = condition->facets.facet == condition->opposite.facet;
     int32_t bodies;
-    bool itself = condition->facets.facet == condition->opposite.facet;
-    NEW_SCRATCH(int32_t, part, input->cells.node_count, error);
-    NEW_SCRATCH(double, own, points->count, error);
-    RETURN_IF_ERROR(nodes_parts(&input->cells, part, &bodies, error));
+    NEW_SCRATCH(int32_t, of_cell, cells->count, error);
+    NEW_SCRATCH(int32_t, part, cells->node_count, error);
+    RETURN_IF_ERROR(cells_parts(cells, of_cell, &bodies, error));
+    RETURN_IF_ERROR(nodes_parts(cells, of_cell, part, error));
+    if (!itself) {
+        RETURN_IF_ERROR(find_heights(input, condition, points, averages, &own, &other, error));
+    }
     RETURN_IF_ERROR(opposite_build(&input->face_table, &condition->opposite, part, itself, &opposite, error));
-    RETURN_IF_ERROR(contact_between_build(
-        points, averages, input->cells.dim, input->cells.node_count, input->face_table.per_face, &opposite,
-        part, itself ? 0 : condition->sign, condition->stiffness, !condition->whole, contact, &any, error));
+    RETURN_IF_ERROR(contact_between_build(points, averages, cells->dim, cells->node_count,
+                                          input->face_table.per_face, &opposite, part,
+                                          itself ? 0 : condition->sign, condition->stiffness, own, other,
+                                          !condition->whole, contact, &any, error));
     if (!any && !condition->whole) {
         return fail(error, STATUS_INPUT,
                     "%s: no facet faces another one at rest: name groups that face each other",
                     condition->where);
     }
-    if (itself) {
-        return STATUS_OK;
-    }
-    FREED_BY(boundary_averages_free) struct boundary_averages facing = {0};
-    FREED_BY(boundary_averages_free) struct boundary_averages facing_averages = {0};
-    RETURN_IF_ERROR(build_points(input, &condition->opposite, true, &facing, &facing_averages, error));
-    NEW_SCRATCH(double, other, facing.count, error);
-    const double *X = input->face_table.x;
-    RETURN_IF_ERROR(contact_rest_heights(input->cells.dim, points, averages, X, own, error));
-    RETURN_IF_ERROR(contact_rest_heights(input->cells.dim, &facing, &facing_averages, X, other, error));
-    contact_between_curve(contact, own, other);
     return STATUS_OK;
 }
 

@@ -289,26 +289,6 @@ static double longest_row(const struct boundary_averages *rows)
     return longest;
 }
 
-/* Set begin[]: the negative gaps at which points start behind an opposite facet, as chords of a curved
- * boundary may. Returns whether any facet faces any point; with `far`, at any distance. */
-static bool begin(struct contact *contact, bool far)
-{
-    struct contact_between *between = contact->between;
-    int dim = contact->dim;
-    bool any = false;
-    for (int64_t p = 0; p < contact->count; p++) {
-        memcpy(contact->view[p].sought, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
-    }
-    for (int64_t p = 0; p < contact->count; p++) {
-        double reach = far && !any ? INFINITY : reach_of(contact, p);
-        struct rigid_contact closest =
-            find_place(contact, p, contact->points->normal + p * dim, reach, &between->view[p].free_way);
-        between->begin[p] = closest.found ? fmin(0.0, closest.gap) : 0.0;
-        any = any || closest.found;
-    }
-    return any;
-}
-
 /* The height of the boundary at the closest place, by the heights at the points of its facet: quadratic
  * between the corners, where it is 0. At the points the products of two weights add up to 1/6, 3D: 1/4. */
 static double height_there(const struct contact *contact, const struct rigid_contact *closest,
@@ -325,15 +305,28 @@ static double height_there(const struct contact *contact, const struct rigid_con
     return mean * products * (contact->dim == 2 ? 6.0 : 4.0);
 }
 
-void contact_between_curve(struct contact *contact, const double *own, const double *other)
+/* Set begin[]: the heights of both boundaries above their facets (NULL: none), and less where a point starts
+ * behind. Returns whether any facet faces any point; with `far`, at any distance. */
+static bool begin(struct contact *contact, const double *own, const double *other, bool far)
 {
     struct contact_between *between = contact->between;
+    int dim = contact->dim;
+    bool any = false;
     for (int64_t p = 0; p < contact->count; p++) {
-        struct rigid_contact closest = find_place(contact, p, contact->points->normal + p * contact->dim,
-                                                  reach_of(contact, p), &between->view[p].free_way);
-        double height = own[p] + (closest.found ? height_there(contact, &closest, other) : 0.0);
-        between->begin[p] = closest.found ? fmin(height, closest.gap) : height;
+        memcpy(contact->view[p].sought, contact->rest + p * dim, (size_t)dim * sizeof *contact->rest);
     }
+    for (int64_t p = 0; p < contact->count; p++) {
+        double reach = far && !any ? INFINITY : reach_of(contact, p), height = own != NULL ? own[p] : 0.0;
+        struct rigid_contact closest =
+            find_place(contact, p, contact->points->normal + p * dim, reach, &between->view[p].free_way);
+        any = any || closest.found;
+        if (closest.found && closest.distance < reach_of(contact, p)) {
+            height += other != NULL ? height_there(contact, &closest, other) : 0.0;
+            height = fmin(height, closest.gap);
+        }
+        between->begin[p] = height;
+    }
+    return any;
 }
 
 static enum status allocate(struct contact *contact, int64_t values, struct error *error)
@@ -355,8 +348,8 @@ static enum status allocate(struct contact *contact, int64_t values, struct erro
 enum status contact_between_build(const struct boundary_averages *points,
                                   const struct boundary_averages *averages, int dim, int64_t node_count,
                                   int per_facet, struct opposite *opposite, const int32_t *part, int sign,
-                                  double stiffness, bool far, struct contact *contact, bool *any,
-                                  struct error *error)
+                                  double stiffness, const double *own, const double *other, bool far,
+                                  struct contact *contact, bool *any, struct error *error)
 {
     enum status status;
     *contact = (struct contact){.dim = dim, .count = points->count, .points = points, .averages = averages};
@@ -382,7 +375,7 @@ enum status contact_between_build(const struct boundary_averages *points,
         between->mean_width += contact_width(contact, p) / (double)contact->count;
     }
     memcpy(contact->rest, points->position, (size_t)(contact->count * dim) * sizeof *contact->rest);
-    *any = begin(contact, far);
+    *any = begin(contact, own, other, far);
 done:
     opposite_free(opposite);
     return status;

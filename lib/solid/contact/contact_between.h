@@ -10,7 +10,7 @@
  * their sum is zero. They have a moment where lambda_p is not along n, since the line of t_p goes through y_p
  * and q. In a crease of the opposite facets t_p does not jump where the closest facet changes. Where two
  * curved boundaries face each other, gaps are those of the boundaries, not of their chords
- * (contact_between_curve). A point that starts behind a facet has its gap measured from there.
+ * (contact_rest.h). A point that starts behind a facet has its gap measured from there.
  *
  * Where a boundary touches itself, only one of two facets that face each other has points that press
  * (opposite_leads); the points of the other are led. Augmentations leave out points that are led. */
@@ -51,18 +51,16 @@ struct contact_between {
 };
 
 /* As contact_build. Takes over `opposite`, which becomes empty, also on failure. The points are `per_facet`
- * on each facet, placed as its corners are; part[node_count]: the body of each node; sign: as above. *any
- * receives whether at rest some facet faces some point; `far`: also one that is too far away to touch soon.
- */
+ * on each facet, placed as its corners are; part[node_count]: the body of each node; sign: as above.
+ * own[points] and other[points of the opposite facets]: heights of the boundaries above the facets
+ * (contact_rest_heights), m; NULL: none. *any receives whether at rest some facet faces some point; `far`:
+ * also one that is too far away to touch soon. */
 MUST_CHECK enum status contact_between_build(const struct boundary_averages *points,
                                              const struct boundary_averages *averages, int dim,
                                              int64_t node_count, int per_facet, struct opposite *opposite,
-                                             const int32_t *part, int sign, double stiffness, bool far,
+                                             const int32_t *part, int sign, double stiffness,
+                                             const double *own, const double *other, bool far,
                                              struct contact *contact, bool *any, struct error *error);
-
-/* Let gaps be those of the boundaries: own[points] and other[points of the opposite facets] are their heights
- * above the facets (contact_rest_heights), m. */
-void contact_between_curve(struct contact *contact, const double *own, const double *other);
 
 /* Called by the functions of contact.h; these do nothing if there is a rigid surface. */
 void contact_between_free(struct contact *contact);

@@ -208,19 +208,20 @@ static bool through_body(const struct opposite *opposite, const struct seeker *s
            point_behind * point_behind > least2;
 }
 
-/* Whether facet f faces the point: from a right angle on if it is of another body, so that one which goes
- * round a corner of it begins to press without a jump, or if the point pressed at the last step, so that it
- * does not go in and out at the limit. *beyond: by how much its cosine lacks that, negative if it faces the
- * point. */
-static bool faces(const struct search *search, int64_t f, double *beyond)
+/* Cosine of the normals of facet f and of the point's, -1 where they are opposed. */
+static double cosine_to(const struct search *search, int64_t f)
 {
-    const struct opposite *opposite = search->opposite;
-    const struct seeker *seeker = search->seeker;
-    bool early = opposite->part[f] != seeker->part || seeker->last_u == NULL;
-    int dim = opposite->surface.dim;
-    double cosine = vector_dot(dim, opposite->surface.normal + f * dim, seeker->normal);
-    *beyond = cosine + (early ? 0.0 : SAME_DIRECTION);
-    return *beyond < 0.0;
+    int dim = search->opposite->surface.dim;
+    return vector_dot(dim, search->opposite->surface.normal + f * dim, search->seeker->normal);
+}
+
+/* A facet faces the point below this cosine: of a right angle if it is of another body, so that one which
+ * goes round a corner of it begins to press without a jump, or if the point pressed at the last step, so that
+ * it does not go in and out at the limit. */
+static double facing_cosine(const struct search *search, int64_t f)
+{
+    bool early = search->opposite->part[f] != search->seeker->part || search->seeker->last_u == NULL;
+    return early ? 0.0 : -SAME_DIRECTION;
 }
 
 /* Admit facets that are not turned away from the point. For those that do not face it, bound the motion
@@ -229,17 +230,15 @@ static bool faces(const struct search *search, int64_t f, double *beyond)
 static bool considers(void *context, int64_t f)
 {
     struct search *search = context;
-    const struct opposite *opposite = search->opposite;
-    const struct seeker *seeker = search->seeker;
-    int dim = opposite->surface.dim;
-    double beyond, width = fmin(opposite->width[f], seeker->width);
-    if (through_body(opposite, seeker, f)) {
+    double cosine = cosine_to(search, f), beyond = cosine - facing_cosine(search, f);
+    if (through_body(search->opposite, search->seeker, f)) {
         return false;
     }
-    if (!faces(search, f, &beyond)) {
+    if (beyond >= 0.0) {
+        double width = fmin(search->opposite->width[f], search->seeker->width);
         search->free_way = fmin(search->free_way, width / 3.0 * beyond);
     }
-    return vector_dot(dim, opposite->surface.normal + f * dim, seeker->normal) < 0.0;
+    return cosine < 0.0;
 }
 
 /* Whether facet f and the point's have a corner in common. */
@@ -292,12 +291,11 @@ static bool all_face(const struct search *search, const struct rigid_contact *cl
 {
     const struct opposite *opposite = search->opposite;
     int dim = opposite->surface.dim;
-    double ignored;
-    bool all = faces(search, closest->facet, &ignored);
+    bool all = cosine_to(search, closest->facet) < facing_cosine(search, closest->facet);
     for (int k = 0; k < dim; k++) {
         int64_t beyond = opposite->across[closest->facet * dim + k];
         if (closest->weight[(k + dim - 1) % dim] == 0.0 && beyond >= 0) {
-            all = all && faces(search, beyond / dim, &ignored) &&
+            all = all && cosine_to(search, beyond / dim) < facing_cosine(search, beyond / dim) &&
                   !through_body(opposite, search->seeker, beyond / dim);
         }
     }
