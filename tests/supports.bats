@@ -121,8 +121,17 @@ END
     sed 's/quasi-static/dynamic/; s/^value.*/value = 200/; $ a [output]\nenergy = yes\n[solver]\nend_time = 0.1' ring.scene > moving.scene
     mtled moving.scene table.mts > u.dat
     mts print energy u.dat | awk '{ if ($7 ^ 2 > 1e-6) bad = 1 } END { exit bad || NR < 100 }'
-    for bad in thickness=0 E=-1 nu=0.6 nu=nan thickness= facets=roof; do
-        sed "/^\[membrane/,/^nu/s/^${bad%=*} = .*/${bad/=/ = }/" ring.scene > wrong.scene
+    # Prestress S t alone, pressing with S t / R as it grows: Lame's ring with the springs inside taken as free; and the work of its growth in time.
+    sed 's/^value.*/value = 0/; /^nu = 0.4/a prestress = 300' ring.scene > tense.scene
+    mtled tense.scene table.mts > u.dat
+    paste <(mts print nodes.x u.dat) <(mts print u u.dat) | awk '
+        BEGIN { b = 0.1; k = 1e2 / 0.84 / b ^ 2 * 1.3 / 3000; B = -0.3 / ((1 + k * 0.4 * b) * 400 - 100 + k / b); lame = 1.3 / 3000 * (0.4 * B * 400 * b + B / b) }
+        (r = sqrt($1 ^ 2 + $2 ^ 2)) > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / lame; n++ } END { print sum / n; exit !((sum / n - 1) ^ 2 < 1e-4) }'
+    sed 's/quasi-static/dynamic/; s/^prestress.*/prestress = 1e5/; $ a [output]\nenergy = yes\n[solver]\nend_time = 0.1' tense.scene > moving.scene
+    mtled moving.scene table.mts > u.dat
+    mts print energy u.dat | awk '{ if ($7 ^ 2 > 1e-6) bad = 1 } END { exit bad || NR < 100 || !($5 < 0) }'
+    for bad in prestress=-1 curve=linear thickness=0 E=-1 nu=0.6 nu=nan thickness= facets=roof; do
+        sed "/^\[membrane/,/^nu/s/^${bad%=*} = .*/#/; s/^\[membrane.*/&\n${bad/=/ = }/" ring.scene > wrong.scene
         refused 2 '[membrane skin]: ' mtled wrong.scene table.mts
     done
 }

@@ -86,10 +86,16 @@ tangential = 0.01
 facets = in
 value = 0.03
 END
-relax "$work/ring.scene" "$work/ring.mts" "$work/u.dat"
-row 35 "membrane: a coated ring under inner pressure, radius outside, displacement / Lame's" "$([ ! -s "$work/u.dat" ] && echo nan || paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") |
-    awk 'BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b^2 * 1.3 / 3000; c = 1 + k * 0.4 * b; B = c * 0.03 / (c / a^2 - 1 / b^2 + k / b); A = B / a^2 - 0.03 }
-        { r = sqrt($1^2 + $2^2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)); n++ } END { printf "%.12g\n", sum / n }')" 1 around
+ring() { # INNER PRESSURE, PRESSURE OF THE SKIN'S PRESTRESS: mean displacement outside by Lame's
+    relax "$work/ring.scene" "$work/ring.mts" "$work/u.dat"
+    [ -s "$work/u.dat" ] || { echo nan; return; }
+    paste <(mts print nodes.x "$work/u.dat") <(mts print u "$work/u.dat") | awk -v p="$1" -v q="$2" '
+        BEGIN { a = 0.05; b = 0.1; k = 1e2 / 0.84 / b^2 * 1.3 / 3000; c = 1 + k * 0.4 * b; B = (c * p - q) / (c / a^2 - 1 / b^2 + k / b); A = B / a^2 - p }
+        { r = sqrt($1^2 + $2^2) } r > 0.0999 { sum += ($3 * $1 + $4 * $2) / r / (1.3 / 3000 * (0.4 * A * r + B / r)); n++ } END { printf "%.12g\n", sum / n }'
+}
+row 35 "membrane: a coated ring under inner pressure, radius outside, displacement / Lame's" "$(ring 0.03 0)" 1 around
+sed -i 's/^value = .*/value = 0/; /^nu = 0.4/a prestress = 300' "$work/ring.scene"
+row 35 "membrane: the same under its prestress alone, displacement / Lame's" "$(ring 0 0.3)" 1 around
 
 gmsh -3 -nt 1 -v 0 -setnumber h 0.008 "$(dirname "$0")/../../examples/hard/octant.geo" -o "$work/ball.msh" > /dev/null
 nodes -u m "$work/ball.msh" 2> /dev/null | tag -f 'outer=all without planes without inner' 2> /dev/null | shapefn > "$work/ball.mts" 2> /dev/null

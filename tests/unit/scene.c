@@ -235,8 +235,6 @@ TEST(material_keys)
     fails(HEAD "duration = 1\n" BODY "[solver]\nmethod = relaxation\n", 11, "method: a scene with duration takes newton");
     fails("[scene]\ndim = 2\nanalysis = dynamic\nduration = 1\n" BODY, 4, "duration: not allowed: a dynamic scene");
     fails(HEAD "duration = 1\n" BODY, 0, "[scene]: duration: of no use");
-    fails("[scene]\ndim = 2\nanalysis = dynamic\n" BODY "active = 1\n", 9,
-          "active: not allowed: it belongs to quasi");
     fails(HEAD GUCCIONE "fibre = 0, -0\n", 12, "fibre: has no length: give a direction, as 1, 0, 0");
     fails(HEAD GUCCIONE "fibre = 0, 0, 1\n", 12, "fibre: has 3 components: dim = 2 needs 2");
     fails(HEAD GUCCIONE "fibre = 0, 1\nfibre_plane = 0, 1\n", 13, "fibre_plane: not allowed: in 2D it is");

@@ -23,7 +23,8 @@ enum status model_add_curve(struct model *model, const struct scene_label *label
                                                     : 1.0;
         RETURN_IF_ERROR(fail_in(error, table_read(curve->file, 2, 2, &table, error),
                                 "%s: curve: not smooth, linear or step, and as a file", label->where));
-        RETURN_IF_ERROR(fail_in(error, curve_tabulate(added, table.rows, table.values, end, input->in_time, error),
+        RETURN_IF_ERROR(fail_in(error,
+                                curve_tabulate(added, table.rows, table.values, end, input->in_time, error),
                                 "%s: curve %s", label->where, curve->file));
     }
     *index = (int32_t)input->curve_count++;
@@ -192,6 +193,8 @@ static enum status add_membranes(struct model *model, struct error *error)
         const struct scene_membrane *section = &scene->membranes[i];
         membranes[i] = section->condition;
         membranes[i].where = section->label.where;
+        RETURN_IF_ERROR(
+            model_add_curve(model, &section->label, &section->curve, &membranes[i].law.curve, error));
         RETURN_IF_ERROR(model_facets(model, &section->label, &section->facets, &membranes[i].facets, error));
         input->membrane_count++;
     }

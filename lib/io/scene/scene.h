@@ -51,10 +51,10 @@ struct scene_material {
     double directions[6];            /* of the fibres, as in struct material; zeros: none, or by point */
     struct scene_curve curve;        /* of material.active */
     struct scene_prony prony;
-    const char *fibres; /* NULL, or rows (dim coordinates, direction of the fibres) */
+    const char *fibres;    /* NULL, or rows (dim coordinates, direction of the fibres) */
     bool fibres_of_stream; /* they are those of the stream's points */
-    const char *table;  /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
-    double table_unit;  /* m per unit of the table's coordinates */
+    const char *table; /* NULL, or rows (dim coordinates, E in Pa, nu), one per integration point in order */
+    double table_unit; /* m per unit of the table's coordinates */
 };
 
 /* Conditions, loads and contacts hold the struct that assembly takes of each, as far as the keys tell it:
@@ -108,6 +108,7 @@ struct scene_membrane {
     struct scene_label label;
     struct name_list facets; /* at least one */
     struct membrane_condition condition;
+    struct scene_curve curve; /* of the prestress */
 };
 
 /* The initial state of a dynamic scene. */

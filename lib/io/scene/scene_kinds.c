@@ -127,7 +127,10 @@ static enum status check_support(const struct place *place, struct scene *scene)
 
 static enum status check_membrane(const struct place *place, struct scene *scene)
 {
-    double nu = scene->membranes[scene->membrane_count - 1].condition.poisson_ratio;
+    double nu = scene->membranes[scene->membrane_count - 1].condition.law.poisson_ratio;
+    if (!place_has(place, "prestress")) {
+        RETURN_IF_ERROR(place_forbid(place, "curve", "it is that of prestress, which is not given"));
+    }
     return nu > -1.0 && nu <= .5 ? STATUS_OK
                                  : place_fail(place, "nu", "%.15g is not above -1 and at most 0.5", nu);
 }
@@ -275,10 +278,12 @@ static const struct scene_key support_keys[] = {
 
 static const struct scene_key membrane_keys[] = {
     {"facets", VALUE_NAMES, AT(scene_membrane, facets), .missing = "name the facet groups coated"},
-    {"thickness", VALUE_POSITIVE, AT(scene_membrane, condition.thickness), .missing = "give it in m"},
-    {"E", VALUE_POSITIVE, AT(scene_membrane, condition.youngs_modulus),
+    {"thickness", VALUE_POSITIVE, AT(scene_membrane, condition.law.thickness), .missing = "give it in m"},
+    {"E", VALUE_POSITIVE, AT(scene_membrane, condition.law.youngs_modulus),
      .missing = "give Young's modulus in Pa"},
-    {"nu", VALUE_NUMBER, AT(scene_membrane, condition.poisson_ratio), .missing = "give Poisson's ratio"},
+    {"nu", VALUE_NUMBER, AT(scene_membrane, condition.law.poisson_ratio), .missing = "give Poisson's ratio"},
+    {"prestress", VALUE_NOT_NEGATIVE, AT(scene_membrane, condition.law.prestress)},
+    {"curve", VALUE_CURVE, AT(scene_membrane, curve)},
     {NULL}};
 
 static const struct scene_key initial_keys[] = {

@@ -211,9 +211,6 @@ enum status scene_material_check(const struct place *place, struct scene *scene)
         section->material.density = 1.0;
     }
     const struct law *law = material_laws[section->material.model];
-    if (place_has(place, "active") && scene->analysis == SCENE_DYNAMIC) {
-        return place_fail(place, "active", "not allowed: it belongs to quasi-static scenes");
-    }
     if (scene->analysis == SCENE_QUASI_STATIC && section->prony.terms > 0 && !(scene->duration > 0.0)) {
         return place_fail(place, "prony", "the scene has no time: give duration in [scene], s");
     }

@@ -48,7 +48,7 @@ struct support_condition {
 struct membrane_condition {
     const char *where; /* as of a condition */
     struct facet_set facets;
-    double thickness, youngs_modulus, poisson_ratio; /* m, Pa */
+    struct membrane_law law;
 };
 
 /* Materials: one for each section, or one for each integration point of a section with a table. */

@@ -94,10 +94,10 @@ static enum status add_membrane(const struct assembly *input, const struct membr
 {
     RETURN_IF_ERROR(RESIZE_ARRAY(&system->membranes, system->membrane_count + 1, error));
     struct membrane *added = &system->membranes[system->membrane_count++];
-    return fail_in(error,
-                   membrane_build(&input->face_table, &section->facets, &system->rows, section->thickness,
-                                  section->youngs_modulus, section->poisson_ratio, added, error),
-                   "%s", section->where);
+    return fail_in(
+        error,
+        membrane_build(&input->face_table, &section->facets, &system->rows, &section->law, added, error),
+        "%s", section->where);
 }
 
 enum status assembly_add_supports(const struct assembly *input, struct solid_system *system,

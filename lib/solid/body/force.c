@@ -274,3 +274,47 @@ double body_energy(struct body *body, const double *u)
     }
     return energy;
 }
+
+/* The active energies of one load curve. */
+struct active_sum {
+    int32_t curve;
+    double energy;
+};
+
+static void add_active_energy(const struct body *body, int64_t q, const double F[9], double J, void *context)
+{
+    struct active_sum *sum = context;
+    (void)J;
+    if (body->materials[body->material[q]].active_curve == sum->curve) {
+        sum->energy += body->weight[q] * stress_whole_active_energy(body, q, F);
+    }
+}
+
+static double active_energy_of(struct body *body, int32_t curve)
+{
+    double energy = 0.0;
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (int64_t b = body->share.begin_block; b < body->share.end_block; b++) {
+        struct active_sum sum = {curve, 0.0};
+        body_visit(body, b, b + 1, add_active_energy, &sum);
+        body->blocks[b].energy = sum.energy;
+    }
+    ranks_gather(body->share.ranks, body->blocks, sizeof *body->blocks, body->share.block_first);
+    for (int64_t b = 0; b < body->block_count; b++) {
+        energy += body->blocks[b].energy;
+    }
+    return energy;
+}
+
+void body_active_energy(struct body *body, int64_t count, double *by_factor)
+{
+    for (int32_t curve = 0; curve < count; curve++) {
+        bool acts = false;
+        for (int64_t m = 0; m < body->material_count && !acts; m++) {
+            acts = body->materials[m].active > 0.0 && body->materials[m].active_curve == curve;
+        }
+        if (acts) {
+            by_factor[curve] += active_energy_of(body, curve);
+        }
+    }
+}

@@ -33,18 +33,26 @@ static double active_stress(const struct body *body, const struct material *mate
                                         : 0.0;
 }
 
-double stress_active_energy(const struct body *body, int64_t point, const double F[9])
+double stress_whole_active_energy(const struct body *body, int64_t point, const double F[9])
 {
     const struct material *material = &body->materials[body->material[point]];
-    double T = active_stress(body, material), square = -1.0;
-    if (!(fabs(T) > 0.0)) {
+    double square = -1.0;
+    if (!(fabs(material->active) > 0.0)) {
         return 0.0;
     }
     for (int i = 0; i < 3; i++) {
         double along = vector_dot(3, F + 3 * i, material->fibre);
         square += along * along;
     }
-    return 0.5 * T * square;
+    return 0.5 * material->active * square;
+}
+
+double stress_active_energy(const struct body *body, int64_t point, const double F[9])
+{
+    const struct material *material = &body->materials[body->material[point]];
+    return fabs(material->active) > 0.0
+               ? stress_whole_active_energy(body, point, F) * (*body->load_factors)[material->active_curve]
+               : 0.0;
 }
 
 /* Add T F a (x) a. */

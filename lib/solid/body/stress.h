@@ -16,7 +16,8 @@ void stress_points(const struct body *body, const struct block *block, block_row
 /* Weighted stresses of a block of cells, P on F and T on F_h: see smoothed_cells.h. */
 void stress_cells(const struct body *body, const struct block *block, block_rows P, block_rows T);
 
-/* Energy of the active stress at a point at present, per volume, Pa. */
+/* Energy of the active stress at a point where its curve is 1, and at present, per volume, Pa. */
+double stress_whole_active_energy(const struct body *body, int64_t point, const double F[9]);
 double stress_active_energy(const struct body *body, int64_t point, const double F[9]);
 
 /* Energy (11b) of a cell of volume ratio J, per volume, Pa; 0 at points without cells. */

@@ -82,6 +82,9 @@ static bool evaluate(struct dynamics *d)
         memset(d->loads, 0, (size_t)d->size * sizeof *d->loads);
         system_add_loads(system, d->u, d->loads);
     }
+    if (d->stored != NULL) {
+        energy_of_prestress(system, d->u, d->stored);
+    }
     return deformation.least_jacobian > 0.0;
 }
 

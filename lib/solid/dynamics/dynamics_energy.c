@@ -13,6 +13,9 @@ void dynamics_add_work(struct dynamics *d, const double *velocity, double step, 
     if (d->loads != NULL) {
         work += step * vector_product(d->size, d->loads, velocity);
     }
+    for (int64_t i = 0; d->stored != NULL && i < system->curve_count; i++) {
+        work += d->stored[i] * (factor_to[i] - factor_from[i]);
+    }
     for (int64_t r = 0; r < rows->count; r++) {
         double path = rows->target[r] * (factor_to[rows->curve[r]] - factor_from[rows->curve[r]]);
         work += d->constraint.multiplier[r] * path;

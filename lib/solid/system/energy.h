@@ -48,5 +48,10 @@ double energy_kinetic(const struct solid_system *system, const double *v, const 
 /* Energy of the body and its membranes at u, and of the constraint penalties at system->factor. */
 double energy_internal(struct solid_system *system, const double *u);
 
+/* Whether active stresses or prestresses of membranes act; and by_factor[curve_count] = the derivatives of
+ * energy_internal by the load factors that these are multiplied by, J (2D: J/m), at u, evaluated last. */
+bool energy_has_prestress(const struct solid_system *system);
+void energy_of_prestress(struct solid_system *system, const double *u, double *by_factor);
+
 /* contact_energy of all contacts. */
 double energy_contact(const struct solid_system *system);

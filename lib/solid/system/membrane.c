@@ -114,11 +114,17 @@ static void hold_corner(struct membrane *membrane, int32_t c, int64_t r)
 }
 
 enum status membrane_build(const struct face_table *table, const struct facet_set *set,
-                           const struct constraint_rows *rows, double thickness, double E, double nu,
+                           const struct constraint_rows *rows, const struct membrane_law *law,
                            struct membrane *membrane, struct error *error)
 {
     int dim = table->dim, n = dim - 1;
-    *membrane = (struct membrane){.dim = dim, .facet_count = set->count, .nu = nu, .rows = rows};
+    double nu = law->poisson_ratio, stiffness = law->youngs_modulus / (1.0 - nu * nu);
+    *membrane = (struct membrane){.dim = dim,
+                                  .facet_count = set->count,
+                                  .nu = nu,
+                                  .tension = law->prestress / stiffness,
+                                  .curve = law->curve,
+                                  .rows = rows};
     RETURN_IF_ERROR(boundary_corners_build(table, set, &membrane->corners, error));
     RETURN_IF_ERROR(NEW_ARRAY(&membrane->corner, set->count * dim, error));
     RETURN_IF_ERROR(NEW_ARRAY(&membrane->metric, set->count * n * n, error));
@@ -147,8 +153,7 @@ enum status membrane_build(const struct face_table *table, const struct facet_se
                             edge[k - 1]);
         }
         metric_of(n, dim, edge, membrane->metric + f * n * n);
-        membrane->weight[f] =
-            E * thickness / (1.0 - nu * nu) * invert_metric(n, membrane->metric + f * n * n);
+        membrane->weight[f] = stiffness * law->thickness * invert_metric(n, membrane->metric + f * n * n);
     }
     return STATUS_OK;
 }
@@ -160,10 +165,10 @@ void membrane_free(struct membrane *membrane)
     *membrane = (struct membrane){0};
 }
 
-/* stress[n * n], by the weight: (1 - nu) A E A + nu tr(A E) A, with the strain E = (d . d - D . D) / 2 of the
- * edges d, at rest D, and the inverse metric A of those. Returns the energy by the weight. */
-static double stress_of(int n, double nu, const double *A, const double *metric, const double *rest,
-                        double *stress)
+/* stress[n * n], by the weight: (1 - nu) A E A + nu tr(A E) A + tension A, with the strain E = (d . d - D .
+ * D) / 2 of the edges d, at rest D, and the inverse metric A of those. Returns the energy by the weight. */
+static double stress_of(int n, double nu, double tension, const double *A, const double *metric,
+                        const double *rest, double *stress)
 {
     double strain[4], mixed[4] = {0.0}, trace = 0.0, energy = 0.0;
     for (int i = 0; i < n * n; i++) {
@@ -181,8 +186,9 @@ static double stress_of(int n, double nu, const double *A, const double *metric,
             stress[i] += (1.0 - nu) * mixed[i / n * n + k] * A[k * n + i % n];
         }
         energy += 0.5 * stress[i] * strain[i];
+        stress[i] += tension * A[i];
     }
-    return energy;
+    return energy + tension * trace;
 }
 
 /* Subtract the forces of facet f, whose edges are d, from those on its corners. */
@@ -201,7 +207,8 @@ static void pull_corners(const struct membrane *membrane, int64_t f, double d[2]
     }
 }
 
-double membrane_pull(const struct membrane *membrane, const double *X, const double *u, double *force)
+double membrane_pull(const struct membrane *membrane, const double *X, double factor, const double *u,
+                     double *force)
 {
     int dim = membrane->dim, n = dim - 1;
     double energy = 0.0;
@@ -214,7 +221,8 @@ double membrane_pull(const struct membrane *membrane, const double *X, const dou
             rest[i] = A[i];
         }
         (void)invert_metric(n, rest);
-        energy += membrane->weight[f] * stress_of(n, membrane->nu, A, metric, rest, stress);
+        energy += membrane->weight[f] *
+                  stress_of(n, membrane->nu, factor * membrane->tension, A, metric, rest, stress);
         if (force != NULL) {
             pull_corners(membrane, f, d, stress, force);
         }
@@ -222,15 +230,16 @@ double membrane_pull(const struct membrane *membrane, const double *X, const dou
     return energy;
 }
 
-/* The stiffness between corners is at most the weight times the inverse metric; a corner in the middle of the
- * others, on two edges each, has twice the sum of its own. */
+/* The stiffness between corners is at most the weight, with the prestress, times the inverse metric; a corner
+ * in the middle of the others, on two edges each, has twice the sum of its own. */
 void membrane_add_to_bound(const struct membrane *membrane, double *mass)
 {
     int dim = membrane->dim, n = dim - 1;
     for (int64_t f = 0; f < membrane->facet_count; f++) {
         double stiffness = 0.0;
         for (int i = 0; i < n; i++) {
-            stiffness += 2.0 * membrane->weight[f] * membrane->metric[f * n * n + i * n + i];
+            stiffness += 2.0 * (1.0 + membrane->tension) * membrane->weight[f] *
+                         membrane->metric[f * n * n + i * n + i];
         }
         for (int k = 0; k < dim; k++) {
             struct average average = average_of_boundary(&membrane->corners, membrane->corner[f * dim + k]);

@@ -144,7 +144,8 @@ double system_pull_membranes(const struct solid_system *system, const double *u,
 {
     double energy = 0.0;
     for (int64_t i = 0; i < system->membrane_count; i++) {
-        energy += membrane_pull(&system->membranes[i], system->X, u, force);
+        const struct membrane *membrane = &system->membranes[i];
+        energy += membrane_pull(membrane, system->X, system->factor[membrane->curve], u, force);
     }
     return energy;
 }
