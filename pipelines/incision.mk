@@ -1,16 +1,18 @@
-# make incision: cuts with known answers: a slit and a penny-shaped crack that open, a body cut through beside its parts, a cut that contact closes; 75 random cuts, pairs that cross among them; and a cut that goes on through a liver in five advances
+# make incision: cuts with known answers: a slit and a penny-shaped crack that open, made by incise and in the mesh, a body cut through beside its parts, a cut that contact closes; 100 random cuts, pairs that cross among them; and a cut that goes on through a liver in five advances
 #
 # incision.tsv has a row for each, blades/blades.tsv one for each random cut, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh).
 
 INCISION := $(OUT)/incision
 INCISION_SCRIPTS := pipelines/incision
 INCISION_SIZES := 5 10 20
-INCISION_OPENINGS := $(foreach case,slit penny,$(INCISION_SIZES:%=$(case)-%))
+INCISION_OPENINGS := $(foreach case,slit slit_in_mesh penny penny_in_mesh,$(INCISION_SIZES:%=$(case)-%))
 INCISION_PROGRAMS := $(addprefix $(BUILD)/bin/,cloud nodes tag incise shapefn mtled mts)
 INCISION_LOG = 2> $(@:.dat=.log) || { cat $(@:.dat=.log) >&2; false; }
 # 4 (1 - nu^2) sigma a / E and 8 (1 - nu^2) sigma a / (pi E), a = 10 mm, sigma = E / 10000
 slit.exact := 0.00364
+slit_in_mesh.exact := 0.00364
 penny.exact := 0.0023172960
+penny_in_mesh.exact := 0.0023172960
 
 .PHONY: incision
 incision: $(INCISION)/incision.tsv $(INCISION)/profile.png $(INCISION)/advances.png
@@ -37,14 +39,30 @@ $(INCISION)/penny-%.mts: $(INCISION)/penny-%.msh $(INCISION_SCRIPTS)/disc.awk $(
 	awk -f $(INCISION_SCRIPTS)/disc.awk -v n=$$((8 * $*)) > $(@:.mts=.tsv)
 	nodes -u mm $< | tag -f x0=low:x,0.01% -f y0=low:y,0.01% -f bottom=low:z,0.01% -f top=high:z,0.01% | incise -v -s $(@:.mts=.tsv) -u mm -o $@
 
+# The same cuts as faces of the mesh.
+INCISION_CRACK = gmsh -v 1 -setstring mesh $(abspath $(@D))/whole.msh -setstring cracked $(abspath $@)
+$(INCISION_SIZES:%=$(INCISION)/slit_in_mesh-%.msh): $(INCISION)/slit_in_mesh-%.msh: $(addprefix $(INCISION_SCRIPTS)/,slit.geo crack.geo)
+	@mkdir -p $(@D)
+	gmsh -2 -v 1 -setnumber meshed 1 -setnumber h $$(echo $* | awk '{ print 10 / $$1 }') $< -o $(@D)/whole.msh
+	$(INCISION_CRACK) $(INCISION_SCRIPTS)/crack.geo -parse_and_exit
+$(INCISION_SIZES:%=$(INCISION)/penny_in_mesh-%.msh): $(INCISION)/penny_in_mesh-%.msh: $(addprefix $(INCISION_SCRIPTS)/,penny.geo crack.geo)
+	@mkdir -p $(@D)
+	gmsh -3 -nt 1 -v 1 -setnumber meshed 1 -setnumber h $$(echo $* | awk '{ print 10 / $$1 }') $< -o $(@D)/whole.msh
+	$(INCISION_CRACK) -setnumber across 2 -setnumber open 3 $(INCISION_SCRIPTS)/crack.geo -parse_and_exit
+$(INCISION_SIZES:%=$(INCISION)/slit_in_mesh-%.mts): %.mts: %.msh $(INCISION_PROGRAMS)
+	nodes -u mm $< | tag -f 'front=slit and normal:0,-1,30' -f 'back=slit and normal:0,1,30' -d slit -o $@
+$(INCISION_SIZES:%=$(INCISION)/penny_in_mesh-%.mts): %.mts: %.msh $(INCISION_PROGRAMS)
+	nodes -u mm $< | tag -f x0=low:x,0.01% -f y0=low:y,0.01% -f bottom=low:z,0.01% -f top=high:z,0.01% \
+	    -f 'front=slit and normal:0,0,-1,30' -f 'back=slit and normal:0,0,1,30' -d facets:slit -o $@
+
 $(INCISION)/%.scene: $(INCISION_SCRIPTS)/%.scene
 	@mkdir -p $(@D)
 	cp $< $@
 
-$(INCISION_SIZES:%=$(INCISION)/slit-%.dat): $(INCISION)/slit.scene $(INCISION)/rim.tsv
-$(INCISION_SIZES:%=$(INCISION)/penny-%.dat): $(INCISION)/penny.scene
+$(foreach case,slit slit_in_mesh,$(INCISION_SIZES:%=$(INCISION)/$(case)-%.dat)): $(INCISION)/slit.scene $(INCISION)/rim.tsv
+$(foreach case,penny penny_in_mesh,$(INCISION_SIZES:%=$(INCISION)/$(case)-%.dat)): $(INCISION)/penny.scene
 $(INCISION_OPENINGS:%=$(INCISION)/%.dat): %.dat: %.mts
-	mtled -v $(@D)/$(firstword $(subst -, ,$(notdir $*))).scene $< > $@ $(INCISION_LOG)
+	mtled -v $(@D)/$(firstword $(subst _, ,$(subst -, ,$(notdir $*)))).scene $< > $@ $(INCISION_LOG)
 
 # The faces of the cut are the last two groups.
 $(INCISION_OPENINGS:%=$(INCISION)/%.row): %.row: %.dat %.mts $(INCISION_SCRIPTS)/opening.awk
@@ -59,7 +77,7 @@ $(INCISION)/parts.row: $(INCISION_SCRIPTS)/parts.sh $(INCISION_PROGRAMS)
 
 $(INCISION)/blades.row: $(INCISION_SCRIPTS)/blades.sh $(INCISION_SCRIPTS)/blade.awk $(INCISION_PROGRAMS) $(BUILD)/bin/voxels
 	@mkdir -p $(@D)/blades
-	bash $< $(@D)/blades $(<D) examples/liver > $@
+	bash $< $(@D)/blades $(<D) examples > $@
 
 $(INCISION)/incision.tsv: $(INCISION_OPENINGS:%=$(INCISION)/%.row) $(INCISION)/parts.row $(INCISION)/blades.row pipelines/incision.mk
 	(printf 'case\tnodes_a_radius\tnodes\tquantity\tvalue\treference\terror\torder\n'; cat $(filter %.row,$^) | awk -F '\t' -v OFS='\t' '{ \

@@ -230,6 +230,15 @@ END
     [ "$(volumes touching.mts)" = "2 1" ]
 }
 
+@test "a mesh with a slit, whose faces have a name, is read as such" {
+    gmsh -v 1 -2 -setnumber meshed 1 -setnumber h 4 "$top/pipelines/incision/slit.geo" -o "$PWD/whole.msh"
+    gmsh -v 1 -setstring mesh "$PWD/whole.msh" -setstring cracked "$PWD/slit.msh" "$top/pipelines/incision/crack.geo" -parse_and_exit
+    nodes -u mm -t slit.msh > slit.mts 2> said
+    grep -qx "nodes: nodes at the same place, on named facets of one body: 4 pairs: it has a slit there" said
+    mts check slit.mts
+    [ "$(mts print facets.set slit.mts | grep -c '^0$')" = 10 ]
+}
+
 @test "nodes that hang on a facet of another cell are refused by place; between bodies they are noted" {
     printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 1 0.5 0\n' > hang.msh
     printf '6 2 0 0\n7 2 0.5 0\n8 2 1 0\n$EndNodes\n$Elements\n3\n' >> hang.msh

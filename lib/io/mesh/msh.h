@@ -109,7 +109,7 @@ struct mesh_options {
  * one entity all over the boundary get no name. A cell in two groups belongs to the one with the lowest tag;
  * a repeated cell counts once; cells in no group are the region 'body' if there is no other region, else
  * 'unnamed'. STATUS_INPUT for no cells, a surface in space, cells without volume or overlapping cells,
- * coincident nodes of one body, an unknown region, and two node sets with one name. On failure *mesh is
+ * coincident nodes of one body but on facets with a group, an unknown region, and two node sets with one name. On failure *mesh is
  * empty. */
 MUST_CHECK enum status mesh_build(struct mesh *mesh, const struct msh *msh,
                                   const struct mesh_options *options, struct error *error);

@@ -51,8 +51,8 @@ MUST_CHECK enum status mesh_pick_regions(struct mesh_draft *draft);
 MUST_CHECK enum status mesh_build_nodes(struct mesh_draft *draft);
 MUST_CHECK enum status mesh_build_cells(struct mesh_draft *draft);
 
-/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them; else two bodies touch,
- * which is noted. */
+/* Two nodes of the mesh within 1e-12 of its extent are an error if cells connect them, unless one is on a facet
+ * that has a group: of a slit; else two bodies touch. Both are noted. */
 MUST_CHECK enum status mesh_check_coincident(struct mesh_draft *draft);
 
 /* Make facets and node sets from the elements of lower dimension. */

@@ -16,9 +16,26 @@ static enum status fail_coincident(const struct mesh_draft *draft, int32_t a, in
             tags[draft->node_of[n] == (a > b ? a : b)] = draft->msh->nodes[n].tag;
         }
     }
-    return fail(draft->error, STATUS_INPUT,
-                "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh)",
-                (long long)tags[0], (long long)tags[1]);
+    return fail(
+        draft->error, STATUS_INPUT,
+        "nodes %lld and %lld are at the same place, in one body: merge them (Coherence Mesh), or name "
+        "the facets of a slit",
+        (long long)tags[0], (long long)tags[1]);
+}
+
+/* slit[node_count]: whether a node is on a facet that has a group. */
+static void mark_slits(const struct mesh_draft *draft, bool *slit)
+{
+    const struct msh *msh = draft->msh;
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        bool is_named = msh->member_ptr[e + 1] > msh->member_ptr[e];
+        for (int k = 0; is_named && k < mesh_corners(draft, e); k++) {
+            int32_t node = draft->node_of[msh->node_idx[msh->elements[e].first + k]];
+            if (node >= 0 && mesh_element_dim(draft, e) == draft->mesh->dim - 1) {
+                slit[node] = true;
+            }
+        }
+    }
 }
 
 /* Nodes at one place coincide in any projection: sort them along a direction with which no lattice is
@@ -31,9 +48,12 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
     double tolerance = ROUND_OFF * box_side(&box);
     SCRATCH struct placed *order = NULL;
     SCRATCH int32_t *body = NULL;
-    int64_t touching = 0;
+    SCRATCH bool *slit = NULL;
+    int64_t touching = 0, doubled = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&body, mesh->node_count, draft->error));
     set_join_cells(mesh->node_count, mesh->cell_count, mesh->dim + 1, mesh->cells, body);
+    RETURN_IF_ERROR(NEW_ARRAY(&slit, mesh->node_count, draft->error));
+    mark_slits(draft, slit);
     RETURN_IF_ERROR(NEW_ARRAY(&order, mesh->node_count, draft->error));
     for (int64_t n = 0; n < mesh->node_count; n++) {
         order[n].item = n;
@@ -52,10 +72,19 @@ enum status mesh_check_coincident(struct mesh_draft *draft)
             }
             if (farthest <= tolerance && set_first(body, a) != set_first(body, b)) {
                 touching++;
+            } else if (farthest <= tolerance && (slit[a] || slit[b])) {
+                doubled++;
             } else if (farthest <= tolerance) {
                 RETURN_IF_ERROR(fail_coincident(draft, a, b));
             }
         }
+    }
+    if (doubled > 0) {
+        RETURN_IF_ERROR(
+            mesh_add_note(draft,
+                          "nodes at the same place, on named facets of one body: %lld pairs: it has "
+                          "a slit there",
+                          (long long)doubled));
     }
     if (touching > 0) {
         RETURN_IF_ERROR(mesh_add_note(
