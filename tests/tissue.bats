@@ -180,7 +180,8 @@ brain='model = ogden\nmu = 842\nalpha = -4.7\nkappa = 8.42e7\nprony = .45 .5, .3
     mts check table.mts
     paste <(mts print points.x table.mts) <(mts print points.fibre table.mts) | awk '
         { a = (60 - 900 * $1) * 3.14159265358979 / 180; off = $4^2 + ($5 - cos(a))^2 + ($6 - sin(a))^2; bad += off > 1e-24; n++ } END { exit bad || n < 100 }'
-    tovtk -t table.mts | grep -q 'Name="points.fibre" NumberOfComponents="3"'
+    tovtk -t table.mts > table.vtu
+    grep -q 'Name="points.fibre" NumberOfComponents="3"' table.vtu
     gmsh -3 -v 1 -setnumber h 2 "$top/examples/hard/ventricle.geo" -o heart.msh
     nodes -u mm heart.msh 2> note | fibres --from inside,90 --to 'all without inside without base,-90' --axis 0,0,1 2>> note | shapefn > heart.mts 2>> note
     # Land et al. (2015): ellipsoids of radii 7 + 3 t and 17 + 3 t mm, the angle 90 - 180 t; e and f along and around them.
