@@ -1,6 +1,6 @@
 # make incision: cuts with known answers: a slit and a penny-shaped crack that open, made by incise and in the mesh, a body cut through beside its parts, a cut that contact closes; 100 random cuts, pairs that cross among them; and a cut that goes on through a liver in five advances
 #
-# incision.tsv has a row for each, blades/blades.tsv one for each random cut, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh).
+# incision.tsv has a row for each, blades/blades.tsv one for each random cut, profile.png the openings; advances.png is a row of pictures (examples/liver/cut.sh), retraction.png has fifteen frames of faces drawn apart.
 
 INCISION := $(OUT)/incision
 INCISION_SCRIPTS := pipelines/incision
@@ -15,7 +15,7 @@ penny.exact := 0.0023172960
 penny_in_mesh.exact := 0.0023172960
 
 .PHONY: incision
-incision: $(INCISION)/incision.tsv $(INCISION)/profile.png $(INCISION)/advances.png
+incision: $(addprefix $(INCISION)/,incision.tsv profile.png advances.png retraction.png)
 	@awk -F '\t' '{ printf "%-22s %5s %6s %-38s %11s %11s %8s %6s\n", $$1, $$2, $$3, $$4, $$5, $$6, $$7, $$8 }' $<
 	$(PICTURES)
 
@@ -90,7 +90,22 @@ $(INCISION)/advances/u5.dat: $(addprefix examples/liver/,cut.sh cut.scene labels
 	@mkdir -p $(@D)
 	examples/liver/cut.sh $(@D)
 
+# A liver, cut from above, whose faces are drawn apart.
+$(INCISION)/retract.mts: $(addprefix examples/liver/,labels.nii.gz labels.tsv) $(INCISION_PROGRAMS) $(BUILD)/bin/voxels
+	@mkdir -p $(@D)
+	printf '%s\n' '-45 -200 110 -45 200 110 -45 200 300' '-45 -200 110 -45 200 300 -45 -200 300' > $(@D)/retract.tsv
+	voxels -h 12mm -l examples/liver/labels.tsv examples/liver/labels.nii.gz | \
+	    tag -u mm -d 'liver|outside' -f 'held=ball:30,-50,140,60 and normal:0,-1,0,50 without liver|kidney' | \
+	    incise -v -s $(@D)/retract.tsv -u mm -n knife | \
+	    tag -u mm -f 'left=knife|back and ball:-45,85,140,25' -f 'right=knife|front and ball:-45,85,140,25' | shapefn -o $@
+$(INCISION)/retract.dat: $(INCISION)/retract.mts examples/liver/retract.scene
+	mtled -v -o $@ examples/liver/retract.scene $<
+
 # Without ImageMagick the last picture alone.
+$(INCISION)/retraction.png: $(INCISION)/retract.dat pipelines/render.py
+	for i in $$(seq 15); do pipelines/render.py --view=-0.3,1,0.25 --most 12 --frame $$i --title "$$i" $< $(@D)/retract-$$i.png || exit; done
+	if command -v montage > /dev/null; then montage $(patsubst %,$(@D)/retract-%.png,$(shell seq 15)) -crop 640x610+30+0 +repage -tile 5x3 -geometry 320x305+0+0 $@; \
+	    else cp $(@D)/retract-15.png $@; fi
 $(INCISION)/advances.png: $(INCISION)/advances/u5.dat pipelines/render.py
 	for i in 1 2 3 4 5; do pipelines/render.py --view=-0.3,1,0.25 --title "advance $$i" $(<D)/u$$i.dat $(<D)/$$i.png || exit; done
 	if command -v convert > /dev/null; then convert $(foreach i,1 2 3 4 5,\( $(<D)/$(i).png -crop 640x610+30+0 +repage \)) +append -resize 50% $@; else cp $(<D)/5.png $@; fi

@@ -7,7 +7,7 @@ README_PICTURES := brain2d/section brain2d/difference table1/surface speed-error
     brain2d-convergence/brain2d-convergence
 # Others, and what they are called there.
 NEURO_PICTURES := slices=slices resection/slices=resection
-LIVER_PICTURES := profile=openings advances=cut
+LIVER_PICTURES := profile=openings advances=cut retraction=retraction
 RESULTS := pipelines/results
 # Tables of the studies, and what they are called there.
 RESULT_TABLES := brain2d/compare=brain2d brain2d-convergence/convergence=brain2d-convergence brain3d/compare=brain3d brain3d/meshes=brain3d-meshes table1/beside=table1 speed-error/speed-error=speed-error \

@@ -245,13 +245,17 @@ def arguments():
     parser.add_argument("--rim", action="append", default=[], metavar="FACETS", help="a group of facets whose edge is drawn")
     parser.add_argument("--mark", action="append", default=[], type=numbers(3), metavar="X,Y,Z", help="a place, mm, that gets a cross")
     parser.add_argument("--rigid", action="append", default=[], metavar="TABLE", help="triangles, mm, to be drawn on the cut")
+    parser.add_argument("--frame", type=int, metavar="N", help="the body in that frame")
     parser.add_argument("--title", default="before (blue) and after")
     parser.add_argument("--cut-title", default="cut")
     return parser.parse_args()
 
 
 def draw(given):
-    body = Body(mtled.read(given.stream))
+    stream = mtled.read(given.stream)
+    if given.frame is not None:
+        stream["u"] = stream[f"u.frame.{given.frame}"]
+    body = Body(stream)
     pathlib.Path(given.picture).touch()  # can it be written?
     step = rounded((given.most or body.length.max()) / 4)
     colours = lookup(given.most or step * np.ceil(body.length.max() / step))
