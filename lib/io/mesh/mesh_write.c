@@ -157,9 +157,8 @@ static const char *const face_names[2][4] = {{"S2", "S3", "S1", ""}, {"S3", "S4"
 
 static enum status print_surfaces(FILE *file, const struct mesh_view *mesh, struct error *error)
 {
-    struct msh_overlap overlap;
     FREED_BY(msh_faces_free) struct msh_faces faces = {0};
-    RETURN_IF_ERROR(msh_faces_make(&faces, mesh->dim, mesh->cell_count, mesh->cells, &overlap, error));
+    RETURN_IF_ERROR(msh_faces_make(&faces, mesh->dim, mesh->cell_count, mesh->cells, error));
     for (int32_t g = 0; g < mesh->facet_sets.count; g++) {
         fprintf(file, "*SURFACE, TYPE=ELEMENT, NAME=%s\n", mesh->facet_sets.name[g]);
         for (int64_t f = 0; f < mesh->facet_count; f++) {

@@ -17,7 +17,7 @@ struct msh_group {
     char *name; /* without blanks, commas and quotes; "group_TAG" where the file gives none; unique within its
                    dimension */
     int64_t element_count; /* 0 for a group with a name but no elements */
-    char *written; /* the name in the file if it differs: in `name` blanks, commas and quotes are '_' */
+    char *written;         /* the name in the file: in `name` blanks, commas and quotes are '_'; NULL: none */
 };
 
 struct msh_node {
@@ -29,19 +29,19 @@ struct msh_node {
 struct msh_element {
     int64_t tag;         /* distinct */
     int64_t first;       /* of its nodes in node_idx */
-    int64_t key, entity; /* while it is read: its list of groups, and its entity (msh_private.h); 0: none */
+    int64_t key, entity; /* while it is read: its group and its entity (msh_key); 0: none */
+    int32_t group;       /* index into groups, -1: none */
     int8_t type;         /* gmsh's number of the type, one that msh_type knows */
 };
 
-/* A mesh file as it is: elements of all dimensions, in the order of the file. */
+/* A mesh file as it is: elements of all dimensions, in the order of the file. What is in several groups is an
+ * element of its own for each. */
 struct msh {
     int64_t node_count;
     struct msh_node *nodes; /* node_count */
     int64_t element_count;
     struct msh_element *elements; /* element_count */
     int32_t *node_idx;            /* the nodes of each element, in gmsh's order: indices into nodes */
-    int64_t *member_ptr;          /* element_count + 1 */
-    int32_t *member_idx; /* the groups that each element belongs to: indices into groups, ascending */
     int32_t group_count;
     struct msh_group *groups; /* ascending in (dim, tag) */
     bool by_entity[4];        /* of each dimension: the groups are entities */

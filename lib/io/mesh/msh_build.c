@@ -26,7 +26,6 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     for (int64_t i = 0; i < msh->notes.count; i++) {
         TRY(mesh_add_note(&draft, "%s", msh->notes.name[i]));
     }
-    TRY(mesh_find_roles(&draft));
     TRY(mesh_find_dim(&draft));
     TRY(mesh_pick_regions(&draft));
     TRY(mesh_build_nodes(&draft));
@@ -34,7 +33,7 @@ enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct me
     TRY(mesh_check_coincident(&draft));
     TRY(mesh_build_facets(&draft));
 done:
-    FREE_ALL(draft.role, draft.region_of, draft.node_of, draft.origin);
+    FREE_ALL(draft.region_of, draft.node_of, draft.origin);
     if (status != STATUS_OK) {
         mesh_free(mesh);
     }

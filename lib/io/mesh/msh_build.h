@@ -8,17 +8,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum mesh_role {
-    MESH_UNUSED,
-    MESH_MIDSIDE,
-    MESH_CORNER
-}; /* a corner of any element but a point is a corner */
-
 struct mesh_draft {
     struct mesh *mesh;
     const struct msh *msh;
     const struct mesh_options *options;
-    int8_t *role;       /* msh->node_count: enum mesh_role of each node */
     int32_t *region_of; /* msh->element_count: the region of each kept cell, -1 for other elements */
     int32_t *node_of;   /* msh->node_count: node of the mesh, or -1 */
     int64_t *origin;    /* mesh->cell_count: the element of which each cell is a part */
@@ -37,9 +30,6 @@ int mesh_corners(const struct mesh_draft *draft, int64_t element);
  * that is not convex is split along its inner diagonal. */
 #define MSH_MOST_SIMPLICES 6
 int mesh_simplices(const struct mesh_draft *draft, int64_t element, int32_t simplices[MSH_MOST_SIMPLICES][4]);
-
-/* Set draft->role, and note midside nodes. */
-MUST_CHECK enum status mesh_find_roles(struct mesh_draft *draft);
 
 /* Set the dimension, that of the highest elements: 3, or 2 if they lie in a plane z = const. Name the
  * regions, and set draft->region_of. */
@@ -76,14 +66,8 @@ struct msh_faces {
     struct keyed *face; /* count, sorted: cell * (dim + 1) + the node of the cell that is not on it */
 };
 
-/* Two cells on the same side of a face, or of three at one face. */
-struct msh_overlap {
-    int32_t cell[2]; /* -1 when there is none */
-};
-
 MUST_CHECK enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count,
-                                      const int32_t cells[], struct msh_overlap *overlap,
-                                      struct error *error);
+                                      const int32_t cells[], struct error *error);
 void msh_faces_free(struct msh_faces *faces);
 
 /* The index of the first face with these `dim` nodes, in any order; *count: number of cells that share it. */

@@ -6,31 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-enum status mesh_find_roles(struct mesh_draft *draft)
-{
-    const struct msh *msh = draft->msh;
-    int64_t count = 0;
-    RETURN_IF_ERROR(NEW_ARRAY(&draft->role, msh->node_count, draft->error));
-    for (int64_t e = 0; e < msh->element_count; e++) {
-        const struct msh_element *element = &msh->elements[e];
-        struct msh_type type = msh_type(element->type);
-        for (int k = 0; k < type.node_count; k++) {
-            int8_t *role = &draft->role[msh->node_idx[element->first + k]];
-            if (k < mesh_corners(draft, e) && type.dim > 0) {
-                *role = MESH_CORNER;
-            } else if (k >= mesh_corners(draft, e) && *role == MESH_UNUSED) {
-                *role = MESH_MIDSIDE;
-            }
-        }
-    }
-    for (int64_t n = 0; n < msh->node_count; n++) {
-        count += draft->role[n] == MESH_MIDSIDE;
-    }
-    return count > 0
-               ? mesh_add_note(draft, "second-order cells: %lld midside nodes left out", (long long)count)
-               : STATUS_OK;
-}
-
 enum status mesh_build_nodes(struct mesh_draft *draft)
 {
     enum { LOST = -1, IN_CELL = -2, KEPT = -3 };
@@ -49,11 +24,12 @@ enum status mesh_build_nodes(struct mesh_draft *draft)
         }
     }
     for (int64_t n = 0; n < msh->node_count; n++) {
-        lost += draft->node_of[n] == LOST && draft->role[n] != MESH_MIDSIDE;
+        lost += draft->node_of[n] == LOST;
         draft->node_of[n] = draft->node_of[n] == KEPT ? (int32_t)mesh->node_count++ : -1;
     }
     if (lost > 0) {
-        RETURN_IF_ERROR(mesh_add_note(draft, "nodes of no cell, left out: %lld", (long long)lost));
+        RETURN_IF_ERROR(
+            mesh_add_note(draft, "midside nodes, and nodes of no cell, left out: %lld", (long long)lost));
     }
     RETURN_IF_ERROR(NEW_ARRAY(&mesh->x, mesh->node_count * mesh->dim, draft->error));
     for (int64_t n = 0; n < msh->node_count; n++) {

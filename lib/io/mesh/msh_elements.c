@@ -36,7 +36,9 @@ struct block {
     int64_t count;
     int64_t number; /* of the type */
     struct msh_type type;
-    int64_t key;  /* of the entity, MSH 4 */
+    int64_t entity; /* MSH 4: its key, and its groups */
+    int64_t group_count;
+    const struct msh_entity *groups;
     int64_t tags; /* MSH 2: number of tags that follow: group, entity, partitions */
 };
 
@@ -55,7 +57,12 @@ static void read_block_head(struct msh_reader *r, struct block *block, int64_t l
     int64_t dim;
     if (r->msh4) {
         int64_t tag = msh_read_entity_tag(r, &dim);
-        block->key = msh_key(dim, tag);
+        block->entity = msh_key(dim, tag);
+        block->groups = msh_find_entity(r, block->entity, &block->group_count);
+        if (block->groups == NULL && r->entity_count > 0) {
+            msh_fail(r, "is on %s %lld, which is not in $Entities", msh_entity_kind((int)dim),
+                     (long long)tag);
+        }
         read_type(r, block);
         block->count = msh_count(r, "number of elements", 4, 16);
         if (r->status == STATUS_OK && block->type.dim != dim) {
@@ -89,7 +96,7 @@ static void read_tags(struct msh_reader *r, const struct block *block, int64_t *
 
 static void read_element(struct msh_reader *r, struct block *block)
 {
-    int64_t node[MSH_MOST_NODES] = {0}, key = block->key, entity = key;
+    int64_t node[MSH_MOST_NODES] = {0}, key = 0, entity = block->entity;
     int64_t tag = msh_tag(r, "tag", 1, MSH_LARGEST_TAG);
     if (!r->msh4 && !r->binary) {
         read_type(r, block);
@@ -99,9 +106,12 @@ static void read_element(struct msh_reader *r, struct block *block)
     for (int k = 0; k < block->type.node_count; k++) {
         node[k] = msh_tag(r, "node", INT64_MIN, INT64_MAX);
     }
-    msh_add_element(r, tag, (int)block->number, node, key);
-    if (r->status == STATUS_OK) {
-        r->msh->elements[r->msh->element_count - 1].entity = entity;
+    for (int64_t g = 0; g == 0 || g < block->group_count; g++) {
+        key = block->group_count > 0 ? block->groups[g].group : key;
+        msh_add_element(r, g == 0 ? tag : MSH_NO_TAG, (int)block->number, node, key);
+        if (r->status == STATUS_OK) {
+            r->msh->elements[r->msh->element_count - 1].entity = entity;
+        }
     }
 }
 

@@ -4,38 +4,8 @@
 
 #include <stdlib.h>
 
-/* Whether the order of a face's nodes is an odd permutation of the ascending one. */
-static bool is_odd(int dim, const int32_t node[])
-{
-    bool odd = node[0] > node[1];
-    return dim == 2 ? odd : odd ^ (node[0] > node[2]) ^ (node[1] > node[2]);
-}
-
-static bool is_turned(const struct msh_faces *faces, int64_t face)
-{
-    int32_t node[3];
-    msh_face_nodes(faces, face, node);
-    return is_odd(faces->dim, node);
-}
-
-static void find_overlap(const struct msh_faces *faces, struct msh_overlap *overlap)
-{
-    int corners = faces->dim + 1;
-    *overlap = (struct msh_overlap){{-1, -1}};
-    for (int64_t f = 0, end; f < faces->count; f = end) {
-        end = keyed_end(faces->count, faces->face, f);
-        for (int64_t i = f + 1; i < end; i++) {
-            if (i > f + 1 || is_turned(faces, i) == is_turned(faces, i - 1)) {
-                *overlap = (struct msh_overlap){
-                    {(int32_t)(faces->face[i - 1].item / corners), (int32_t)(faces->face[i].item / corners)}};
-                return;
-            }
-        }
-    }
-}
-
 enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count, const int32_t cells[],
-                           struct msh_overlap *overlap, struct error *error)
+                           struct error *error)
 {
     *faces = (struct msh_faces){.dim = dim, .cells = cells, .count = cell_count * (dim + 1)};
     RETURN_IF_ERROR(NEW_ARRAY(&faces->face, faces->count, error));
@@ -46,7 +16,6 @@ enum status msh_faces_make(struct msh_faces *faces, int dim, int64_t cell_count,
         face_key(dim, node, faces->face[f].key);
     }
     keyed_sort(faces->count, faces->face);
-    find_overlap(faces, overlap);
     return STATUS_OK;
 }
 

@@ -10,48 +10,53 @@ struct gathering {
     struct mesh_draft *draft;
     struct msh_faces faces;
     int64_t boundary_count; /* of the faces */
-    int64_t *group_ptr;     /* group_count + 1: elements by group */
-    int64_t *group_idx;
+    int64_t *group_ptr;     /* group_count + 1: elements by group, in the order of the file */
+    int32_t *group_idx;
     int32_t *face_stamp;  /* per face: 1 + the last group that contains it */
     int32_t *node_stamp;  /* per node: the same */
     int64_t set_capacity; /* of mesh->set_idx */
 };
 
-/* The error of two cells on the same side of a face: the mesh overlaps, or a cell is repeated. */
-static enum status fail_overlap(const struct mesh_draft *draft, const struct msh_overlap *overlap)
+/* Whether the order of a face's nodes is an odd permutation of the ascending one. */
+static bool is_turned(const struct msh_faces *faces, int64_t face)
 {
-    const struct msh *msh = draft->msh;
-    const struct mesh *mesh = draft->mesh;
-    int64_t a = draft->origin[overlap->cell[0]];
-    int64_t b = draft->origin[overlap->cell[1]];
-    if (mesh->cell_region[overlap->cell[0]] != mesh->cell_region[overlap->cell[1]]) {
-        return fail(draft->error, STATUS_INPUT,
-                    "elements %lld ('%s') and %lld ('%s') overlap: each cell once, in one group",
-                    (long long)msh->elements[a].tag, mesh->regions.name[mesh->cell_region[overlap->cell[0]]],
-                    (long long)msh->elements[b].tag, mesh->regions.name[mesh->cell_region[overlap->cell[1]]]);
-    }
-    return fail(draft->error, STATUS_INPUT, "elements %lld and %lld overlap: one is inverted, or there twice",
-                (long long)msh->elements[a].tag, (long long)msh->elements[b].tag);
+    int32_t node[3];
+    msh_face_nodes(faces, face, node);
+    bool odd = node[0] > node[1];
+    return faces->dim == 2 ? odd : odd ^ (node[0] > node[2]) ^ (node[1] > node[2]);
 }
 
-/* The elements of each group, in the order of the file. */
-static enum status sort_by_group(struct gathering *g)
+/* Count the faces of one cell. Two cells on the same side of a face, or three at one, overlap. */
+static enum status count_boundary(struct gathering *g)
 {
-    const struct msh *msh = g->draft->msh;
-    SCRATCH int64_t *at = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&g->group_ptr, msh->group_count + 1, g->draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&g->group_idx, msh->member_ptr[msh->element_count], g->draft->error));
-    RETURN_IF_ERROR(NEW_ARRAY(&at, msh->group_count, g->draft->error));
-    for (int32_t i = 0; i < msh->group_count; i++) {
-        g->group_ptr[i + 1] = g->group_ptr[i] + msh->groups[i].element_count;
-        at[i] = g->group_ptr[i];
-    }
-    for (int64_t e = 0; e < msh->element_count; e++) {
-        for (int64_t k = msh->member_ptr[e]; k < msh->member_ptr[e + 1]; k++) {
-            g->group_idx[at[msh->member_idx[k]]++] = e;
+    const struct mesh_draft *draft = g->draft;
+    const struct msh_faces *faces = &g->faces;
+    for (int64_t f = 0, end; f < faces->count; f = end) {
+        end = keyed_end(faces->count, faces->face, f);
+        g->boundary_count += end == f + 1;
+        if (end > f + 2 || (end == f + 2 && is_turned(faces, f) == is_turned(faces, f + 1))) {
+            int64_t a = faces->face[end - 2].item / (faces->dim + 1),
+                    b = faces->face[end - 1].item / (faces->dim + 1);
+            return fail(draft->error, STATUS_INPUT,
+                        "elements %lld and %lld overlap: one is inverted, or there twice (of '%s', of '%s')",
+                        (long long)draft->msh->elements[draft->origin[a]].tag,
+                        (long long)draft->msh->elements[draft->origin[b]].tag,
+                        draft->mesh->regions.name[draft->mesh->cell_region[a]],
+                        draft->mesh->regions.name[draft->mesh->cell_region[b]]);
         }
     }
     return STATUS_OK;
+}
+
+static enum status sort_by_group(struct gathering *g)
+{
+    const struct msh *msh = g->draft->msh;
+    NEW_SCRATCH(int32_t, group, msh->element_count, g->draft->error);
+    for (int64_t e = 0; e < msh->element_count; e++) {
+        group[e] = msh->elements[e].group;
+    }
+    return lists_by_row(msh->element_count, 1, group, msh->group_count, &g->group_ptr, &g->group_idx,
+                        g->draft->error);
 }
 
 /* Add a node to the current set, once; -1: the node was left out. */
@@ -78,8 +83,13 @@ static enum status close_set(struct gathering *g, int32_t group)
     if (count == 0) {
         return STATUS_OK;
     }
+    const char *name = g->draft->msh->groups[group].name;
+    if (names_find(&mesh->node_sets, name) >= 0) { /* groups differ only within a dimension */
+        return fail(g->draft->error, STATUS_INPUT,
+                    "physical groups of two dimensions are named '%s', both sets of nodes: rename one", name);
+    }
     qsort(&mesh->set_idx[first], (size_t)count, sizeof *mesh->set_idx, compare_int32);
-    RETURN_IF_ERROR(names_add(&mesh->node_sets, g->draft->msh->groups[group].name, g->draft->error));
+    RETURN_IF_ERROR(names_add(&mesh->node_sets, name, g->draft->error));
     mesh->set_ptr[mesh->node_sets.count + 1] = mesh->set_ptr[mesh->node_sets.count];
     return STATUS_OK;
 }
@@ -161,29 +171,21 @@ static enum status gather_facets(struct gathering *g, int32_t group)
 static enum status gather_nodes(struct gathering *g, int32_t group)
 {
     const struct msh *msh = g->draft->msh;
-    int64_t lost = 0, midside = 0;
+    int64_t lost = 0;
     for (int64_t i = g->group_ptr[group]; i < g->group_ptr[group + 1]; i++) {
         int64_t e = g->group_idx[i];
         int used = mesh_corners(g->draft, e);
         for (int k = 0; k < used; k++) {
-            int32_t of_file = msh->node_idx[msh->elements[e].first + k];
-            int32_t node = g->draft->node_of[of_file];
-            bool is_midside = g->draft->role[of_file] == MESH_MIDSIDE;
-            lost += node < 0 && !is_midside;
-            midside += node < 0 && is_midside;
+            int32_t node = g->draft->node_of[msh->node_idx[msh->elements[e].first + k]];
+            lost += node < 0;
             RETURN_IF_ERROR(add_set_node(g, group, node));
         }
     }
     RETURN_IF_ERROR(close_set(g, group));
-    if (lost > 0) {
-        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': some of its nodes belong to no cell: left out",
-                                      msh->groups[group].name));
-    }
-    if (midside > 0) {
-        RETURN_IF_ERROR(mesh_add_note(g->draft, "group '%s': midside nodes, left out: %lld",
-                                      msh->groups[group].name, (long long)midside));
-    }
-    return STATUS_OK;
+    return lost == 0
+               ? STATUS_OK
+               : mesh_add_note(g->draft, "group '%s': midside nodes or nodes of no cell, left out: %lld",
+                               msh->groups[group].name, (long long)lost);
 }
 
 static enum status gather_groups(struct gathering *g)
@@ -198,31 +200,6 @@ static enum status gather_groups(struct gathering *g)
             RETURN_IF_ERROR(gather_facets(g, group));
         } else if (msh->groups[group].dim < dim - 1) {
             RETURN_IF_ERROR(gather_nodes(g, group));
-        }
-    }
-    return STATUS_OK;
-}
-
-static int compare_names(const void *left, const void *right)
-{
-    return strcmp(*(char *const *)left, *(char *const *)right);
-}
-
-/* Check that node sets have different names: groups differ only within a dimension. */
-static enum status check_set_names(const struct mesh_draft *draft)
-{
-    const struct names *sets = &draft->mesh->node_sets;
-    SCRATCH char **order = NULL;
-    RETURN_IF_ERROR(NEW_ARRAY(&order, sets->count, draft->error));
-    for (int64_t i = 0; i < sets->count; i++) {
-        order[i] = sets->name[i];
-    }
-    qsort(order, (size_t)sets->count, sizeof *order, compare_names);
-    for (int64_t i = 1; i < sets->count; i++) {
-        if (strcmp(order[i], order[i - 1]) == 0) {
-            return fail(draft->error, STATUS_INPUT,
-                        "physical groups of two dimensions are named '%s', both sets of nodes: rename one",
-                        order[i]);
         }
     }
     return STATUS_OK;
@@ -243,16 +220,8 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     enum status status = STATUS_OK;
     struct mesh *mesh = draft->mesh;
     struct gathering g = {.draft = draft};
-    struct msh_overlap overlap;
-    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->cell_count, mesh->cells, &overlap, draft->error));
-    if (overlap.cell[0] >= 0) {
-        status = fail_overlap(draft, &overlap);
-        goto done;
-    }
-    for (int64_t f = 0, end; f < g.faces.count; f = end) {
-        end = keyed_end(g.faces.count, g.faces.face, f);
-        g.boundary_count += end == f + 1;
-    }
+    TRY(msh_faces_make(&g.faces, mesh->dim, mesh->cell_count, mesh->cells, draft->error));
+    TRY(count_boundary(&g));
     TRY(sort_by_group(&g));
     TRY(NEW_ARRAY(&g.face_stamp, mesh->cell_count * (mesh->dim + 1), draft->error));
     TRY(NEW_ARRAY(&g.node_stamp, mesh->node_count, draft->error));
@@ -260,7 +229,6 @@ enum status mesh_build_facets(struct mesh_draft *draft)
     TRY(NEW_ARRAY(&mesh->facet_set, most_facets(draft), draft->error));
     TRY(NEW_ARRAY(&mesh->set_ptr, draft->msh->group_count + 2, draft->error));
     TRY(gather_groups(&g));
-    TRY(check_set_names(draft));
 done:
     msh_faces_free(&g.faces);
     FREE_ALL(g.group_ptr, g.group_idx, g.face_stamp, g.node_stamp);

@@ -31,20 +31,23 @@ void msh_add_element(struct msh_reader *r, int64_t tag, int type, const int64_t 
 
 /* ---- finding them by their tags ---- */
 
-/* Index the tags that begin `count` records of `size` bytes. Returns the place of one whose tag stands before
- * it, too; -1: there is none. */
+/* Index the tags, but MSH_NO_TAG, that begin `count` records of `size` bytes. Returns the place of one whose
+ * tag stands before it, too; -1: there is none. */
 static int64_t make_index(struct msh_reader *r, struct msh_index *index, int64_t count, const void *records,
                           size_t size)
 {
-    *index = (struct msh_index){.count = count};
+    *index = (struct msh_index){0};
     MSH_NEW(r, &index->sorted, count);
     if (r->status != STATUS_OK) {
         return -1;
     }
     for (int64_t i = 0; i < count; i++) {
-        memcpy(&index->sorted[i].tag, (const char *)records + (size_t)i * size, sizeof(int64_t));
-        index->sorted[i].place = i;
+        struct msh_place *next = &index->sorted[index->count];
+        memcpy(&next->tag, (const char *)records + (size_t)i * size, sizeof(int64_t));
+        next->place = i;
+        index->count += next->tag != MSH_NO_TAG;
     }
+    count = index->count;
     qsort(index->sorted, (size_t)count, sizeof *index->sorted, compare_int64);
     for (int64_t i = 1; i < count; i++) {
         int64_t a = index->sorted[i - 1].place, b = index->sorted[i].place;

@@ -36,10 +36,11 @@ struct msh_name {
     int length;
 };
 
-/* A list of groups to which elements refer: in MSH 4 that of an entity; in MSH 2 a group. */
+/* A physical group of an entity of MSH 4. */
 struct msh_entity {
     int64_t key;
-    int64_t first, count; /* its groups: of reader->physicals */
+    int64_t group;  /* its key; 0: the entity has none */
+    int64_t record; /* number of the entity in the file */
 };
 
 /* The sections that are read; others are skipped. */
@@ -75,9 +76,7 @@ struct msh_reader {
     void *numbered;     /* a tree of what input_name numbers */
     char left_out[320]; /* what is not read, ", " before each */
     int64_t entity_count, entity_room;
-    struct msh_entity *entities;
-    int64_t physical_count, physical_room;
-    int64_t *physicals; /* keys of groups */
+    struct msh_entity *entities; /* ascending in (key, group) */
 };
 
 /* ---- msh_number.c: numbers, text or binary alike ---- */
@@ -137,13 +136,20 @@ const char *msh_entity_kind(int dim);
 /* Dimension and tag of the entity at the head of a block of nodes or elements in MSH 4. */
 int64_t msh_read_entity_tag(struct msh_reader *reader, int64_t *dim);
 
+/* The groups of an entity, *count of them; NULL: it is not in the file. */
+const struct msh_entity *msh_find_entity(const struct msh_reader *reader, int64_t key, int64_t *count);
+
 /* Dimension and tag as one number, ascending in (dimension, tag); never 0. */
 static inline int64_t msh_key(int64_t dim, int64_t tag)
 {
     return ((dim + 1) << 32) + tag;
 }
+static inline int msh_key_dim(int64_t key)
+{
+    return (int)((key + MSH_LARGEST_TAG) >> 32) - 1;
+}
 
-/* Set the groups of the file, and those of each element: the last step. */
+/* Set the groups of the file, and that of each element: the last step. */
 void msh_join_groups(struct msh_reader *reader);
 
 /* ---- msh_list.c: nodes and elements as they are read, and finding them by their tags ---- */
@@ -151,9 +157,7 @@ void msh_join_groups(struct msh_reader *reader);
 /* The elements whose tags are given at the end, behind the others. */
 #define MSH_NO_TAG (-1)
 
-/* Add a node; an element with these tags of nodes, in gmsh's order, and the key of its groups (0: none). Each
- * element has at most one key: facets and nodes of other formats are elements of their own for each of their
- * groups. */
+/* Add a node; an element with these tags of nodes, in gmsh's order, and the key of its group (0: none). */
 void msh_add_node(struct msh_reader *reader, int64_t tag, const double x[3]);
 void msh_add_element(struct msh_reader *reader, int64_t tag, int type, const int64_t node[], int64_t key);
 

@@ -255,7 +255,7 @@ enum status msh_parse(struct msh *msh, const char *bytes, size_t size, const cha
     msh_index_free(&reader.nodes);
     owned_free(&reader.texts);
     tdestroy(reader.numbered, free);
-    FREE_ALL(reader.corners, reader.names, reader.entities, reader.physicals);
+    FREE_ALL(reader.corners, reader.names, reader.entities);
     if (reader.status != STATUS_OK) {
         msh_free(msh);
     }
@@ -294,7 +294,7 @@ enum status msh_read(struct msh *msh, int descriptor, const char *name, const ch
 
 void msh_free(struct msh *msh)
 {
-    FREE_ALL(msh->nodes, msh->elements, msh->node_idx, msh->member_ptr, msh->member_idx);
+    FREE_ALL(msh->nodes, msh->elements, msh->node_idx);
     for (int32_t i = 0; i < msh->group_count; i++) {
         FREE_ALL(msh->groups[i].name, msh->groups[i].written);
     }

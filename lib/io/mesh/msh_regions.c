@@ -55,14 +55,14 @@ enum status mesh_find_dim(struct mesh_draft *draft)
     return dim == 2 ? check_plane(draft) : STATUS_OK;
 }
 
-/* The first group of a cell; group_count if there is none. */
+/* The group of a cell; group_count if there is none. */
 static int32_t cell_group(const struct msh *msh, int64_t element)
 {
-    int64_t first = msh->member_ptr[element];
-    return msh->member_ptr[element + 1] > first ? msh->member_idx[first] : msh->group_count;
+    int32_t group = msh->elements[element].group;
+    return group >= 0 ? group : msh->group_count;
 }
 
-/* ---- repeated cells: in MSH 2 a cell in two groups is repeated ---- */
+/* ---- repeated cells: a cell in two groups is repeated ---- */
 
 #define MOST_CORNERS 8
 
@@ -88,21 +88,17 @@ static void key_cell(const struct mesh_draft *draft, int64_t element, struct key
     sort_nodes(mesh_corners(draft, element), node, key->node);
 }
 
-/* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. Repeated elements
- * and cells in two groups are noted. */
+/* is_cell[element]: it has the mesh's dimension and is the first element with its nodes. */
 static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
 {
     const struct msh *msh = draft->msh;
     SCRATCH struct keyed_cell *keys = NULL;
-    int64_t count = 0;
-    int64_t again = 0;
-    int64_t twice = 0;
+    int64_t count = 0, again = 0;
     RETURN_IF_ERROR(NEW_ARRAY(&keys, msh->element_count, draft->error));
     for (int64_t e = 0; e < msh->element_count; e++) {
         is_cell[e] = mesh_element_dim(draft, e) == draft->mesh->dim;
         if (is_cell[e]) {
             key_cell(draft, e, &keys[count++]);
-            twice += msh->member_ptr[e + 1] - msh->member_ptr[e] > 1;
         }
     }
     qsort(keys, (size_t)count, sizeof *keys, compare_cells);
@@ -112,19 +108,9 @@ static enum status find_cells(struct mesh_draft *draft, bool is_cell[])
             is_cell[keys[i].element] = false;
         }
     }
-    if (twice > 0) {
-        RETURN_IF_ERROR(
-            mesh_add_note(draft, "cells in two physical groups, taken for the one of the lower tag: %lld",
-                          (long long)twice));
-    }
-    if (again > 0) {
-        RETURN_IF_ERROR(
-            mesh_add_note(draft,
-                          "cells that stand twice, as for a second physical group, taken once, as the first: "
-                          "%lld",
-                          (long long)again));
-    }
-    return STATUS_OK;
+    return again == 0 ? STATUS_OK
+                      : mesh_add_note(draft, "cells in two physical groups, or there twice, taken once: %lld",
+                                      (long long)again);
 }
 
 /* Note each name that differs from that in the file. */
@@ -132,7 +118,7 @@ static enum status note_names(struct mesh_draft *draft)
 {
     for (int32_t g = 0; g < draft->msh->group_count; g++) {
         const struct msh_group *group = &draft->msh->groups[g];
-        if (group->written != NULL) {
+        if (group->written != NULL && strcmp(group->written, group->name) != 0) {
             RETURN_IF_ERROR(
                 mesh_add_note(draft, "group '%s' is named '%s' here", group->written, group->name));
         }
