@@ -54,7 +54,7 @@ limit_memory() { [[ $BUILD == *san* ]] || echo 'ulimit -v 4000000;'; }
 @test "fault 4: NaN or infinite coordinate" {
     for bad in nan inf 1e999; do
         mesh | sed "s/^20 1 0 0/20 $bad 0 0/" > bad.msh
-        refused "$bad in a mesh" 2 "\$Nodes: node 2: coordinate 1 is not finite" 'nodes -u mm bad.msh'
+        refused "$bad in a mesh" 2 "\$Nodes: node 2: coordinate: '$bad' is not a finite number" 'nodes -u mm bad.msh'
     done
     mts text cloud.mts | sed '/^# nodes.x/{n;s/.*/nan 0/}' > bad.mts
     refused "nan in a stream" 2 "nodes.x: row 0" 'ipoints bad.mts'

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,17 @@ enum status names_add(struct names *names, const char *name, struct error *error
     RETURN_IF_ERROR(RESIZE_ARRAY(&names->name, names->count + 1, error));
     names->name[names->count] = strdup(name);
     return names->name[names->count++] != NULL ? STATUS_OK : fail_memory(error, "names");
+}
+
+enum status names_print(struct names *names, struct error *error, const char *format, ...)
+{
+    SCRATCH char *name = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vasprintf(&name, format, arguments);
+    va_end(arguments);
+    name = length < 0 ? NULL : name;
+    return name == NULL ? fail_memory(error, "names") : names_add(names, name, error);
 }
 
 enum status names_split(struct names *names, const char *list, struct error *error)

@@ -13,9 +13,11 @@ struct names {
     int64_t length;
 };
 
-/* Append a copy of a name; of each item of a list "body,lump", of which "" has none: names->list is then not
- * NULL. */
+/* Append a copy of a name; a printed one; of each item of a list "body,lump", of which "" has none:
+ * names->list is then not NULL. */
 MUST_CHECK enum status names_add(struct names *names, const char *name, struct error *error);
+MUST_CHECK enum status names_print(struct names *names, struct error *error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 MUST_CHECK enum status names_split(struct names *names, const char *list, struct error *error);
 void names_free(struct names *names);
 

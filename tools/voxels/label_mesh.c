@@ -20,15 +20,6 @@ static bool same_group(const struct member *a, const struct member *b)
     return a->inner == b->inner && a->outer == b->outer;
 }
 
-static enum status add_name(struct names *names, const char *first, const char *second, struct error *error)
-{
-    SCRATCH char *joined = NULL;
-    if (asprintf(&joined, "%s|%s", first, second) < 0) {
-        return fail_memory(error, "a name");
-    }
-    return names_add(names, joined, error);
-}
-
 static enum status make_regions(const struct label_image *image, const struct label_cells *result,
                                 struct mesh *mesh, struct error *error)
 {
@@ -62,8 +53,9 @@ static enum status make_facets(const struct label_image *image, const struct lab
     qsort(member, (size_t)result->facet_count, sizeof *member, compare_members);
     for (int64_t f = 0; f < result->facet_count; f++) {
         if (f == 0 || !same_group(&member[f], &member[f - 1])) {
-            RETURN_IF_ERROR(add_name(&mesh->facet_sets, image->table.names.name[member[f].inner],
-                                     image->table.names.name[member[f].outer], error));
+            RETURN_IF_ERROR(names_print(&mesh->facet_sets, error, "%s|%s",
+                                        image->table.names.name[member[f].inner],
+                                        image->table.names.name[member[f].outer]));
         }
         mesh->facet_set[f] = (int32_t)mesh->facet_sets.count - 1;
         memcpy(mesh->facets + f * dim, result->facet + (int64_t)member[f].item * dim,
@@ -116,8 +108,9 @@ static enum status make_sets(const struct label_image *image, const struct label
         }
         if (i == 0 || !same_group(&member[i], &member[i - 1])) {
             mesh->set_ptr[mesh->node_sets.count] = kept;
-            RETURN_IF_ERROR(add_name(&mesh->node_sets, image->table.names.name[member[i].inner],
-                                     image->table.names.name[member[i].outer], error));
+            RETURN_IF_ERROR(names_print(&mesh->node_sets, error, "%s|%s",
+                                        image->table.names.name[member[i].inner],
+                                        image->table.names.name[member[i].outer]));
         }
         mesh->set_idx[kept++] = member[i].item;
     }

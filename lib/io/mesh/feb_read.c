@@ -158,10 +158,10 @@ static void add_node(struct feb *f, const char *text, const char *end)
     double x[3] = {0};
     int64_t length;
     for (int k = 0; k < 3; k++) {
-        const char *word = input_word(&text, end, &length);
+        const char *word = input_word(&text, end, ',', &length);
         x[k] = input_real(f->r, "coordinate", word != NULL ? word : "", length);
     }
-    if (input_word(&text, end, &length) != NULL) {
+    if (input_word(&text, end, ',', &length) != NULL) {
         msh_fail(f->r, "node %lld has more than three coordinates", (long long)f->id);
     }
     msh_add_node(f->r, f->id, x);
@@ -173,7 +173,7 @@ static void add_element(struct feb *f, const char *text, const char *end)
     int64_t length, node[MSH_MOST_NODES];
     int count = msh_type(f->type).node_count, found = 0;
     const char *word;
-    while (r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
+    while (r->status == STATUS_OK && (word = input_word(&text, end, ',', &length)) != NULL) {
         int64_t tag = input_whole(r, "node", word, length, 1, MSH_LARGEST_TAG);
         node[found < count ? found : 0] = tag;
         found++;
@@ -192,7 +192,7 @@ static void add_list(struct feb *f, const char *text, const char *end)
 {
     int64_t length;
     const char *word;
-    while (f->r->status == STATUS_OK && (word = input_word(&text, end, &length)) != NULL) {
+    while (f->r->status == STATUS_OK && (word = input_word(&text, end, ',', &length)) != NULL) {
         int64_t node = input_whole(f->r, "node", word, length, 1, MSH_LARGEST_TAG);
         msh_add_element(f->r, MSH_NO_TAG, INPUT_POINT, &node, input_group(f->r, 0, f->name));
         f->is_empty = false;

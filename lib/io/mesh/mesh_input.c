@@ -3,8 +3,6 @@
 
 #include <math.h>
 #include <search.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +13,13 @@ int64_t input_whole(struct msh_reader *r, const char *what, const char *word, in
     const char *end = word + length;
     if (number_parse_integer(word, end, -INT64_MAX, INT64_MAX, &number) != end) {
         msh_fail(r, "%s: '%.*s' is not a whole number", what, length < 64 ? (int)length : 64, word);
-    } else if (number < least || number > most) {
+    }
+    return input_within(r, what, number, least, most);
+}
+
+int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most)
+{
+    if (number < least || number > most) {
         msh_fail(r, "%s: %lld is not within [%lld, %lld]", what, (long long)number, (long long)least,
                  (long long)most);
     }
@@ -49,17 +53,18 @@ int input_type(int dim, int node_count)
     return 0;
 }
 
-const char *input_word(const char **at, const char *end, int64_t *length)
+const char *input_word(const char **at, const char *end, char comma, int64_t *length)
 {
-    static const char between[] = " ,\t\r\n";
-    while (*at < end && memchr(between, **at, sizeof between - 1) != NULL) {
-        ++*at;
-    }
     const char *word = *at;
-    while (*at < end && memchr(between, **at, sizeof between - 1) == NULL) {
-        ++*at;
+    while (word < end && (input_is_blank(*word) || *word == comma)) {
+        word++;
     }
-    *length = *at - word;
+    const char *behind = word;
+    while (behind < end && !input_is_blank(*behind) && *behind != comma) {
+        behind++;
+    }
+    *at = behind;
+    *length = behind - word;
     return *length > 0 ? word : NULL;
 }
 
@@ -131,17 +136,5 @@ void input_leave_out(struct msh_reader *r, const char *what)
     bool is_new = found == NULL || (found[length] != '\0' && found[length] != ',');
     if (is_new && strlen(r->left_out) + length < sizeof r->left_out) {
         text_append(r->left_out, sizeof r->left_out, "%s", item);
-    }
-}
-
-void input_note(struct msh_reader *r, const char *format, ...)
-{
-    char note[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(note, sizeof note, format, arguments);
-    va_end(arguments);
-    if (r->status == STATUS_OK) {
-        r->status = names_add(&r->msh->notes, note, r->error);
     }
 }

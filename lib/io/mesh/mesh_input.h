@@ -22,15 +22,21 @@ static inline void input_at(struct msh_reader *r, const char *section, int64_t l
  * exponent D. */
 int64_t input_whole(struct msh_reader *r, const char *what, const char *word, int64_t length, int64_t least,
                     int64_t most);
+int64_t input_within(struct msh_reader *r, const char *what, int64_t number, int64_t least, int64_t most);
 double input_real(struct msh_reader *r, const char *what, const char *word, int64_t length);
 
 /* The number of gmsh of the elements of first or second order with this dimension and number of nodes; 0:
  * there are none. Numbers of nodes are those of one type, except that 8 in the plane are of second order. */
 int input_type(int dim, int node_count);
 
-/* The next word of a text, between blanks, commas and line ends, at *at, which moves behind it; NULL: the
+static inline bool input_is_blank(char c)
+{
+    return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
+
+/* The next word of a text, between blanks, line ends and `comma`, at *at, which moves behind it; NULL: the
  * end. */
-const char *input_word(const char **at, const char *end, int64_t *length);
+const char *input_word(const char **at, const char *end, char comma, int64_t *length);
 
 /* The number of a name of 1 to INPUT_NAME bytes among those of a kind, for the caller: 0 at first. NULL after
  * a failure. */
@@ -43,8 +49,13 @@ int64_t input_group(struct msh_reader *r, int dim, const char *text);
 /* Note what of the file is left out, each thing once. */
 void input_leave_out(struct msh_reader *r, const char *what);
 
-/* Append a note (printf-style). */
-void input_note(struct msh_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Append a note, printed; a statement. */
+#define input_note(r, ...)                                                                                   \
+    do {                                                                                                     \
+        if ((r)->status == STATUS_OK) {                                                                      \
+            (r)->status = names_print(&(r)->msh->notes, (r)->error, __VA_ARGS__);                            \
+        }                                                                                                    \
+    } while (0)
 
 /* Read a deck of Abaqus or CalculiX; a model of FEBio; a file of VTK, in XML or legacy. */
 void inp_read(struct msh_reader *r);

@@ -2,20 +2,8 @@
 
 #include "base/memory.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
-{
-    char note[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(note, sizeof note, format, arguments);
-    va_end(arguments);
-    return names_add(&draft->mesh->notes, note, draft->error);
-}
 
 enum status mesh_build(struct mesh *mesh, const struct msh *msh, const struct mesh_options *options,
                        struct error *error)

@@ -18,9 +18,8 @@ struct mesh_draft {
     struct error *error;
 };
 
-/* Append a note (printf-style). */
-MUST_CHECK enum status mesh_add_note(struct mesh_draft *draft, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+/* Append a note, printed. */
+#define mesh_add_note(draft, ...) names_print(&(draft)->mesh->notes, (draft)->error, __VA_ARGS__)
 
 /* The dimension of an element, and the number of its corners: no other nodes are used. */
 int mesh_element_dim(const struct mesh_draft *draft, int64_t element);

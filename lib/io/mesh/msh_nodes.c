@@ -1,7 +1,6 @@
 /* Reading $Nodes. */
 #include "io/mesh/msh_private.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { EACH_NODE = -1 }; /* the node tells the number of its parameters */
@@ -18,9 +17,6 @@ static void read_point(struct msh_reader *r, int64_t parameters, double x[3])
 {
     for (int k = 0; k < 3; k++) {
         x[k] = msh_real(r, "coordinate");
-        if (!isfinite(x[k])) {
-            msh_fail(r, "coordinate %d is not finite", k + 1);
-        }
     }
     parameters = parameters == EACH_NODE ? parameters_of_node(r) : parameters;
     for (int64_t k = 0; k < parameters; k++) {

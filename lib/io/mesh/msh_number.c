@@ -1,13 +1,9 @@
-#include "io/mesh/msh_private.h"
-#include "io/stream/stream_private.h"
+#include "io/mesh/mesh_input.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Longer words are not numbers. */
-enum { LONGEST_WORD = 63 };
 
 void msh_fail(struct msh_reader *r, const char *format, ...)
 {
@@ -27,14 +23,9 @@ void msh_fail(struct msh_reader *r, const char *format, ...)
     }
 }
 
-static bool is_space(char c)
-{
-    return c == ' ' || c == '\n' || c == '\r' || c == '\t';
-}
-
 void msh_skip_space(struct msh_reader *r)
 {
-    while (r->at < r->end && is_space(*r->at)) {
+    while (r->at < r->end && input_is_blank(*r->at)) {
         r->at++;
     }
 }
@@ -46,26 +37,19 @@ void msh_skip_line(struct msh_reader *r)
             r->at++;
             return;
         }
-        if (!is_space(*r->at)) {
+        if (!input_is_blank(*r->at)) {
             msh_fail(r, "something follows on the line");
         }
     }
     msh_fail(r, "the file ends here: it is truncated");
 }
 
-/* Step over the next word of a text file and return it; *length is 0 if there is none, which is a failure. */
-static const char *next_word(struct msh_reader *r, const char *what, int *length)
+/* The next word of a text file; NULL after a failure. */
+static const char *next_word(struct msh_reader *r, const char *what, int64_t *length)
 {
-    msh_skip_space(r);
-    const char *word = r->at;
-    while (r->at < r->end && !is_space(*r->at) && r->at - word <= LONGEST_WORD) {
-        r->at++;
-    }
-    *length = (int)(r->at - word);
-    if (*length == 0) {
+    const char *word = input_word(&r->at, r->end, ' ', length);
+    if (word == NULL) {
         msh_fail(r, "%s: the file ends here: it is truncated", what);
-    } else if (*length > LONGEST_WORD) {
-        msh_fail(r, "%s: no number", what);
     }
     return word;
 }
@@ -81,38 +65,24 @@ static void next_bytes(struct msh_reader *r, const char *what, size_t size, void
     r->at += size;
 }
 
-/* Read decimal digits, with or without a sign, that fit into 64 bits. */
-static int64_t whole_of_text(struct msh_reader *r, const char *what)
-{
-    int length;
-    const char *word = next_word(r, what, &length);
-    int64_t number = 0;
-    if (number_parse_integer(word, word + length, -INT64_MAX, INT64_MAX, &number) == NULL) {
-        msh_fail(r, "%s: '%.*s' is not a whole number", what, length, word);
-    }
-    return number;
-}
-
 static int64_t whole(struct msh_reader *r, const char *what, bool wide, int64_t least, int64_t most)
 {
-    int64_t number = 0;
+    int64_t number = 0, length;
     if (r->status != STATUS_OK) {
         return least;
     }
     if (!r->binary) {
-        number = whole_of_text(r, what);
-    } else if (wide) {
+        const char *word = next_word(r, what, &length);
+        return word != NULL ? input_whole(r, what, word, length, least, most) : least;
+    }
+    if (wide) {
         next_bytes(r, what, sizeof number, &number);
     } else {
         int32_t narrow = 0;
         next_bytes(r, what, sizeof narrow, &narrow);
         number = narrow;
     }
-    if (number < least || number > most) {
-        msh_fail(r, "%s: %lld is not within [%lld, %lld]", what, (long long)number, (long long)least,
-                 (long long)most);
-    }
-    return r->status == STATUS_OK ? number : least;
+    return input_within(r, what, number, least, most);
 }
 
 int64_t msh_int(struct msh_reader *r, const char *what, int64_t least, int64_t most)
@@ -154,24 +124,17 @@ int64_t msh_count_line(struct msh_reader *r, const char *what, int64_t least)
 double msh_real(struct msh_reader *r, const char *what)
 {
     double number = 0;
+    int64_t length;
     if (r->status != STATUS_OK) {
         return 0;
     }
-    if (r->binary) {
-        next_bytes(r, what, sizeof number, &number);
-        return number;
+    if (!r->binary) {
+        const char *word = next_word(r, what, &length);
+        return word != NULL ? input_real(r, what, word, length) : 0;
     }
-    int length;
-    char text[LONGEST_WORD + 1];
-    const char *word = next_word(r, what, &length);
-    if (r->status == STATUS_OK) {
-        char *end;
-        memcpy(text, word, (size_t)length);
-        text[length] = '\0';
-        number = strtod(text, &end);
-        if (end != text + length) {
-            msh_fail(r, "%s: '%s' is not a number", what, text);
-        }
+    next_bytes(r, what, sizeof number, &number);
+    if (!isfinite(number)) {
+        msh_fail(r, "%s: %g is not a finite number", what, number);
     }
     return number;
 }

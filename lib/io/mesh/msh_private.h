@@ -98,7 +98,7 @@ int64_t msh_count(struct msh_reader *reader, const char *what, int64_t text, int
 /* The same for the count at the head of a section of MSH 2, which is a line of text in all files. */
 int64_t msh_count_line(struct msh_reader *reader, const char *what, int64_t least);
 
-/* The next real number, finite or not. */
+/* The next real number. */
 double msh_real(struct msh_reader *reader, const char *what);
 
 /* Skip white space; skip the rest of the line, which must be blank. */

@@ -109,7 +109,7 @@ void vtk_fill_text(struct msh_reader *r, struct vtk_array *array, const char **a
 {
     for (int64_t i = 0; r->status == STATUS_OK && i < array->count; i++) {
         int64_t length;
-        const char *word = input_word(at, end, &length);
+        const char *word = input_word(at, end, ',', &length);
         if (word == NULL) {
             msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)array->count);
         } else if (array->real != NULL) {

@@ -31,7 +31,7 @@ static bool next_line(struct msh_reader *r, const char **at, const char **end)
 static void copy_word(struct msh_reader *r, const char **at, const char *end, char text[], size_t size)
 {
     int64_t length;
-    const char *word = input_word(at, end, &length);
+    const char *word = input_word(at, end, ',', &length);
     if (length >= (int64_t)size) {
         msh_fail(r, "a word of more than %zu bytes", size - 1);
         length = 0;
@@ -51,7 +51,7 @@ static void first_word(struct msh_reader *r, const char **at, const char **end, 
 static int64_t next_count(struct msh_reader *r, const char **at, const char *end, int64_t least)
 {
     int64_t length;
-    const char *word = input_word(at, end, &length);
+    const char *word = input_word(at, end, ',', &length);
     return input_whole(r, "a count", word != NULL ? word : "", length, least, INT32_MAX);
 }
 
@@ -71,7 +71,7 @@ static void skip_metadata(struct msh_reader *r)
 {
     const char *at, *end;
     int64_t length;
-    while (next_line(r, &at, &end) && input_word(&at, end, &length) != NULL) {
+    while (next_line(r, &at, &end) && input_word(&at, end, ',', &length) != NULL) {
     }
 }
 
@@ -145,7 +145,7 @@ static struct vtk_array *read_numbers(struct legacy *l, const struct vtk_array *
         }
     } else {
         for (int64_t i = 0; r->status == STATUS_OK && i < count; i++) {
-            if (input_word(&r->at, r->end, &length) == NULL) {
+            if (input_word(&r->at, r->end, ',', &length) == NULL) {
                 msh_fail(r, "%s: only %lld of %lld numbers", array->name, (long long)i, (long long)count);
             }
         }

@@ -169,7 +169,7 @@ static void read_text(struct vtu *u, const char *text, const char *end)
     struct msh_reader *r = u->v.r;
     const char *at = text;
     int64_t length, count = 0;
-    while (input_word(&at, end, &length) != NULL) {
+    while (input_word(&at, end, ',', &length) != NULL) {
         count++;
     }
     if (u->expected >= 0 && count != u->expected) {
